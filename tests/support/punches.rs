@@ -1,13 +1,17 @@
 //! Punches on blocks, a quarter of each in space and a half in the plane, whose meshes don't match.
 
-use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::ElementKind::{
+    self, Hexahedron8, Hexahedron20, Quad4, Quad8, Tetrahedron4, Tetrahedron10, Triangle3,
+    Triangle6,
+};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
-use crate::blocks::{Blocks, joined};
+use crate::blocks::{self, Blocks, joined};
 use crate::random::Random;
 use crate::scenes::model;
 use crate::solids::{between, moved, solid};
+use crate::sorts::sort;
 
 /// The height of a block, and its width.
 pub const BLOCK: f64 = 10.0;
@@ -15,8 +19,8 @@ pub const BLOCK: f64 = 10.0;
 /// A punch pressed on a block by 100 Pa on its top, held by symmetry alone along x and y.
 #[derive(Clone, Debug)]
 pub struct Punch {
-    /// The kind of cells; `None` for squares in the plane.
-    pub kind: Option<ElementKind>,
+    /// The kind of cells.
+    pub kind: ElementKind,
     /// Cells along the edges of the block.
     pub block: usize,
     /// Cells across the punch.
@@ -28,39 +32,60 @@ pub struct Punch {
 }
 
 impl Punch {
-    /// One of any size and any radius on any mesh.
+    /// One of any size and any radius on any mesh: the punch's cells measure from 0.1 to 6 times those of the block.
     pub fn random(random: &mut Random) -> Self {
-        let kinds = [
-            None,
-            Some(ElementKind::Hexahedron8),
-            Some(ElementKind::Tetrahedron4),
-            Some(ElementKind::Hexahedron20),
-        ];
+        let (kind, most) = random.pick(&[
+            (Triangle3, 20),
+            (Quad4, 20),
+            (Triangle6, 10),
+            (Quad8, 10),
+            (Hexahedron8, 8),
+            (Tetrahedron4, 7),
+            (Hexahedron20, 4),
+            (Tetrahedron10, 4),
+        ]);
         Self {
-            kind: random.pick(&kinds),
-            block: random.count(2, 6),
-            across: random.count(2, 6),
-            width: random.within(1.0, 5.0),
-            radius: random.pick(&[10.0, 30.0, 100.0, f64::INFINITY]),
+            kind,
+            block: random.count(2, most),
+            across: random.count(1, 6),
+            width: random.within(0.5, 5.0),
+            radius: random.pick(&[5.0, 10.0, 30.0, 100.0, f64::INFINITY]),
         }
+    }
+
+    /// Whether it is in the plane.
+    fn is_plane(&self) -> bool {
+        self.kind.dim() == 2
     }
 
     /// Its mesh.
     pub fn mesh(&self) -> Mesh {
-        let Self { width, radius, .. } = *self;
+        let Self {
+            kind,
+            width,
+            radius,
+            ..
+        } = *self;
         let height = 1.5 * width;
         let rounded =
             move |far: f64, up: f64| (BLOCK + height - up) / height * far / (2.0 * radius);
-        let Some(kind) = self.kind else {
+        if self.is_plane() {
+            let cells = sort(match kind {
+                Quad4 => "quad4",
+                Quad8 => "quad8",
+                Triangle6 => "triangle6",
+                _ => "triangle3",
+            });
             let [n, m] = [self.block, self.across];
-            let blocks = Blocks::new()
-                .rectangle("block", [0.0, BLOCK], [0.0, BLOCK], [n, n])
-                .mapped("punch", [m, 3], |[s, t]| {
-                    let [x, y] = [width * s, BLOCK + height * t];
-                    [x, y + rounded(x * x, y)]
-                });
-            return blocks.mesh;
-        };
+            let block = Blocks::new().rectangle("block", [0.0, BLOCK], [0.0, BLOCK], [n, n]);
+            let sides = ([0.0, width], [BLOCK, BLOCK + height]);
+            let punch = Blocks::new().rectangle("punch", sides.0, sides.1, [m, 3]);
+            let [block, punch] = [block, punch].map(|part| cells.of(&part.mesh));
+            return joined(
+                block,
+                blocks::moved(punch, |[x, y]| [x, y + rounded(x * x, y)]),
+            );
+        }
         let block = solid(
             "block",
             kind,
@@ -81,21 +106,21 @@ impl Punch {
 
     /// The names of the sides that touch: of the block, of the punch.
     pub fn sides(&self) -> [&'static str; 2] {
-        match self.kind {
-            None => ["block top", "punch bottom"],
-            Some(_) => ["block z1", "punch z0"],
+        match self.is_plane() {
+            true => ["block top", "punch bottom"],
+            false => ["block z1", "punch z0"],
         }
     }
 
     /// The model with these two sides in their order.
     pub fn model(&self, [a, b]: [&str; 2]) -> Model {
-        let (held, top, plane) = match self.kind {
-            None => (
+        let (held, top, plane) = match self.is_plane() {
+            true => (
                 "['block left', 'punch left', 'block bottom']",
                 "punch top",
                 "plane = 'strain'",
             ),
-            Some(_) => (
+            false => (
                 "['block x0', 'block y0', 'punch x0', 'punch y0', 'block z0']",
                 "punch z1",
                 "",

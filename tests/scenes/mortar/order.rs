@@ -2,7 +2,7 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use contact_dd_partition::element::ElementKind::{Hexahedron8, Hexahedron20};
+use contact_dd_partition::element::ElementKind::{Hexahedron8, Hexahedron20, Triangle3};
 use contact_dd_partition::mesh::Mesh;
 
 use crate::support::blocks::{Blocks, joined};
@@ -27,26 +27,55 @@ fn estimate(solution: &Solution) -> f64 {
         .unwrap()
 }
 
-/// `PUNCHES=100 cargo test --workspace --test scenes -- both_orders --nocapture` takes as many pairs of meshes.
+/// The largest penetration that the report names, where it is seen at the nodes of the side without conditions.
+fn penetrates(solution: &Solution) -> f64 {
+    solution.report["contacts"][0]["penetration"]
+        .as_f64()
+        .unwrap()
+}
+
+/// What the meshes of the sides can't resolve adds to the error: by the penetration at most, which is warned of where it
+/// is what counts.
+///
+/// `PUNCHES=100 cargo test --workspace --test scenes -- both_orders --nocapture` takes as many pairs of meshes, from
+/// `SEED` on.
 #[test]
-fn both_orders_of_sides_agree_within_the_estimate_of_the_error() {
-    let count = std::env::var("PUNCHES").map_or(5, |count| count.parse().unwrap());
+fn both_orders_of_sides_agree_within_the_estimate_of_the_error_and_the_penetration() {
+    let number = |name: &str| {
+        std::env::var(name)
+            .ok()
+            .map(|of| of.parse::<u64>().unwrap())
+    };
+    let count = number("PUNCHES").unwrap_or(5);
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap();
-    let mut worst: f64 = 0.0;
-    for seed in (0..count).map(|i| now.as_millis() as u64 + i) {
+    let first = number("SEED").unwrap_or(now.as_millis() as u64);
+    let (mut worst, mut sum, mut beyond) = (0.0_f64, 0.0, 0);
+    let mut wrong = Vec::new();
+    for seed in (0..count).map(|i| first + i) {
         let punch = Punch::random(&mut Random::new(seed));
         let [block, face] = punch.sides();
         let solutions = [[block, face], [face, block]].map(|sides| solve(&punch.model(sides), 2));
         let [one, other] = &solutions;
         let bound = estimate(one).max(estimate(other));
         let apart = apart(one, other);
-        worst = worst.max(apart / bound);
-        assert!(
-            apart <= bound,
-            "seed {seed}: {apart} beyond {bound} of {punch:?}"
-        );
+        let deepest = penetrates(one).max(penetrates(other)) / other.largest_displacement();
+        worst = worst.max(apart / (bound + deepest));
+        sum += apart / bound;
+        beyond += usize::from(apart > bound);
+        let said = |of: &Solution| of.report["warnings"].to_string().contains("penetrate by");
+        let is_said = apart <= bound || solutions.iter().any(said);
+        if apart > bound + deepest || !is_said {
+            wrong.push(format!(
+                "seed {seed}: {apart} beyond {bound} and {deepest}, said: {is_said}, of {punch:?}"
+            ));
+        }
     }
-    println!("{count} pairs: at most {worst:.3} of the estimate");
+    let mean = sum / count as f64;
+    println!(
+        "{count} pairs from {first}: {mean:.3} of the estimate, {beyond} beyond it, at most {worst:.3} of estimate and \
+         penetration"
+    );
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// The depth of a punch whose contact is narrower than a facet of the block.
@@ -60,9 +89,9 @@ fn a_punch_narrower_than_a_facet_goes_as_deep_as_on_a_fine_mesh() {
         radius: 100.0,
     };
     for (kind, fine, slack) in [
-        (Some(Hexahedron8), [10, 6], 0.25),
-        (Some(Hexahedron20), [5, 4], 0.25),
-        (None, [40, 16], 0.25),
+        (Hexahedron8, [10, 6], 0.25),
+        (Hexahedron20, [5, 4], 0.25),
+        (Triangle3, [40, 16], 0.25),
     ] {
         let fine = punch(kind, fine[0], fine[1]);
         let fine = solve(&fine.model(fine.sides()), 2).largest_displacement();
@@ -77,13 +106,13 @@ fn a_punch_narrower_than_a_facet_goes_as_deep_as_on_a_fine_mesh() {
             );
             // Forces act on the side that is named first, whichever has the conditions.
             let on_a = &solution.report["contacts"][0]["force"];
-            let up = on_a[if kind.is_some() { 2 } else { 1 }].as_f64().unwrap();
+            let up = on_a[if kind.dim() == 3 { 2 } else { 1 }].as_f64().unwrap();
             assert_eq!(up < 0.0, sides[0] == block, "{on_a}");
             let has_a = sides[0] == face;
             for point in solution.points() {
                 assert_eq!(point.tags.map(|tag| tag > 0), [has_a, !has_a]);
                 assert_eq!(
-                    point.normal[if kind.is_some() { 2 } else { 1 }] > 0.0,
+                    point.normal[if kind.dim() == 3 { 2 } else { 1 }] > 0.0,
                     !has_a
                 );
             }
@@ -116,7 +145,7 @@ fn penetration(solution: &Solution, mesh: &Mesh, cells: usize) -> f64 {
 #[test]
 fn what_penetrates_where_no_condition_holds_it_is_said() {
     let punch = Punch {
-        kind: Some(Hexahedron8),
+        kind: Hexahedron8,
         block: 6,
         across: 4,
         width: 2.0,
