@@ -17,3 +17,4 @@ pub mod open_factor;
 pub mod pair;
 pub mod status;
 pub mod tangent;
+mod patch;

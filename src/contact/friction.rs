@@ -33,6 +33,11 @@ pub struct FrictionProblem<'a> {
 impl FrictionProblem<'_> {
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
     pub fn solve(&self, status: &mut [Status]) -> ContactSolution {
+        let on_patch = self.solve_on_patch(status);
+        on_patch.unwrap_or_else(|| self.solve_whole(status))
+    }
+
+    fn solve_whole(&self, status: &mut [Status]) -> ContactSolution {
         if self.tangents.is_empty() {
             let mut open: Vec<bool> = status.iter().map(|status| !status.is_closed()).collect();
             let solution = self.contact.solve(&mut open);
@@ -48,6 +53,11 @@ impl FrictionProblem<'_> {
     /// share of the bound of their point that those have that slip: the change of that force follows from that of the
     /// normal one, in the direction that the force has, which `turns` by κ times the slip across it.
     pub fn change(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let on_patch = self.change_on_patch(status, turns);
+        on_patch.unwrap_or_else(|| self.change_whole(status, turns))
+    }
+
+    fn change_whole(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let slips = |status: &Status| status.sign() != 0.0 || *status == Status::Parting;
         if !status.iter().any(slips) {
             let open: Vec<bool> = status.iter().map(|status| !status.is_closed()).collect();

@@ -221,3 +221,48 @@ fn unsettled_from(points: &Points, center: &[f64], status: &[Status]) -> Vec<usi
         FrictionProblem { contact, tangents }.unsettled(status)
     })
 }
+
+/// A hundred points and more, of which few are pressed: what stays open is condensed out, whatever is closed at first.
+#[test]
+fn a_patch_has_the_solution_of_the_whole() {
+    for seed in 0..4 {
+        let mut points = Points::in_space(120, 1_000 * seed, COULOMB);
+        for c in &mut points.c[..90] {
+            *c -= 8.0;
+        }
+        // A row keeps its jumps, and what friction holds without pressure stays, too.
+        points.rows.push(vec![(0, 1.0), (1, -0.5)]);
+        points.bounds.push(0.05);
+        points.tangents[4].bound = GIVEN;
+        points.tangents[5].bound = GIVEN;
+        for begin in [Status::Closed, Status::Open] {
+            let what = format!("seed {seed}, {begin:?}");
+            let mut status = vec![begin; points.bounds.len()];
+            let found = points.with(|problem| problem.solve_on_patch(&mut status));
+            let found = found.expect(&what);
+            let violation = points.violation(&found);
+            assert!(violation < 1e-10, "{what}: {violation:e}");
+            let open = status.iter().filter(|status| **status == Status::Open);
+            assert!(open.count() > 150, "{what}");
+            let mut whole = vec![begin; points.bounds.len()];
+            let of_whole = points.with(|problem| problem.solve_whole(&mut whole));
+            for (found, expected) in found.jumps.iter().zip(&of_whole.jumps) {
+                assert!(
+                    (found - expected).abs() < 1e-10,
+                    "{what}: {found} {expected}"
+                );
+            }
+            let turns = vec![0.5; points.bounds.len()];
+            let change = points.with(|problem| problem.change_on_patch(&status, &turns));
+            let (jumps, forces) = change.expect(&what);
+            let of_whole = points.with(|problem| problem.change_whole(&status, &turns));
+            let (changes, expected) = ([jumps, forces].concat(), [of_whole.0, of_whole.1].concat());
+            for (change, expected) in changes.iter().zip(&expected) {
+                assert!(
+                    (change - expected).abs() < 1e-10,
+                    "{what}: {change} {expected}"
+                );
+            }
+        }
+    }
+}
