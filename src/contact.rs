@@ -15,6 +15,6 @@ pub mod limits;
 pub mod newton;
 pub mod open_factor;
 pub mod pair;
+pub mod patch;
 pub mod status;
 pub mod tangent;
-mod patch;

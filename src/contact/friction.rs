@@ -14,6 +14,7 @@ mod points;
 mod system;
 
 use super::active_set::{ContactProblem, ContactSolution};
+use super::patch::LastPatch;
 pub use super::status::Status;
 use super::tangent::TangentialLimit;
 pub use super::tangent::{ForceBound, TangentialCondition};
@@ -28,6 +29,8 @@ pub struct FrictionProblem<'a> {
     pub contact: ContactProblem<'a>,
     /// Which are those.
     pub tangents: &'a [TangentialLimit],
+    /// Where the search for what touches begins.
+    pub last_patch: &'a LastPatch,
 }
 
 impl FrictionProblem<'_> {

@@ -12,6 +12,7 @@ use super::dependent::DependentConstraints;
 use super::friction::{FrictionProblem, Status};
 use super::limits::{Limits, TangentialLimit};
 use super::open_factor::OpenFactor;
+use super::patch::LastPatch;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::multiply_add;
 
@@ -24,6 +25,7 @@ pub struct ContactPair {
     /// The condensed load on [t | Γ] (N/m).
     load: Vec<f64>,
     limits: Limits,
+    last_patch: LastPatch,
     state: PairState,
 }
 
@@ -87,6 +89,7 @@ impl ContactPair {
             }),
             condensed,
             limits,
+            last_patch: LastPatch::default(),
             load,
         }
     }
@@ -168,6 +171,7 @@ impl ContactPair {
         let contact = FrictionProblem {
             contact: problem,
             tangents: &self.limits.tangents,
+            last_patch: &self.last_patch,
         }
         .solve(&mut status);
         let (mut contact_residual, mut contact_residual_scale) = (c, c_scale);

@@ -9,6 +9,9 @@
 //! leave a problem of the same form on the patch p, which is solved the same way. Points whose t_o is beyond its bound
 //! join the patch, until there is none: then the solution is that of the whole problem.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use faer::linalg::solvers::{Llt, SolveCore};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Conj, Mat, MatMut, Par};
@@ -18,8 +21,6 @@ use super::dependent::DependentConstraints;
 use super::friction::{FrictionProblem, Status};
 use super::limits::{Beside, TangentialLimit};
 use super::open_factor::{factorize, scale_of};
-use crate::schur::local::multiply_add;
-use crate::vector::axpy;
 
 /// Jumps up to which the whole problem is solved at once: that costs less than to condense it.
 const FEW: usize = 300;
@@ -28,19 +29,27 @@ const LARGE: f64 = 0.7;
 /// How often a patch may grow.
 const ROUNDS: usize = 8;
 
-/// A patch, and what is condensed onto it.
-struct Patch<'a> {
-    problem: &'a FrictionProblem<'a>,
+/// What is condensed onto a patch.
+#[derive(Debug)]
+struct CondensedPatch {
     /// Its jumps, ascending.
     jumps: Vec<usize>,
     /// All others.
     open: Vec<usize>,
     /// H_oo = L Lᵀ.
-    h_oo: Mat<f64>,
     factor: Llt<f64>,
-    /// H_op, and L⁻¹ H_op.
-    h_op: Mat<f64>,
-    coupling: Mat<f64>,
+    /// H̃.
+    h: Mat<f64>,
+}
+
+/// The last patch of problems with the same H, from which the next one begins.
+#[derive(Clone, Debug, Default)]
+pub struct LastPatch(RefCell<Option<Rc<CondensedPatch>>>);
+
+/// A patch of a problem.
+struct Patch<'a> {
+    problem: &'a FrictionProblem<'a>,
+    condensed: Rc<CondensedPatch>,
 }
 
 impl FrictionProblem<'_> {
@@ -159,38 +168,53 @@ impl FrictionProblem<'_> {
     }
 }
 
-impl<'a> Patch<'a> {
-    /// The patch of the jumps that `joins` names; `None` where it is too large or the bodies move freely as it is held.
-    fn new(problem: &'a FrictionProblem<'a>, joins: impl Fn(&usize) -> bool) -> Option<Self> {
-        let ContactProblem { h, diagonal, .. } = problem.contact;
-        let (jumps, open): (Vec<usize>, Vec<usize>) = (0..diagonal.len()).partition(joins);
+impl CondensedPatch {
+    /// H condensed onto these `jumps`; `None` where they are too many or the bodies move freely as they hold them.
+    fn new(contact: &ContactProblem<'_>, jumps: Vec<usize>) -> Option<Self> {
+        let ContactProblem { h, diagonal, .. } = *contact;
         if jumps.len() as f64 > LARGE * diagonal.len() as f64 {
             return None;
         }
-        let h_oo = Mat::from_fn(open.len(), open.len(), |a, b| h[(open[a], open[b])]);
+        let is_open = |i: &usize| jumps.binary_search(i).is_err();
+        let open: Vec<usize> = (0..diagonal.len()).filter(is_open).collect();
+        let part = |rows: &[usize], columns: &[usize]| {
+            Mat::from_fn(rows.len(), columns.len(), |a, b| h[(rows[a], columns[b])])
+        };
         let scale: Vec<f64> = (open.iter())
             .map(|&i| scale_of(h[(i, i)], diagonal[i]))
             .collect();
-        let factor = factorize(h_oo.as_ref(), &scale, 0.0)?;
-        let h_op = Mat::from_fn(open.len(), jumps.len(), |a, b| h[(open[a], jumps[b])]);
-        let mut coupling = h_op.clone();
+        let factor = factorize(part(&open, &open).as_ref(), &scale, 0.0)?;
+        let mut coupling = part(&open, &jumps);
         solve_lower_triangular_in_place(factor.L(), coupling.as_mut(), Par::Seq);
+        let h = part(&jumps, &jumps) - coupling.transpose() * &coupling;
         Some(Self {
-            problem,
             jumps,
             open,
-            h_oo,
             factor,
-            h_op,
-            coupling,
+            h,
         })
+    }
+}
+
+impl<'a> Patch<'a> {
+    /// The patch of the jumps that `joins` names; `None` where it is too large or the bodies move freely as it is held.
+    fn new(problem: &'a FrictionProblem<'a>, joins: impl Fn(&usize) -> bool) -> Option<Self> {
+        let jumps: Vec<usize> = (0..problem.contact.c.len()).filter(joins).collect();
+        let mut last = problem.last_patch.0.borrow_mut();
+        let known = last.take().filter(|last| last.jumps == jumps);
+        let condensed = match known {
+            Some(known) => known,
+            None => Rc::new(CondensedPatch::new(&problem.contact, jumps)?),
+        };
+        *last = Some(condensed.clone());
+        Some(Self { problem, condensed })
     }
 
     /// The limits of the patch, those of dependent rows at the end.
     fn limits(&self) -> Vec<usize> {
         let contact = &self.problem.contact;
         let rows = contact.c.len()..contact.bounds.len();
-        self.jumps.iter().copied().chain(rows).collect()
+        self.condensed.jumps.iter().copied().chain(rows).collect()
     }
 
     /// The answer to a question about the problem on the patch, whose statuses are `now` in the whole problem, and the
@@ -201,28 +225,27 @@ impl<'a> Patch<'a> {
         ask: impl FnOnce(&FrictionProblem<'_>, &mut [Status]) -> T,
     ) -> (T, Vec<Status>) {
         let whole = &self.problem.contact;
-        let of_patch = |all: &[f64]| -> Vec<f64> { self.jumps.iter().map(|&i| all[i]).collect() };
-        let h = Mat::from_fn(self.jumps.len(), self.jumps.len(), |a, b| {
-            whole.h[(self.jumps[a], self.jumps[b])]
-        }) - self.coupling.transpose() * &self.coupling;
+        let CondensedPatch { jumps, open, h, .. } = &*self.condensed;
+        let of_patch = |all: &[f64]| -> Vec<f64> { jumps.iter().map(|&i| all[i]).collect() };
         let (mut c, mut c_scale) = (of_patch(whole.c), of_patch(whole.c_scale));
-        let freed = self.freed(&vec![0.0; self.jumps.len()]);
-        for (k, column) in self.h_op.col_iter().enumerate() {
-            for (h, freed) in column.iter().zip(&freed) {
-                c[k] -= h * freed;
-                c_scale[k] += (h * freed).abs();
+        let freed = self.freed(&vec![0.0; jumps.len()]);
+        for (&i, freed) in open.iter().zip(&freed) {
+            let held = whole.h.col(i);
+            for (k, &j) in jumps.iter().enumerate() {
+                c[k] -= held[j] * freed;
+                c_scale[k] += (held[j] * freed).abs();
             }
         }
-        let (m, in_patch) = (whole.c.len(), self.jumps.len());
+        let (m, in_patch) = (whole.c.len(), jumps.len());
         let place = |i: usize| match i.checked_sub(m) {
             Some(row) => in_patch + row,
-            None => self.jumps.partition_point(|&j| j < i),
+            None => jumps.partition_point(|&j| j < i),
         };
         let mut rows = DependentConstraints::default();
         for row in whole.rows.iter() {
             rows.push(row.iter().map(|&(i, c)| (place(i), c)).collect());
         }
-        let is_in = |i: usize| i >= m || self.jumps.binary_search(&i).is_ok();
+        let is_in = |i: usize| i >= m || jumps.binary_search(&i).is_ok();
         let tangents = self.problem.tangents.iter();
         let tangents: Vec<TangentialLimit> = (tangents.filter(|tangent| is_in(tangent.limit)))
             .map(|tangent| tangent.renamed(place))
@@ -242,6 +265,7 @@ impl<'a> Patch<'a> {
                 scale: whole.scale,
             },
             tangents: &tangents,
+            last_patch: &LastPatch::default(),
         };
         (ask(&problem, &mut status), status)
     }
@@ -256,34 +280,39 @@ impl<'a> Patch<'a> {
 
     /// t_o for these jumps of the patch.
     fn freed(&self, of_patch: &[f64]) -> Vec<f64> {
-        let moved: Vec<f64> = of_patch.iter().map(|t| -t).collect();
-        let mut load: Vec<f64> = self
-            .open
-            .iter()
-            .map(|&i| self.problem.contact.c[i])
-            .collect();
-        multiply_add(self.h_op.as_ref(), &moved, &mut load);
-        let solved = |x: &[f64]| {
-            let mut x = x.to_vec();
-            let n = x.len();
-            let column = MatMut::from_column_major_slice_mut(&mut x, n, 1);
-            self.factor.solve_in_place_with_conj(Conj::No, column);
-            x
-        };
-        let mut freed = solved(&load);
-        let moved: Vec<f64> = freed.iter().map(|t| -t).collect();
-        multiply_add(self.h_oo.as_ref(), &moved, &mut load);
-        axpy(1.0, &solved(&load), &mut freed);
-        freed
+        let contact = &self.problem.contact;
+        let CondensedPatch {
+            jumps,
+            open,
+            factor,
+            ..
+        } = &*self.condensed;
+        let mut all = vec![0.0; contact.c.len()];
+        for (&i, t) in jumps.iter().zip(of_patch) {
+            all[i] = *t;
+        }
+        // The second time takes round-off off.
+        for _ in 0..2 {
+            let mut left = contact.c.to_vec();
+            contact.subtract(&all, &mut left);
+            let mut freed: Vec<f64> = open.iter().map(|&i| left[i]).collect();
+            let n = freed.len();
+            let column = MatMut::from_column_major_slice_mut(&mut freed, n, 1);
+            factor.solve_in_place_with_conj(Conj::No, column);
+            for (&i, freed) in open.iter().zip(freed) {
+                all[i] += freed;
+            }
+        }
+        open.iter().map(|&i| all[i]).collect()
     }
 
     /// All jumps where those of the patch are these.
     fn all_jumps(&self, of_patch: &[f64]) -> Vec<f64> {
         let mut jumps = vec![0.0; self.problem.contact.c.len()];
-        for (&i, t) in self.open.iter().zip(self.freed(of_patch)) {
+        for (&i, t) in self.condensed.open.iter().zip(self.freed(of_patch)) {
             jumps[i] = t;
         }
-        for (&i, t) in self.jumps.iter().zip(of_patch) {
+        for (&i, t) in self.condensed.jumps.iter().zip(of_patch) {
             jumps[i] = *t;
         }
         jumps
@@ -311,6 +340,11 @@ impl<'a> Patch<'a> {
         let is_beyond = |&i: &usize| {
             !is_tangential[i] && jumps[i] > contact.bounds[i] + GAP_TOLERANCE * largest
         };
-        self.open.iter().copied().filter(is_beyond).collect()
+        self.condensed
+            .open
+            .iter()
+            .copied()
+            .filter(is_beyond)
+            .collect()
     }
 }

@@ -119,6 +119,7 @@ impl<'a> CoupledContact<'a> {
         let problem = FrictionProblem {
             contact: self.problem(&condensed, &gaps, u),
             tangents: &self.tangents,
+            last_patch: &self.interface.last_patch,
         };
         let solution = problem.solve(&mut status);
         let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &status);
@@ -166,6 +167,7 @@ impl<'a> CoupledContact<'a> {
         let problem = FrictionProblem {
             contact: self.problem(&condensed, &gaps, u),
             tangents: &self.tangents,
+            last_patch: &self.interface.last_patch,
         };
         let jumps = all(|p| &p.jumps);
         let largest = |x: &[f64]| x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -191,6 +193,7 @@ impl<'a> CoupledContact<'a> {
         let problem = FrictionProblem {
             contact: self.problem(&condensed, &bounds, &[]),
             tangents: &self.tangents,
+            last_patch: &self.interface.last_patch,
         };
         let (jumps, forces) = problem.change(&status, &turns);
         self.step(r, &condensed, &jumps, forces, &status)

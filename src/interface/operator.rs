@@ -11,6 +11,7 @@ use super::numbering::Numbering;
 use super::rigid_modes::RigidBasis;
 use super::solver::DirectSolver;
 use crate::contact::pair::CondensedContact;
+use crate::contact::patch::LastPatch;
 use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
@@ -55,6 +56,8 @@ pub struct Interface {
     /// What solves the bilateral problem.
     pub solver: DirectSolver,
     condensed_laws: OnceCell<Mat<f64>>,
+    /// The patch of these laws that touched last.
+    pub last_patch: LastPatch,
     smallest_pivot: f64,
     par: Par,
 }
@@ -115,6 +118,7 @@ impl Interface {
             smallest_pivot: smallest_pivot.min(factor.smallest_pivot()),
             solver: DirectSolver::new(factor, par),
             condensed_laws: OnceCell::new(),
+            last_patch: LastPatch::default(),
             par,
         })
     }

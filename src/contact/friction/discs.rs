@@ -89,6 +89,7 @@ impl FrictionProblem<'_> {
                 ..self.contact
             },
             tangents: &tangents,
+            last_patch: self.last_patch,
         };
         let discs = Discs::new(&changes);
         let act = |point: &PointLaw| match point.first {

@@ -6,6 +6,7 @@ use crate::contact::active_set::{ContactProblem, ContactSolution};
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::{ForceBound, FrictionProblem, Status};
 use crate::contact::limits::{Beside, TangentialLimit};
+use crate::contact::patch::LastPatch;
 
 pub const COULOMB: ForceBound = ForceBound {
     coefficient: 0.3,
@@ -95,6 +96,7 @@ impl Points {
                 scale: 1.0,
             },
             tangents: &self.tangents,
+            last_patch: &LastPatch::default(),
         })
     }
 

@@ -217,8 +217,11 @@ fn unsettled_from(points: &Points, center: &[f64], status: &[Status]) -> Vec<usi
             center,
             ..problem.contact
         };
-        let tangents = problem.tangents;
-        FrictionProblem { contact, tangents }.unsettled(status)
+        FrictionProblem {
+            contact,
+            ..*problem
+        }
+        .unsettled(status)
     })
 }
 
