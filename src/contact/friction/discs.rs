@@ -2,8 +2,7 @@
 //!
 //! Semismooth Newton on the laws ([`newton`](crate::contact::newton)), with a dense linear problem for given statuses
 //! ([`linear`]). Where this gets no further, it starts again from near the solution, where an interior-point method leads
-//! ([`interior`]). After that in the plane Lemke's path leads to a solution ([`lemke`](super::lemke)); in space dashpots at
-//! all jumps make the problem easier, the slower things move the less.
+//! ([`interior`]). After that dashpots at all jumps make the problem easier, the slower things move the less.
 
 mod interior;
 mod linear;
@@ -46,16 +45,10 @@ impl Found {
 }
 
 impl FrictionProblem<'_> {
-    /// Whether a point slips in a plane.
-    fn has_discs(&self) -> bool {
-        let beside = |tangent: &TangentialLimit| tangent.beside != Beside::Nothing;
-        self.tangents.iter().any(beside)
-    }
-
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
     pub(super) fn solve_discs(&self, status: &mut [Status]) -> ContactSolution {
         let discs = Discs::new(self);
-        let (found, fell_back, slides) = discs.solve(self, status);
+        let (found, fell_back, slides) = discs.solve(status);
         discs.tell(&found.state, status);
         let (jumps, forces) = discs.exact(&found);
         ContactSolution {

@@ -1,0 +1,295 @@
+//! The contact problem on a patch of it: points that stay open are condensed out, and checked afterwards.
+//!
+//! Most conditions of a model never touch, but their jumps are unknowns of H. With λ_o = 0 on the jumps o of open points,
+//!
+//! ```text
+//! H̃ = H_pp − H_po H_oo⁻¹ H_op,   c̃ = c_p − H_po H_oo⁻¹ c_o,   t_o = H_oo⁻¹ (c_o − H_op t_p)
+//! ```
+//!
+//! leave a problem of the same form on the patch p, which is solved the same way. Points whose t_o is beyond its bound
+//! join the patch, until there is none: then the solution is that of the whole problem.
+
+use std::rc::Rc;
+
+use faer::linalg::solvers::SolveCore;
+use faer::{Conj, MatMut};
+
+use super::{FrictionProblem, Status};
+use crate::contact::active_set::{ContactProblem, ContactSolution, GAP_TOLERANCE};
+use crate::contact::dependent::DependentConstraints;
+use crate::contact::patch::{CondensedPatch, LARGE, LastPatch};
+use crate::contact::tangent::{Beside, TangentialLimit};
+
+/// Jumps up to which the whole problem is solved at once: that costs less than to condense it.
+const FEW: usize = 300;
+/// How often a patch may grow.
+const ROUNDS: usize = 8;
+
+/// A patch of a problem.
+struct Patch<'a> {
+    problem: &'a FrictionProblem<'a>,
+    condensed: Rc<CondensedPatch>,
+}
+
+impl FrictionProblem<'_> {
+    /// The solution by way of a patch; `None` where none is small enough and holds the bodies, or none leads to a solution.
+    pub(super) fn solve_on_patch(&self, status: &mut [Status]) -> Option<ContactSolution> {
+        if self.contact.c.len() <= FEW {
+            return None;
+        }
+        let normal_of = self.normals();
+        let mut is_in = self.pressed(&normal_of, status);
+        let (mut now, mut steps, mut fell_back) = (status.to_vec(), 0, false);
+        for _ in 0..ROUNDS {
+            let joins = |i: &usize| normal_of[*i].is_none_or(|n| is_in[n]);
+            let patch = Patch::new(self, joins)?;
+            let (found, of_patch) = patch.ask(&now, |problem, status| problem.solve(status));
+            patch.tell(&of_patch, &mut now);
+            (steps, fell_back) = (steps + found.steps, fell_back || found.fell_back);
+            let whole = ContactSolution {
+                jumps: patch.all_jumps(&found.jumps),
+                forces: patch.all_forces(&found.forces),
+                ..found
+            };
+            let beyond = patch.beyond(&whole.jumps);
+            if beyond.is_empty() {
+                status.copy_from_slice(&now);
+                return whole.converged.then_some(ContactSolution {
+                    steps,
+                    fell_back,
+                    ..whole
+                });
+            }
+            for n in beyond.into_iter().filter_map(|i| normal_of[i]) {
+                is_in[n] = true;
+                now[n] = Status::Closed;
+            }
+        }
+        None
+    }
+
+    /// The change of jumps and forces where limits keep these statuses, as [`Self::change`] says, by way of the patch that
+    /// these close.
+    pub(super) fn change_on_patch(
+        &self,
+        status: &[Status],
+        turns: &[f64],
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        if self.contact.c.len() <= FEW {
+            return None;
+        }
+        let normal_of = self.normals();
+        let is_in = self.held(&normal_of, status);
+        let patch = Patch::new(self, |&i| normal_of[i].is_none_or(|n| is_in[n]))?;
+        let limits = patch.limits();
+        let turns: Vec<f64> = limits.iter().map(|&i| turns[i]).collect();
+        let ((jumps, forces), _) =
+            patch.ask(status, |problem, status| problem.change(status, &turns));
+        Some((patch.all_jumps(&jumps), patch.all_forces(&forces)))
+    }
+
+    /// The normal jump with which every jump opens, itself where it is one; `None` where it doesn't open for certain.
+    fn normals(&self) -> Vec<Option<usize>> {
+        let m = self.contact.c.len();
+        let mut normal_of: Vec<Option<usize>> = (0..m).map(Some).collect();
+        let mut stay = vec![false; m];
+        for (i, _) in self.contact.rows.iter().flatten() {
+            stay[*i] = true;
+        }
+        for tangent in self.tangents {
+            let TangentialLimit { limit, bound, .. } = *tangent;
+            let normal = tangent.normal.filter(|&n| n < m);
+            let opens = bound.only_closed && !matches!(tangent.beside, Beside::Prescribed(_));
+            match normal {
+                Some(n) if limit < m => {
+                    stay[n] |= stay[limit] || !opens;
+                    normal_of[limit] = Some(n);
+                }
+                Some(n) => stay[n] = true,
+                None if limit < m => normal_of[limit] = None,
+                None => {}
+            }
+        }
+        let opens = |n: &usize| !stay[*n];
+        normal_of.into_iter().map(|n| n.filter(opens)).collect()
+    }
+
+    /// The normal jumps of points that aren't open; where these are most, those that press where all of them are closed.
+    fn pressed(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
+        let contact = &self.contact;
+        let mut held = self.held(normal_of, status);
+        let jumps = normal_of.iter().flatten().filter(|n| held[**n]).count();
+        if jumps as f64 <= LARGE * held.len() as f64 {
+            return held;
+        }
+        let jump = |i: usize| match status[i] {
+            Status::Open => contact.center[i],
+            _ => contact.bounds[i],
+        };
+        let jumps: Vec<f64> = (0..held.len()).map(jump).collect();
+        let mut forces = contact.c.to_vec();
+        contact.subtract(&jumps, &mut forces);
+        held.iter_mut()
+            .zip(forces)
+            .for_each(|(held, force)| *held &= force > 0.0);
+        held
+    }
+
+    /// The normal jumps of points that aren't open.
+    fn held(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
+        let mut held = vec![false; normal_of.len()];
+        for (normal, status) in normal_of.iter().zip(status) {
+            if let (Some(n), true) = (normal, *status != Status::Open) {
+                held[*n] = true;
+            }
+        }
+        held
+    }
+}
+
+impl<'a> Patch<'a> {
+    /// The patch of the jumps that `joins` names; `None` where it is too large or the bodies move freely as it is held.
+    fn new(problem: &'a FrictionProblem<'a>, joins: impl Fn(&usize) -> bool) -> Option<Self> {
+        let jumps: Vec<usize> = (0..problem.contact.c.len()).filter(joins).collect();
+        let condensed = problem.last_patch.condensed(&problem.contact, jumps)?;
+        Some(Self { problem, condensed })
+    }
+
+    /// The limits of the patch, those of dependent rows at the end.
+    fn limits(&self) -> Vec<usize> {
+        let contact = &self.problem.contact;
+        let rows = contact.c.len()..contact.bounds.len();
+        self.condensed.jumps.iter().copied().chain(rows).collect()
+    }
+
+    /// The answer to a question about the problem on the patch, whose statuses are `now` in the whole problem, and the
+    /// statuses that it leaves.
+    fn ask<T>(
+        &self,
+        now: &[Status],
+        ask: impl FnOnce(&FrictionProblem<'_>, &mut [Status]) -> T,
+    ) -> (T, Vec<Status>) {
+        let whole = &self.problem.contact;
+        let CondensedPatch { jumps, open, h, .. } = &*self.condensed;
+        let of_patch = |all: &[f64]| -> Vec<f64> { jumps.iter().map(|&i| all[i]).collect() };
+        let (mut c, mut c_scale) = (of_patch(whole.c), of_patch(whole.c_scale));
+        let freed = self.freed(&vec![0.0; jumps.len()]);
+        for (&i, freed) in open.iter().zip(&freed) {
+            let held = whole.h.col(i);
+            for (k, &j) in jumps.iter().enumerate() {
+                c[k] -= held[j] * freed;
+                c_scale[k] += (held[j] * freed).abs();
+            }
+        }
+        let (m, in_patch) = (whole.c.len(), jumps.len());
+        let place = |i: usize| match i.checked_sub(m) {
+            Some(row) => in_patch + row,
+            None => jumps.partition_point(|&j| j < i),
+        };
+        let mut rows = DependentConstraints::default();
+        for row in whole.rows.iter() {
+            rows.push(row.iter().map(|&(i, c)| (place(i), c)).collect());
+        }
+        let is_in = |i: usize| i >= m || jumps.binary_search(&i).is_ok();
+        let tangents = self.problem.tangents.iter();
+        let tangents: Vec<TangentialLimit> = (tangents.filter(|tangent| is_in(tangent.limit)))
+            .map(|tangent| tangent.renamed(place))
+            .collect();
+        let limits = self.limits();
+        let bounds: Vec<f64> = limits.iter().map(|&i| whole.bounds[i]).collect();
+        let mut status: Vec<Status> = limits.iter().map(|&i| now[i]).collect();
+        let problem = FrictionProblem {
+            contact: ContactProblem {
+                h: h.as_ref(),
+                diagonal: &of_patch(whole.diagonal),
+                c: &c,
+                c_scale: &c_scale,
+                rows: &rows,
+                bounds: &bounds,
+                center: &of_patch(whole.center),
+                scale: whole.scale,
+            },
+            tangents: &tangents,
+            last_patch: &LastPatch::default(),
+        };
+        (ask(&problem, &mut status), status)
+    }
+
+    /// Writes the statuses of the patch, and open ones elsewhere, to `now`.
+    fn tell(&self, of_patch: &[Status], now: &mut [Status]) {
+        now.fill(Status::Open);
+        for (i, status) in self.limits().into_iter().zip(of_patch) {
+            now[i] = *status;
+        }
+    }
+
+    /// t_o for these jumps of the patch.
+    fn freed(&self, of_patch: &[f64]) -> Vec<f64> {
+        let contact = &self.problem.contact;
+        let CondensedPatch {
+            jumps,
+            open,
+            factor,
+            ..
+        } = &*self.condensed;
+        let mut all = vec![0.0; contact.c.len()];
+        for (&i, t) in jumps.iter().zip(of_patch) {
+            all[i] = *t;
+        }
+        // The second time takes round-off off.
+        for _ in 0..2 {
+            let mut left = contact.c.to_vec();
+            contact.subtract(&all, &mut left);
+            let mut freed: Vec<f64> = open.iter().map(|&i| left[i]).collect();
+            let n = freed.len();
+            let column = MatMut::from_column_major_slice_mut(&mut freed, n, 1);
+            factor.solve_in_place_with_conj(Conj::No, column);
+            for (&i, freed) in open.iter().zip(freed) {
+                all[i] += freed;
+            }
+        }
+        open.iter().map(|&i| all[i]).collect()
+    }
+
+    /// All jumps where those of the patch are these.
+    fn all_jumps(&self, of_patch: &[f64]) -> Vec<f64> {
+        let mut jumps = vec![0.0; self.problem.contact.c.len()];
+        for (&i, t) in self.condensed.open.iter().zip(self.freed(of_patch)) {
+            jumps[i] = t;
+        }
+        for (&i, t) in self.condensed.jumps.iter().zip(of_patch) {
+            jumps[i] = *t;
+        }
+        jumps
+    }
+
+    /// All forces where those of the patch are these.
+    fn all_forces(&self, of_patch: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.problem.contact.bounds.len()];
+        for (i, force) in self.limits().into_iter().zip(of_patch) {
+            forces[i] = *force;
+        }
+        forces
+    }
+
+    /// The open normal jumps that are beyond their bounds.
+    fn beyond(&self, jumps: &[f64]) -> Vec<usize> {
+        let contact = &self.problem.contact;
+        let largest = jumps.iter().fold(contact.scale, |m, t| m.max(t.abs()));
+        let mut is_tangential = vec![false; jumps.len()];
+        for tangent in self.problem.tangents {
+            if let Some(is) = is_tangential.get_mut(tangent.limit) {
+                *is = true;
+            }
+        }
+        let is_beyond = |&i: &usize| {
+            !is_tangential[i] && jumps[i] > contact.bounds[i] + GAP_TOLERANCE * largest
+        };
+        self.condensed
+            .open
+            .iter()
+            .copied()
+            .filter(is_beyond)
+            .collect()
+    }
+}
