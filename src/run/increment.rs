@@ -92,20 +92,13 @@ impl Increments<'_> {
         if self.is_converged(&at_once) {
             return Ok(at_once);
         }
-        let (slips, energies) = (before.slips.clone(), before.energies.clone());
-        let Some(in_parts) = self.in_halves(k, earlier, before, seconds)? else {
-            let slides = at_once.outcome.as_ref().is_some_and(|o| o.slides);
-            let unheld = (at_end.scene.as_ref().filter(|_| slides)).and_then(Scene::unheld);
-            self.context.comm.agree(unheld.map_or(Ok(()), Err))?;
-            return Ok(at_once);
-        };
-        // Its end may be a solution of the whole load step, too.
-        let from_there = in_parts.clone_state(slips, energies, self.settings.method);
-        let at_once = self.solve(end, at_end, from_there, seconds)?;
-        match self.is_converged(&at_once) {
-            true => Ok(at_once),
-            false => Ok(in_parts),
+        if let Some(in_parts) = self.in_halves(k, earlier, before, seconds)? {
+            return Ok(in_parts);
         }
+        let slides = at_once.outcome.as_ref().is_some_and(|o| o.slides);
+        let unheld = (at_end.scene.as_ref().filter(|_| slides)).and_then(Scene::unheld);
+        self.context.comm.agree(unheld.map_or(Ok(()), Err))?;
+        Ok(at_once)
     }
 
     /// Solves load step k in halves, halves of these and so on, after the closing motions `earlier`;
@@ -299,19 +292,6 @@ fn unsettled_points(context: &Context<'_>, outcome: &SweepOutcome) -> Vec<String
 }
 
 impl Increment {
-    /// The state that it leaves, but for tangential jumps and energies, which are those of another one.
-    fn clone_state(
-        &self,
-        slips: BTreeMap<usize, Vec<f64>>,
-        energies: BTreeMap<usize, BlockEnergy>,
-        method: Method,
-    ) -> StepState {
-        let outcome = self.outcome.as_ref();
-        let from = (outcome, self.scales);
-        let contact = (self.pairs.clone(), self.statuses.clone());
-        StepState::after(contact, slips, energies, from, method)
-    }
-
     /// The state that it leaves.
     pub fn into_state(self, method: Method) -> StepState {
         let outcome = self.outcome.as_ref();
