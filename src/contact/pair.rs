@@ -66,7 +66,7 @@ pub struct PairResponse {
     pub changed: usize,
     /// Linear systems solved.
     pub steps: usize,
-    /// Whether the interior-point method was needed.
+    /// Whether more than Newton's method was needed.
     pub fell_back: bool,
     /// Whether the small problem converged.
     pub converged: bool,

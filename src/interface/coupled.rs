@@ -58,7 +58,7 @@ pub struct CoupledStep {
     pub statuses: Vec<Vec<Status>>,
     /// Linear systems solved.
     pub steps: usize,
-    /// Whether the interior-point method was needed.
+    /// Whether more than Newton's method was needed.
     pub fell_back: bool,
     /// Whether the contact problem converged.
     pub converged: bool,

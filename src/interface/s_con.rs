@@ -37,7 +37,7 @@ pub struct ConTotals {
     pub changed: usize,
     /// Linear systems solved within pairs.
     pub steps: usize,
-    /// Pairs that needed the interior-point method.
+    /// Pairs that needed more than Newton's method.
     pub fallen_back_pairs: usize,
     /// Pairs whose small problem didn't converge.
     pub failed_pairs: usize,

@@ -38,8 +38,7 @@ impl Sweeps<'_, '_> {
             let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
             self.outcome.active_set_iterations += step.steps;
             if step.fell_back {
-                (self.outcome)
-                    .fell_back("newton: the interior-point method named the closed contacts");
+                (self.outcome).fell_back("newton: another method found the contacts' statuses");
             }
             if !step.converged && coupled.has_friction() {
                 self.outcome.unsettled = step.unsettled;

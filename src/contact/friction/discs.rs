@@ -12,8 +12,8 @@ use super::{FrictionProblem, Status};
 use crate::contact::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE};
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
-use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::open_factor::scale_of;
+use crate::contact::tangent::Beside;
 
 /// A dense problem whose points have discs.
 struct Discs<'a> {
