@@ -1,6 +1,7 @@
 use super::*;
 use crate::contact::friction::ForceBound;
 use crate::contact::friction::points::{COULOMB, GIVEN, Points, noise};
+use crate::contact::tangent::TangentialLimit;
 
 #[test]
 fn equilibrium_and_every_law_hold_at_random_points_in_space() {
