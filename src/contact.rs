@@ -7,6 +7,7 @@ pub mod active_set;
 pub mod dependent;
 pub mod dual;
 pub mod friction;
+pub mod interior_point;
 pub mod jumps;
 pub mod law;
 pub mod laws;

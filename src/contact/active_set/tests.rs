@@ -147,7 +147,30 @@ fn a_thin_cantilever_over_a_rough_floor_never_cycles() {
             assert!(t[i] == bounds[i] || solution.forces[i] == 0.0);
         }
     }
-    assert!(fell_back > 0, "no draw asks for the dual method");
+    assert!(fell_back > 0, "no draw asks for the interior-point method");
+}
+
+#[test]
+fn the_interior_point_method_names_the_closed_conditions() {
+    for seed in 0..100 {
+        let m = 2 + seed % 30;
+        let mut problem = Problem::random(seed, m);
+        problem.bounds.fill(0.0);
+        let (solution, open) = problem.solve();
+        let diagonal: Vec<f64> = (0..m).map(|j| problem.h[(j, j)]).collect();
+        let (named, gaps, steps) = InGaps {
+            h: problem.h.as_ref(),
+            q: &problem.c,
+            scale: &diagonal,
+            rows: &DependentConstraints::default(),
+            e: &[],
+        }
+        .open_conditions();
+        assert_eq!(named, open);
+        let t = solution.jumps;
+        assert!(gaps.iter().zip(&t).all(|(s, t)| (s + t).abs() < 1e-6));
+        assert!(steps < 30);
+    }
 }
 
 /// `count` rows of up to `most` of m normal jumps.
