@@ -214,8 +214,9 @@ fn a_row_holds_what_the_program_says_of_a_run() {
             continue;
         };
         assert_eq!(row.exit, Some(0));
+        // Where nothing drives anything there is no system to solve.
         assert!(
-            solves >= newton && newton >= sweeps,
+            solves >= newton && (newton >= sweeps || newton == 0),
             "{seed}: {sweeps} {newton} {solves}"
         );
         assert!(row.backward.unwrap() <= 1e-14 && row.seconds > 0.0);
