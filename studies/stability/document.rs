@@ -54,6 +54,9 @@ with the condition number.
 
 ";
 
+/// The chapter on methods behind Newton's, of which each was switched off in turn.
+const FALLBACKS: &str = include_str!("document/fallbacks.md");
+
 /// The whole document.
 pub fn document(first: u64, kinds: &Kinds, rows: &[Row]) -> String {
     let ran = &kinds.plain;
@@ -83,7 +86,7 @@ usual, up to 30 subdomains.
     distributions(&mut text, ran);
     worst(&mut text, ran);
     axes(&mut text, rows);
-    text + &chapters(first, kinds)
+    text + &chapters(first, kinds) + FALLBACKS
 }
 
 /// The chapters on all but scenes in the plane without friction, where any were run.
