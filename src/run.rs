@@ -183,7 +183,8 @@ impl Stages<'_> {
         log.phase("creating the outputs", None);
         if is_first {
             let kept = progress.finished.file.take();
-            progress.files = RunFiles::create(&context, settings, kept)?;
+            progress.files = RunFiles::create(&context, settings, kept)
+                .map_err(|failure| state::finished(failure, &context, settings, done))?;
         }
         let absent = comm.is_root().then(|| absent_rows(whole, stage));
         let absent = absent.unwrap_or_default();

@@ -27,7 +27,7 @@ use crate::run::sweeping::{sweep, sweep_frozen};
 use crate::settings::Settings;
 use crate::step::Loading;
 use crate::step::halving::StepHalving;
-use crate::step::state::{StepState, analyse};
+use crate::step::state::{StepState, analyse, go_on};
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
 /// What all increments share: what was made of matrices.
@@ -196,6 +196,7 @@ impl Increments<'_> {
             None => BTreeMap::new(),
         };
         seconds.add(|s| &mut s.interface, comm.times() - lap);
+        go_on(&context)?;
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the state before.
         log.phase("sweeping", None);
@@ -223,6 +224,8 @@ impl Increments<'_> {
             }
         };
         seconds.add(|s| &mut s.sweeps, comm.times() - lap);
+        // From here on the load step is finished first: what was found is kept.
+        go_on(&context)?;
 
         // Back-substitution, and the check of the full discrete problem.
         log.phase("recovering", None);

@@ -7,6 +7,7 @@ use contact_dd_partition::model::PlaneState;
 
 pub use self::rows::absent_rows;
 use self::rows::write_solution;
+use crate::comm::is_asked_to_stop;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_state::ContactRow;
@@ -35,7 +36,7 @@ impl RunFiles {
     /// that was stopped, with what it kept of `finished` load steps. Collective.
     ///
     /// # Errors
-    /// A file can't be made, or doesn't hold what was written of finished load steps.
+    /// A file can't be made, or doesn't hold what was written of finished load steps, or a signal asked the run to stop.
     pub fn create(
         context: &Context<'_>,
         settings: &Settings,
@@ -57,7 +58,17 @@ impl RunFiles {
                 report: report.transpose()?,
             })
         };
-        let outputs = comm.agree(comm.is_root().then(|| create(&layout)).transpose())?;
+        let create = || {
+            let created = create(&layout);
+            // What was made after that may be half of it.
+            match is_asked_to_stop() {
+                false => created,
+                true => Err(Failure::interrupted(
+                    "interrupted while creating the outputs",
+                )),
+            }
+        };
+        let outputs = comm.agree(comm.is_root().then(create).transpose())?;
         // A single rank needs nobody beside it.
         let result = outputs.as_ref().filter(|_| comm.size() > 1);
         let mut places = result.and_then(|outputs| outputs.result.places());

@@ -168,19 +168,21 @@ pub fn finished(failure: Failure, context: &Context<'_>, settings: &Settings, k:
     )
 }
 
-/// Ends the run before load step k if a signal asked for that, which sweeps that take long hear by themselves.
-/// Collective.
+/// Ends the run before load step k if a signal asked for that. Collective.
 ///
 /// # Errors
 /// A signal did.
 pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Result<(), Failure> {
-    match k > 0 && context.comm.is_any_asked_to_stop() {
+    go_on(context).map_err(|failure| finished(failure, context, settings, k))
+}
+
+/// Goes on unless a signal has asked the run to stop. Collective.
+///
+/// # Errors
+/// A signal did.
+pub fn go_on(context: &Context<'_>) -> Result<(), Failure> {
+    match context.comm.is_any_asked_to_stop() {
         false => Ok(()),
-        true => Err(finished(
-            Failure::interrupted("interrupted"),
-            context,
-            settings,
-            k,
-        )),
+        true => Err(Failure::interrupted("interrupted")),
     }
 }

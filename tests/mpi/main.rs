@@ -76,7 +76,8 @@ fn main() -> ExitCode {
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
     sudden_ends::in_a_frozen_step(&mut trials);
-    stopping::stopped_while_factorizing(&mut trials);
+    stopping::stopped_once_all_is_read(&mut trials);
+    stopping::stopped_ahead_of_sweeps(&mut trials);
     stopping::stopped_while_sweeping(&mut trials);
     stopping::stopped_between_steps(&mut trials);
     stopping::restarted_in_vain(&mut trials);

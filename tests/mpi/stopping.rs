@@ -270,9 +270,39 @@ fn stop(case: &Case, ranks: usize, phase: &str, sent: impl FnOnce(&Running)) -> 
     running.wait(LIMIT)
 }
 
-/// Blocks that are being factorized are finished, then the run ends.
-pub fn stopped_while_factorizing(trials: &mut Trials) {
-    trials.on_all_ranks("stopped::while_factorizing", |ranks| {
+/// A signal that comes at the start of a phase ahead of the sweeps ends the run in it, whichever rank hears of it where
+/// all ranks work on it, and nothing is left behind.
+pub fn stopped_ahead_of_sweeps(trials: &mut Trials) {
+    if cfg!(not(debug_assertions)) {
+        return;
+    }
+    let phases = [
+        (
+            "creating the outputs",
+            "interrupted while creating the outputs",
+            true,
+        ),
+        ("factorizing", "interrupted while factorizing", true),
+        ("condensing the load", "interrupted, before", false),
+    ];
+    for (phase, words, by_first) in phases {
+        let name = format!("stopped::while_{}", phase.replace(' ', "_"));
+        trials.on_all_ranks(&name, move |ranks| {
+            let case = Case::of(&built_in_model("granite", 0), 8);
+            let ended = stop(&case, ranks, phase, |running| {
+                let first = running.stopped(LIMIT);
+                let last = *running.descendants("contact-dd-mpi").last().unwrap();
+                send(if by_first { first } else { last }, Signal::TERM);
+            });
+            failed_once(&ended, 6, &[words, "before a result was written"]);
+            assert_eq!(case.files(), ["problem.h5"]);
+        });
+    }
+}
+
+/// What is being made when a signal comes, a table of the result file or a block's factor, is finished, then the run ends.
+pub fn stopped_once_all_is_read(trials: &mut Trials) {
+    trials.on_all_ranks("stopped::once_all_is_read", |ranks| {
         let case = Case::of(&built_in_model("granite", 2), 40);
         let mut running = Running::start(program(ranks).arg(case.problem()));
         let deadline = Instant::now() + LIMIT;
@@ -284,7 +314,11 @@ pub fn stopped_while_factorizing(trials: &mut Trials) {
         let all = running.descendants("contact-dd-mpi");
         assert!(running.is_running(), "the problem is too small");
         send(all[0], Signal::USR1);
-        failed_once(&running.wait(LIMIT), 6, &["while factorizing"]);
+        failed_once(
+            &running.wait(LIMIT),
+            6,
+            &["interrupted while ", "before a result was written"],
+        );
         assert_eq!(case.files(), ["problem.h5"]);
     });
 }

@@ -5,6 +5,7 @@ use hdf5::{File, Group, Result};
 
 use super::checkpoint::Column;
 use super::column::{self, Written};
+use crate::comm::is_asked_to_stop;
 use crate::fem::contact_state::ContactRow;
 
 /// The table of every contact, and which of its rows have been written in a load step.
@@ -30,12 +31,18 @@ struct Table {
 }
 
 impl ContactTables {
-    /// Makes all tables in their final sizes.
+    /// Makes all tables in their final sizes; thousands of contacts take seconds.
+    ///
+    /// # Errors
+    /// One can't be made, or a signal asked the run to stop.
     pub(super) fn create(file: &File, contacts: &[ContactSummary], steps: usize) -> Result<Self> {
         let parent = column::group(file, "contact")?;
         let tables = contacts
             .iter()
-            .map(|contact| Table::create(&parent, contact, steps))
+            .map(|contact| match is_asked_to_stop() {
+                false => Table::create(&parent, contact, steps),
+                true => Err("interrupted".into()),
+            })
             .collect::<Result<_>>()?;
         Ok(Self { tables })
     }
