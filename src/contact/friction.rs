@@ -4,9 +4,10 @@
 //! The bound b is given, or grows with the normal force, b = c + μ λ: then the matrix of the slipping ones isn't
 //! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; all
 //! wrong statuses are exchanged at once until none is wrong, as semismooth Newton does, and where that gets no
-//! further, from near the end of an interior path that leads to a solution.
+//! further, from near the end of a path that leads to a solution: an interior one, and in the plane Lemke's.
 
 mod discs;
+mod lemke;
 mod other;
 mod patch;
 #[cfg(test)]
@@ -18,6 +19,9 @@ use super::patch::LastPatch;
 pub use super::status::Status;
 use super::tangent::TangentialLimit;
 pub use super::tangent::{ForceBound, TangentialCondition};
+
+/// Ways of Lemke's path that are tried.
+const ATTEMPTS: usize = 3;
 
 /// The contact problem with friction.
 #[derive(Clone, Copy, Debug)]

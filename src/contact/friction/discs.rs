@@ -2,7 +2,8 @@
 //!
 //! Semismooth Newton on the laws ([`newton`](crate::contact::newton)), with a dense linear problem for given statuses
 //! ([`linear`]). Where this gets no further, it starts again from near the solution, where an interior-point method leads
-//! ([`interior`]). After that dashpots at all jumps make the problem easier, the slower things move the less.
+//! ([`interior`]). After that in the plane Lemke's path leads to a solution ([`lemke`](super::lemke)), and dashpots at all
+//! jumps make the problem easier, the slower things move the less.
 
 mod interior;
 mod linear;
@@ -13,7 +14,7 @@ use crate::contact::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANC
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::open_factor::scale_of;
-use crate::contact::tangent::Beside;
+use crate::contact::tangent::{Beside, TangentialLimit};
 
 /// A dense problem whose points have discs.
 struct Discs<'a> {
@@ -45,10 +46,16 @@ impl Found {
 }
 
 impl FrictionProblem<'_> {
+    /// Whether a point slips in a plane.
+    fn has_discs(&self) -> bool {
+        let beside = |tangent: &TangentialLimit| tangent.beside != Beside::Nothing;
+        self.tangents.iter().any(beside)
+    }
+
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
     pub(super) fn solve_discs(&self, status: &mut [Status]) -> ContactSolution {
         let discs = Discs::new(self);
-        let (found, fell_back, slides) = discs.solve(status);
+        let (found, fell_back, slides) = discs.solve(self, status);
         discs.tell(&found.state, status);
         let (jumps, forces) = discs.exact(&found);
         ContactSolution {

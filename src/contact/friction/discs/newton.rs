@@ -4,7 +4,8 @@ use std::convert::Infallible;
 
 use super::{Discs, Found, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
-use crate::contact::friction::Status;
+use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
+use crate::contact::law::PointStatus;
 use crate::contact::laws::{Iterate, LawResidual, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, OnGroups, StepAccuracy, TotalResidual, newton,
@@ -38,7 +39,11 @@ const CHANGES: usize = 24;
 impl Discs<'_> {
     /// The solution, found from where these statuses are right, whether that took more than Newton's method, and whether
     /// things slide on and on.
-    pub(super) fn solve(&self, status: &[Status]) -> (Found, bool, bool) {
+    pub(super) fn solve(
+        &self,
+        problem: &FrictionProblem<'_>,
+        status: &[Status],
+    ) -> (Found, bool, bool) {
         let start = self.start();
         let state = self.laws.begin(status, &start);
         let at_once = self.newton(&start, &state, STEPS);
@@ -49,11 +54,46 @@ impl Discs<'_> {
             return (found, true, false);
         }
         let mut steps = at_once.steps;
+        if !problem.has_discs()
+            && let Some(found) = self.along_lemke_s_path(problem, &mut steps)
+        {
+            return (Found { steps, ..found }, true, false);
+        }
         match self.with_dashpots(&start, &state, &mut steps) {
             Rest::Found(found) => (Found { steps, ..found }, true, false),
             Rest::Slides => (Found { steps, ..at_once }, true, true),
             Rest::Unknown => (Found { steps, ..at_once }, true, false),
         }
+    }
+
+    /// The solution at the end of Lemke's path.
+    fn along_lemke_s_path(
+        &self,
+        problem: &FrictionProblem<'_>,
+        steps: &mut usize,
+    ) -> Option<Found> {
+        for attempt in 0..ATTEMPTS {
+            let (end, exchanges) = problem.follow(attempt);
+            *steps += exchanges;
+            let Some(end) = end else { continue };
+            // Where nothing resists, what slips both ways is between both there, and not just anywhere.
+            let start = self.place(end.jumps, vec![0.0; self.contact.rows.len()]);
+            let mut state = self.laws.begin(&end.status, &start);
+            state.opened.fill(true);
+            for (point, own) in self.laws.points.iter().zip(&mut state.points) {
+                if let (Status::Parting, PointStatus::Slips { direction, turning }) =
+                    (end.status[point.first], *own)
+                {
+                    *own = PointStatus::Parts { direction, turning };
+                }
+            }
+            let found = self.newton(&start, &state, STEPS);
+            *steps += found.steps;
+            if found.converged() {
+                return Some(found);
+            }
+        }
+        None
     }
 
     /// The place from which open jumps go where the load drives them.

@@ -1,0 +1,79 @@
+//! The way to a solution from a problem whose solution is known: Lemke's method, on jumps and forces.
+//!
+//! With θ p more on every normal force and θ b more on every given bound, all is closed and sticks where θ is large.
+//! From there θ goes down. Wherever a force or a jump reaches its limit, one status is exchanged, and θ goes on in the
+//! direction, up or down, in which what was at its limit before moves away from it: a path of straight pieces that
+//! never comes back. No piece is endless: along one that is, jumps x would have xᵀ H x ≤ 0. So it gets to θ = 0,
+//! whatever the coefficients of friction, but for round-off; and where motions that nothing resists are driven.
+//!
+//! A. Klarbring, J.-S. Pang, *Existence of solutions to discrete semicoercive frictional contact problems*, SIAM J.
+//! Optim. 8 (1998).
+//!
+//! Closed rows that depend on each other give way a little. A bound that vanishes as the contact opens, c + μ λ, falls
+//! steeply to 0 with the last of the force: what ends there is about to open.
+
+mod path;
+mod responses;
+
+use self::path::{End, Path};
+use super::FrictionProblem;
+use crate::contact::open_factor::scale_of;
+
+/// Limits up to which the path is followed: its matrix is dense.
+const MOST_LIMITS: usize = 3000;
+/// Exchanges between which its round-off may grow, but for that of large problems.
+const MOST_UPDATES: usize = 20;
+/// Exchanges, whatever the problem and for each limit.
+const EXCHANGES: usize = 200;
+const EXCHANGES_EACH: usize = 8;
+/// Exchanges in a row at one θ: round-off goes round in circles there.
+const STANDS_STILL: usize = 100;
+
+impl FrictionProblem<'_> {
+    /// The end of the path, and the exchanges that it took; `None` where it doesn't get there. Every `attempt` goes
+    /// another way.
+    pub(super) fn follow(&self, attempt: usize) -> (Option<End>, usize) {
+        if self.contact.bounds.len() > MOST_LIMITS {
+            return (None, 0);
+        }
+        let mut path = Path::new(self, attempt);
+        let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
+        let (mut theta, mut way) = (f64::INFINITY, -1.0);
+        let (mut entered, mut still) = (None, 0);
+        let often = (self.contact.bounds.len() / 4).max(MOST_UPDATES);
+        for exchanges in 0..most {
+            if exchanges % often == often - 1 {
+                path.refresh();
+            }
+            if let Some((i, quantity)) = entered {
+                way = path.quantity(i, quantity)[1].signum();
+            }
+            match path.next(theta, way, entered) {
+                Some((at, _, _)) if at <= 0.0 => return (Some(path.end()), exchanges),
+                None if way < 0.0 => return (Some(path.end()), exchanges),
+                Some((at, i, quantity)) => {
+                    still = if at == theta { still + 1 } else { 0 };
+                    if still > STANDS_STILL {
+                        return (None, exchanges);
+                    }
+                    theta = at;
+                    entered = Some(path.exchange(theta, i, quantity));
+                }
+                None => return (None, exchanges),
+            }
+        }
+        (None, most)
+    }
+
+    /// What a limit's jump is multiplied by in the scale of energies, and its force divided.
+    fn scales(&self) -> Vec<f64> {
+        let gap = &self.contact;
+        let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();
+        let jumps = (0..gap.c.len()).map(of_jump);
+        let of_row = |row: &[(usize, f64)]| {
+            let squares = row.iter().map(|&(i, c)| (c / of_jump(i)).powi(2));
+            1.0 / squares.sum::<f64>().sqrt()
+        };
+        jumps.chain(gap.rows.iter().map(of_row)).collect()
+    }
+}
