@@ -13,6 +13,11 @@ pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
+/// The vector `part` of the way from x to y.
+pub fn between(x: &[f64], y: &[f64], part: f64) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| x + part * (y - x)).collect()
+}
+
 /// Part of the largest scale, of the load or of the load steps before, below which a scale is of their round-off alone.
 pub const NOTHING: f64 = 1e-12;
 

@@ -14,6 +14,7 @@ use super::open_factor::{factorize, scale_of};
 
 /// The share of jumps in a patch above which condensing doesn't pay.
 pub const LARGE: f64 = 0.7;
+
 /// What is condensed onto a patch.
 #[derive(Debug)]
 pub struct CondensedPatch {

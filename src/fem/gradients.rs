@@ -10,6 +10,7 @@
 use std::array::from_fn;
 use std::f64::consts::PI;
 
+use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::geometry::cross;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::element::reference::ReferenceElement;
@@ -23,18 +24,6 @@ pub(super) const RING: usize = 4;
 pub(super) const MAX_PLANE_NODES: usize = 9;
 /// Most dofs that an element has.
 pub const MAX_DOFS: usize = 3 * MAX_NODES;
-
-/// Signs of the reference coordinates of the corners, of a quadrilateral the first four.
-const CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 /// A strain or stress in Voigt's order; in the plane the first three components count, around an axis four.
 pub type Voigt = [f64; 6];
@@ -111,8 +100,10 @@ impl<const D: usize, const V: usize, const N: usize> PointGradients<D, V, N> {
 
     /// The same with the gradients of the modes behind those of the nodes at `points`.
     pub fn with_modes(mut self, reference: &TabulatedPoint, points: &[[f64; 3]]) -> Self {
+        // J at the center; the first four corners are those of a quadrilateral.
+        let corners = ElementKind::Hexahedron8.reference().node_coordinates();
         let mut j = [[0.0; D]; D];
-        for (x, corner) in points.iter().zip(&CORNERS) {
+        for (x, corner) in points.iter().zip(corners) {
             for (row, x) in j.iter_mut().zip(x) {
                 for (entry, sign) in row.iter_mut().zip(corner) {
                     *entry += x * sign / points.len() as f64;

@@ -17,7 +17,7 @@ use crate::frozen::exchange::LOOSE;
 use crate::frozen::fronts::FrozenFronts;
 use crate::frozen::solution::FrozenSolution;
 use crate::sweep::{SweepOutcome, SweepRecord};
-use crate::vector::axpy;
+use crate::vector::{axpy, between};
 
 /// How far GMRES goes, relative to what is missed before, at least and at most.
 const REDUCTION: [f64; 2] = [1e-1, 1e-3];
@@ -191,12 +191,9 @@ impl ContactOperator for TreeOperator<'_, '_> {
         to: &OnGroups<Iterate>,
         part: f64,
     ) -> OnGroups<Iterate> {
-        let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
-        };
         let of_group = |(&g, from): (&usize, &Iterate)| {
-            let jumps = between(&from.jumps, &to[&g].jumps);
-            let forces = between(&from.forces, &to[&g].forces);
+            let jumps = between(&from.jumps, &to[&g].jumps, part);
+            let forces = between(&from.forces, &to[&g].forces, part);
             (g, Iterate { jumps, forces })
         };
         from.iter().map(of_group).collect()

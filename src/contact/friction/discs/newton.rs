@@ -10,7 +10,7 @@ use crate::contact::laws::{Iterate, LawResidual, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, OnGroups, StepAccuracy, TotalResidual, newton,
 };
-use crate::vector::{dot, largest};
+use crate::vector::{between, dot, largest};
 
 /// Most steps of Newton's method.
 const STEPS: usize = 40;
@@ -268,14 +268,11 @@ impl ContactOperator for Dense<'_, '_> {
         part: f64,
     ) -> OnGroups<Iterate> {
         let (from, to) = (&from[&ONLY], &to[&ONLY]);
-        let between = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            a.iter().zip(b).map(|(a, b)| a + part * (b - a)).collect()
-        };
         let m = from.jumps.len();
-        let jumps = between(&from.jumps, &to.jumps);
+        let jumps = between(&from.jumps, &to.jumps, part);
         only(
             self.0
-                .place(jumps, between(&from.forces[m..], &to.forces[m..])),
+                .place(jumps, between(&from.forces[m..], &to.forces[m..], part)),
         )
     }
 
