@@ -176,13 +176,13 @@ impl<'a> CoupledContact<'a> {
 
     /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where limits keep their
     /// `statuses` and the closed ones still have to close by the first of what is `missing`; where a slipping one turns,
-    /// that is its share of its point's bound and κ.
+    /// that is its share of its point's bound and κ. What nothing resists stays where it is unless it `moves`.
     pub fn solve_fixed(
         &self,
         r: &[f64],
         loads: &[Vec<f64>],
         missing: &[Vec<[f64; 2]>],
-        statuses: &[Vec<Status>],
+        (statuses, moves): (&[Vec<Status>], bool),
     ) -> CoupledStep {
         let loads = loads.concat();
         let scale = loads.iter().map(|x| x.abs()).collect();
@@ -191,7 +191,14 @@ impl<'a> CoupledContact<'a> {
         let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
         let (bounds, turns): (Vec<f64>, Vec<f64>) = missing.into_iter().map(<_>::into).unzip();
         let problem = FrictionProblem {
-            contact: self.problem(&condensed, &bounds, &[]),
+            contact: ContactProblem {
+                scale: match moves {
+                    // No load is round-off of the displacements that it changes.
+                    true => 0.0,
+                    false => self.scale,
+                },
+                ..self.problem(&condensed, &bounds, &[])
+            },
             tangents: &self.tangents,
             last_patch: &self.interface.last_patch,
         };

@@ -62,6 +62,8 @@ pub struct FixedActiveSetRoot<'a> {
     pub interface: Option<(&'a Numbering, &'a InterfaceProblem<'a>)>,
     /// Whether the active sets are right.
     pub converged: bool,
+    /// Whether loads that are round-off of the displacements move what nothing resists.
+    pub moves: bool,
 }
 
 /// The statuses of the limits of a cluster, and what the closed ones still have to close (m), or slipping ones have of
@@ -114,6 +116,7 @@ impl<'a> FixedActiveSet<'a> {
             root: on_root.map(|outcome| FixedActiveSetRoot {
                 interface,
                 converged: outcome.status == SweepStatus::Converged,
+                moves: false,
             }),
             frozen,
         }
@@ -335,7 +338,7 @@ impl FixedActiveSetRoot<'_> {
         let Some(coupled) = CoupledContact::new(problem) else {
             return vec![ClusterAnswer::default(); numbering.interface_dofs.len()];
         };
-        let step = coupled.solve_fixed(&r, &loads, &missing, &statuses);
+        let step = coupled.solve_fixed(&r, &loads, &missing, (&statuses, self.moves));
         let mut pairs = step.forces.into_iter().zip(step.jumps);
         let answer = |c: usize| {
             let of_pair = match plan.contact_place(c) {

@@ -5,9 +5,9 @@ use contact_dd_partition::contact_point::ContactPoint;
 use crate::certificate::Certificate;
 use crate::context::Context;
 use crate::fem::contact_group::{Condition, ContactGroup};
-use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::fixed_active_set::{FixedActiveSet, FixedActiveSetRoot};
 use crate::recover::motions::{Field, Motions};
-use crate::recover::refine::replace_if_as_good;
+use crate::recover::refine::{correct_once, replace_if_as_good};
 use crate::recover::{DiscreteSolution, GroupSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::body_analysis::with_closing_motions;
@@ -19,6 +19,9 @@ use crate::vector::largest as largest_entry;
 const ROUND_OFF: f64 = 1e-14;
 /// A gap, relative to the largest displacement before and after bodies were moved, that is open.
 const OPENED: f64 = 1e-13;
+
+/// How often what a move leaves unbalanced by its round-off is corrected, which moves bodies again, by less.
+const CORRECTIONS: usize = 2;
 
 /// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
 /// whatever the contacts do, in the Euclidean sense over the nodes of the bodies that take part.
@@ -73,23 +76,43 @@ pub fn take_minimum_norm(
         return MinimumNorm::default();
     }
     let mut nearer = solution.clone();
-    let mut minimum_norm = move_nearer(fixed, analysis, &mut nearer);
-    if minimum_norm.has_released_modes {
-        let (after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
-        *certificate = after;
-        minimum_norm.conclude(taken);
-    } else {
+    let (mut released, mut minimum_norm) = move_nearer(fixed, analysis, &mut nearer);
+    if !minimum_norm.has_released_modes {
         *solution = nearer;
+        return minimum_norm;
     }
+    for _ in 0..CORRECTIONS {
+        // What drives these motions can't be balanced by any displacement, so that corrections leave it out; how far
+        // they go makes no difference.
+        let of_released = FixedActiveSet {
+            root: fixed.root.map(|root| FixedActiveSetRoot {
+                moves: true,
+                ..root
+            }),
+            free: Motions {
+                list: &released,
+                ..fixed.free
+            },
+            ..*fixed
+        };
+        correct_once(&of_released, &mut nearer);
+        let moved;
+        (released, moved) = move_nearer(fixed, analysis, &mut nearer);
+        minimum_norm.opened += moved.opened;
+    }
+    let (after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
+    *certificate = after;
+    minimum_norm.conclude(taken);
     minimum_norm
 }
 
-/// Gives the bodies the position of least displacement, whatever its certificate. Collective.
+/// Gives the bodies the position of least displacement, whatever its certificate, and returns the motions that are free in
+/// it. Collective.
 fn move_nearer(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
     solution: &mut DiscreteSolution,
-) -> MinimumNorm {
+) -> (Vec<FreeMotion>, MinimumNorm) {
     let blocks = displacements(&solution.blocks);
     let mut displacement = with_closing_motions(&fixed.context, blocks, analysis);
     let released = released_modes(fixed, analysis, solution);
@@ -97,7 +120,7 @@ fn move_nearer(
         (released.as_ref()).map_or_else(Vec::new, |l| l.motions.clone());
     fixed.context.comm.broadcast(&mut list);
     if list.is_empty() {
-        return MinimumNorm::default();
+        return (list, MinimumNorm::default());
     }
     let motions = Motions {
         list: &list,
@@ -140,7 +163,7 @@ fn move_nearer(
     );
     solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
-    minimum_norm
+    (list, minimum_norm)
 }
 
 /// Takes the forces away from conditions, by their number among those of all groups, which the root knows. Collective.

@@ -244,6 +244,13 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
     }
 }
 
+/// Corrects a solution by what it leaves unbalanced, where that can be solved for, whatever its certificate is then. Collective.
+pub fn correct_once(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
+    if decide(fixed, true) {
+        correct(fixed, solution);
+    }
+}
+
 /// Adds the solution of the linear problem whose load is what `solution` leaves unbalanced. What of it
 /// drives a free motion no displacement can balance: it is round-off, of loads and of stiffnesses that
 /// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the

@@ -36,7 +36,7 @@ pub struct ReleasedModes {
     rows: DMatrix<f64>,
     /// g − B u of these conditions (m).
     gaps: Vec<f64>,
-    /// The conditions whose forces are round-off of the equilibrium of rigid bodies.
+    /// The normal conditions whose forces hold nothing: they are round-off of the equilibrium of nodes or of rigid bodies.
     pub unneeded: Vec<usize>,
     /// Warnings.
     pub warnings: Vec<String>,
@@ -88,10 +88,10 @@ impl Scene {
         ReleasedModes {
             motions,
             rows: kinematics.jumps(&of_conditions(&redundant), &z),
-            gaps: (redundant.iter())
-                .map(|&j| conditions[j].gap.max(0.0))
+            gaps: redundant.iter().map(|&j| conditions[j].gap).collect(),
+            unneeded: (redundant.into_iter())
+                .filter(|&j| conditions[j].force != 0.0)
                 .collect(),
-            unneeded,
             warnings: (released.iter())
                 .map(|what| format!("no contact force holds {what}"))
                 .collect(),

@@ -142,6 +142,34 @@ fn check_locked_in(step: &Solution, most: f64, text: &str) {
     }
 }
 
+/// A position that contact leaves open is the nearest one whatever came before: without friction a step is as it is alone.
+#[test]
+fn what_a_step_leaves_without_load_is_where_it_is_without_earlier_steps() {
+    let (text, mesh) = built_in("rollers", 0);
+    let own = "[[step]]
+        scale = { pressure = 0 }
+        body_force = { 'left roller' = [0.0, -1e5] }\n";
+    let alone = model(&format!("{text}{own}"), mesh.clone());
+    let after = model(&format!("{text}\n[[step]]\n{own}"), mesh);
+    for count in [5, 8, 9, 13] {
+        let steps = |model: &Model| {
+            let case = Case::of(model, count);
+            let ended = case.run(&[]);
+            assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+            Solution::steps(&case.result())
+        };
+        let (alone, after) = (&steps(&alone)[0], &steps(&after));
+        let most = after[0].largest_displacement();
+        assert!(most > 1e-4, "{most}");
+        after[1].check_certificate();
+        for (node, u) in &alone.displacement {
+            for (u, v) in u.iter().zip(&after[1].displacement[node]) {
+                assert!((u - v).abs() <= 1e-12 * most, "{count}, {node}: {u} {v}");
+            }
+        }
+    }
+}
+
 #[test]
 fn heat_that_is_gone_leaves_nothing() {
     let heated =

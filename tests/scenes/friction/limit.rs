@@ -66,3 +66,62 @@ fn a_block_that_friction_holds_with_all_that_it_has_is_said_to_be_at_the_limit()
         assert_eq!(warnings.contains(words), is_at_limit, "{share}: {warnings}");
     }
 }
+
+/// Pairs of plates side by side, the upper one of each pushed between two directions of the polygon that friction's cone is
+/// enclosed by, with a share of what friction can give.
+fn pairs_of_plates(pairs: usize, share: f64) -> Model {
+    const WEIGHT: f64 = 2e4;
+    let (mut bodies, mut conditions, mut mesh) = (String::new(), String::new(), None);
+    let (sin, cos) = std::f64::consts::FRAC_PI_8.sin_cos();
+    let [x, y] = [cos, sin].map(|part| share * FRICTION * WEIGHT * part);
+    for i in 0..pairs {
+        let at = |z: f64| {
+            let from = [1.5 * i as f64, 0.0, z];
+            between(from, [from[0] + 1.0, 1.0, z + 0.5])
+        };
+        let [low, high] = ["low", "up"].map(|name| format!("{name}{i}"));
+        for (name, z) in [(&low, 0.0), (&high, 0.5)] {
+            let plate = solid(name, Hexahedron8, [1; 3], at(z));
+            mesh = Some(match mesh {
+                Some(before) => joined(before, plate),
+                None => plate,
+            });
+        }
+        bodies += &format!(
+            "{low}.material = 'rock'
+            {high} = {{material = 'rock', body_force = [{x:e}, {y:e}, {:e}]}}\n",
+            -WEIGHT
+        );
+        conditions += &format!(
+            "[[displacement]]
+            on = '{low} z0'
+            x = 0
+            y = 0
+            z = 0
+            [[contact]]
+            name = 'joint {i}'
+            sides = ['{high} z0', '{low} z1']
+            friction = {FRICTION}\n"
+        );
+    }
+    let text = format!(
+        "materials.rock = {{young = 2e10, poisson = 0.2}}
+        [bodies]
+        {bodies}{conditions}"
+    );
+    model(&text, mesh.unwrap())
+}
+
+#[test]
+fn many_bodies_are_held_up_to_the_circle_of_friction() {
+    for (share, code) in [(0.96, 0), (1.03, 4)] {
+        let ended = Case::of(&pairs_of_plates(60, share), 120).run(&[]);
+        assert_eq!(
+            ended.code(),
+            code,
+            "{share}: {}{}",
+            ended.stdout,
+            ended.stderr
+        );
+    }
+}
