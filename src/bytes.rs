@@ -17,7 +17,7 @@ pub struct Reals(#[serde(with = "self")] pub Vec<f64>);
 /// Writes a list.
 ///
 /// # Errors
-/// Those of the serializer.
+/// Errors of the serializer.
 pub fn serialize<T: Pod, S: Serializer>(list: &[T], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_bytes(bytemuck::cast_slice(list))
 }
@@ -65,7 +65,7 @@ pub mod lower {
     /// Writes the triangle.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<S: Serializer>(matrix: &Mat<f64>, serializer: S) -> Result<S::Ok, S::Error> {
         let size = matrix.nrows();
         // faer pads its columns, so that a matrix can't be sent as it lies in memory.
@@ -106,7 +106,7 @@ pub mod symmetric {
     /// Writes the lower triangle.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<S: Serializer>(matrix: &Mat<f64>, serializer: S) -> Result<S::Ok, S::Error> {
         lower::serialize(matrix, serializer)
     }
@@ -137,7 +137,7 @@ pub mod matrix {
     /// Writes the matrix.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<S: Serializer>(matrix: &Mat<f64>, serializer: S) -> Result<S::Ok, S::Error> {
         let (rows, columns) = matrix.shape();
         let mut values = Vec::with_capacity(rows * columns);

@@ -187,7 +187,7 @@ impl Comm {
         }
     }
 
-    /// What this rank has sent to others, broadcasts counted once (bytes).
+    /// Bytes that this rank has sent to others, broadcasts counted once.
     pub fn bytes_sent(&self) -> u64 {
         self.bytes_sent.get()
     }
@@ -202,7 +202,7 @@ impl Comm {
         self.clock.chain()
     }
 
-    /// Where this rank is in its run.
+    /// Phase of the run that this rank is in.
     pub fn times(&self) -> Times {
         self.clock.times()
     }
@@ -256,7 +256,7 @@ impl Comm {
     }
 }
 
-/// What goes ahead of a message: its length, and the sender's stamp.
+/// Header of a message: its length, and the sender's stamp.
 #[derive(Clone, Copy, Debug, Default)]
 struct Head([u64; 3]);
 

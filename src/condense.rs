@@ -29,7 +29,7 @@ use crate::schur::substitution::Replaced;
 pub struct Condensation<'a> {
     /// The context of the run.
     pub context: Context<'a>,
-    /// What acts on the blocks of this rank in the first load step.
+    /// Loads on the blocks of this rank in the first load step.
     pub loads: &'a Loads,
     /// Springs that hold what nothing else does.
     pub fixing_dofs: &'a [FixingDof],
@@ -80,7 +80,7 @@ impl Condensation<'_> {
         Ok(of_block)
     }
 
-    /// What the jumps of the contact group at node v replace; nothing where there is none.
+    /// Traces that the jumps of the contact group at node v replace; none without a group.
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.

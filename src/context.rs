@@ -25,7 +25,7 @@ pub trait Listener {
 /// the softest.
 const INDISTINCT: f64 = 1e11;
 
-/// What every phase of a run works on.
+/// Data that every phase of a run works on.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
     /// All ranks.
@@ -49,7 +49,7 @@ pub struct Context<'a> {
 pub struct LoadPoint {
     /// The load step.
     pub step: usize,
-    /// How much of the way is gone from the loads of the step before, none before the first, to those of the step.
+    /// Share of the way from the loads of the step before, none before the first, to those of the step.
     pub part: f64,
 }
 

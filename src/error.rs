@@ -29,7 +29,7 @@ pub enum FailureKind {
 pub struct Failure {
     /// The kind of the failure, which decides the exit code.
     pub kind: FailureKind,
-    /// Where, and what was expected.
+    /// Message: the place, and what was expected.
     pub message: String,
 }
 

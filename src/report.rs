@@ -209,7 +209,7 @@ fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
     }
 }
 
-/// What may help where the iterative solver didn't converge.
+/// Advice where the iterative solver didn't converge.
 fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_iterative = totals.interface_solver() == InterfaceMethod::Iterative;
     let is_direct = !is_iterative || totals.took_over().is_some();

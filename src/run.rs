@@ -44,7 +44,7 @@ use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
 use crate::step::transfer::StageEnd;
 use crate::sweep::SweepStatus;
 
-/// How a run ended that didn't fail.
+/// End of a run that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The sweeps converged, or there was nothing to solve for.

@@ -32,7 +32,7 @@ use crate::vector::largest;
 pub struct StepProblem<'a> {
     /// The loads on its blocks and contact groups.
     pub loads: Loads,
-    /// What supports prescribe in them.
+    /// Displacements that supports prescribe in them.
     pub prescribed: BTreeMap<usize, Prescribed>,
     /// The condensed load of every node of the hierarchy.
     pub condensed: BTreeMap<usize, CondensedLoad>,

@@ -39,7 +39,7 @@ pub struct Sweeps<'a, 'c> {
     s_con: &'a mut SCon<'c>,
     state: ConState,
     settings: SweepSettings,
-    /// How far they have come.
+    /// Progress of the sweeps.
     outcome: SweepOutcome,
     /// Whether another method took over from newton: then nothing may refine afterwards.
     has_fallen_back: bool,
@@ -54,11 +54,11 @@ pub struct Residual {
     pub r: Vec<f64>,
     /// ‖r‖∞ relative to the terms that r is a sum of.
     pub relative: f64,
-    /// What the pairs said at U.
+    /// Totals of the pairs' answers at U.
     pub totals: ConTotals,
 }
 
-/// Where sweeps begin.
+/// Start of the sweeps.
 #[derive(Debug)]
 pub enum Start {
     /// At the solution of the bilateral problem, (16)-(17).
@@ -135,7 +135,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         residual
     }
 
-    /// What was found, refined if it is the solution.
+    /// Outcome of the sweeps, refined if it is the solution.
     pub fn end(mut self, status: SweepStatus) -> SweepOutcome {
         if status == SweepStatus::Converged {
             self.refine();

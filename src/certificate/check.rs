@@ -57,12 +57,12 @@ impl External {
     }
 }
 
-/// What a block says of its own part of the solution.
+/// Check of a block's own part of the solution.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BlockCheck {
-    /// What is largest in it.
+    /// Largest terms in the block.
     pub most: Most,
-    /// What acts on it from outside.
+    /// External load on the block.
     pub(super) external: External,
 }
 

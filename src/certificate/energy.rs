@@ -20,7 +20,7 @@ use crate::fem::block::Block;
 use crate::fem::load::BlockLoads;
 use crate::vector::dot;
 
-/// What is off, relative to all terms of forces times displacements, that isn't round-off.
+/// Smallest error, relative to all terms of forces times displacements, that isn't round-off.
 const NOT_ROUND_OFF: f64 = 1e-12;
 
 /// Where energy came from and went in a load step, with the mean of the forces at both ends of every increment (J, per
@@ -44,7 +44,7 @@ pub struct EnergyBalance {
     pub is_off: bool,
 }
 
-/// What the balance of the next increment needs of a block, on its nodes.
+/// Data of a block that the energy balance of the next increment needs, on its nodes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct BlockEnergy {
     /// u.
@@ -89,7 +89,7 @@ impl BlockEnergy {
         }
     }
 
-    /// What is done in the increment from the state `before`, that of unloaded bodies if there is none.
+    /// Work done in the increment from the state `before`, that of unloaded bodies if there is none.
     pub fn work(&self, before: Option<&Self>) -> BlockWork {
         let mut way = self.displacement.0.clone();
         if let Some(before) = before {
@@ -119,7 +119,7 @@ impl EnergyBalance {
         works.into_iter().all(f64::is_finite)
     }
 
-    /// That of all blocks, in their order.
+    /// Balance of all blocks, in their order.
     pub fn new(blocks: &[BlockWork]) -> Self {
         let sum = |k: usize| blocks.iter().map(|work| work[k]).sum::<f64>();
         let [loads, supports, contacts, before, after, terms] = [0, 1, 2, 3, 4, 5].map(sum);
@@ -136,7 +136,7 @@ impl EnergyBalance {
         }
     }
 
-    /// That of an `earlier` increment and this one.
+    /// Balance of an `earlier` increment and this one.
     pub fn since(self, earlier: Self) -> Self {
         Self {
             work_of_loads: earlier.work_of_loads + self.work_of_loads,
@@ -148,7 +148,7 @@ impl EnergyBalance {
         }
     }
 
-    /// What a user should know, if it is off by more than round-off.
+    /// Warning of a balance that is off by more than round-off.
     pub fn warning(&self) -> Option<String> {
         self.is_off.then(|| {
             format!(

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::vector::larger;
 
-/// What is largest in a block, or in several.
+/// Largest terms in a block, or in several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Most {
     /// Residual along directions that are free (N/m).
@@ -27,7 +27,7 @@ pub struct Most {
     pub beyond_bound: f64,
     /// Way of a point that sticks from where it does (m).
     pub astray: f64,
-    /// What friction would have dissipated more under its bound, against the slip (N).
+    /// Dissipation that is missing to that of friction at its bound, against the slip (N).
     pub not_opposed: f64,
     /// Displacement (m).
     pub displacement: f64,

@@ -8,10 +8,10 @@ use super::most::Most;
 use crate::schur::condensed::InterfaceDof;
 use crate::vector::larger;
 
-/// What a block says of nodes on Γ.
+/// Contribution of a block to the check of nodes on Γ.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SharedCheck {
-    /// Its traces there.
+    /// Traces of the block on Γ.
     pub(super) trace_dofs: Vec<InterfaceDof>,
     /// Residual on them, to be summed over the blocks that share them.
     #[serde(with = "crate::bytes")]

@@ -11,29 +11,29 @@ use crate::schur::condensed::Condensed;
 use crate::schur::local::LocalSchur;
 use crate::schur::merge::Merge;
 
-/// What stays of a block once it is condensed.
+/// Condensed block.
 #[derive(Debug)]
 pub struct CondensedBlock {
-    /// Its unknowns.
+    /// Unknowns of the block.
     pub dofs: Dofs,
     /// The diagonal of its stiffness (Pa).
     pub diagonal: Vec<f64>,
     /// The springs in it.
     pub springs: Vec<Spring>,
-    /// Its factor.
+    /// Factor of K_II.
     pub factor: LocalSchur,
 }
 
 /// A cluster in contact.
 #[derive(Debug)]
 pub struct ContactCluster {
-    /// Its Schur complement, both triangles.
+    /// Schur complement, both triangles.
     pub condensed: Rc<Condensed>,
     /// The bounds on its normal jumps in the first load step. Which conditions they are of is the same in all.
     pub limits: Limits,
 }
 
-/// What this rank has of the condensed blocks and of what they were merged into.
+/// The condensed blocks of this rank and the clusters that they were merged into.
 #[derive(Debug, Default)]
 pub struct CondensedBlocks {
     /// Blocks, by their number.

@@ -62,7 +62,7 @@ impl Block {
         on_interface
     }
 
-    /// Its cells: kind, nodes, material.
+    /// Cells: kind, nodes, material.
     pub fn cells(&self) -> impl Iterator<Item = BlockCell<'_>> {
         let materials = self.subdomain.cell_material.iter();
         (self.subdomain.cells.iter().zip(materials)).map(|((kind, nodes), &material)| BlockCell {
@@ -84,7 +84,7 @@ pub struct BlockCell<'a> {
 }
 
 impl BlockCell<'_> {
-    /// Its nodes.
+    /// Nodes.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = u32> + Clone {
         self.nodes.iter().copied()
     }

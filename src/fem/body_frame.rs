@@ -55,7 +55,7 @@ impl BodyFrame {
         u
     }
 
-    /// How each rigid motion moves `x`.
+    /// Displacement of `x` in each rigid motion.
     pub fn moves(&self, dim: usize, x: &[f64; 3]) -> Vec<[f64; 3]> {
         let mut moves = vec![[0.0; 3]; Self::count(dim)];
         for component in 0..dim {

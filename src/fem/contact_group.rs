@@ -20,7 +20,7 @@ use crate::schur::substitution::Replaced;
 pub struct ContactGroup {
     /// The points.
     pub points: Vec<ContactPoint<u32>>,
-    /// Their nodes.
+    /// Nodes of the points.
     pub nodes: Vec<ContactNode>,
     /// Number of dofs of a node.
     pub dim: usize,
@@ -302,7 +302,7 @@ impl ContactGroup {
         }
     }
 
-    /// What normal jumps replace, in the words of Γ.
+    /// Traces that normal jumps replace, by the numbers of Γ.
     pub fn replaced(&self, jumps: &Jumps) -> Vec<Replaced> {
         let replaced = |pivot: &u32| {
             let Sum { terms } = &jumps.replaced[pivot];

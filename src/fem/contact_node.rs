@@ -11,11 +11,11 @@ use super::block::Block;
 /// A node of contact points, as its subdomain describes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactNode {
-    /// Its number on Γ.
+    /// Number on Γ.
     pub interface: u32,
     /// The mesh file's tag.
     pub tag: i64,
-    /// Its body.
+    /// Body of the node.
     pub body: usize,
     /// Coordinates (m).
     pub at: [f64; 3],

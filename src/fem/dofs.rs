@@ -24,7 +24,7 @@ pub struct Dofs {
     sites: Sites,
     /// Number of interior unknowns I.
     pub interior: usize,
-    /// Its unknowns on Γ; they come last, in this order.
+    /// Unknowns on Γ; they come last, in this order.
     pub interface_dofs: Vec<InterfaceDof>,
 }
 
@@ -184,7 +184,7 @@ impl Dofs {
         }
     }
 
-    /// Where the pattern's sites begin: runs of unknowns that the same cells have, those of a node.
+    /// First unknown of each site of the pattern: a run of unknowns that the same cells have, those of a node.
     pub fn site_starts(&self) -> &[u32] {
         &self.sites.starts
     }

@@ -18,7 +18,7 @@ const FULL_TURN: f64 = 1e-6;
 const DETERMINED: f64 = 1e-6;
 
 /// The normal equations of the polynomial around a vertex that is nearest to samples of the stress.
-/// Those of several blocks add up.
+/// Least-squares data of a patch; those of several blocks add up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(into = "Sums", from = "Sums")]
 pub struct PatchSum {

@@ -71,7 +71,7 @@ impl Polynomial {
         rows.take(terms(self.dim))
     }
 
-    /// Its value at a point, given from the vertex on (m).
+    /// Value at a point, given from the vertex on (m).
     pub fn at(&self, at: [f64; 3]) -> NodalStress {
         let mut value = [0.0; 6];
         let monomials: [f64; TERMS] = monomials(at, self.dim);
@@ -156,7 +156,7 @@ pub(super) fn monomials<const N: usize>(at: [f64; 3], dim: usize) -> [f64; N] {
     terms
 }
 
-/// Their derivatives along an axis.
+/// Derivatives of the terms along an axis.
 fn slopes(at: [f64; 3], dim: usize, axis: usize) -> [f64; TERMS] {
     let mut slopes = [0.0; TERMS];
     slopes[axis + 1] = 1.0;

@@ -6,7 +6,7 @@ use super::frame::support_frames;
 use super::load::BlockLoads;
 use crate::vector::axpy;
 
-/// What supports prescribe in a load step.
+/// Displacements that supports prescribe in a load step.
 #[derive(Clone, Debug)]
 pub struct Prescribed {
     dim: usize,
@@ -15,7 +15,7 @@ pub struct Prescribed {
 }
 
 impl Prescribed {
-    /// What `loads` prescribe in a block.
+    /// Displacements that `loads` prescribe in a block.
     pub fn new(block: &Block, loads: &BlockLoads) -> Self {
         let dim = block.dim;
         let mut constants = vec![0.0; dim * block.nodes()];

@@ -53,7 +53,7 @@ impl Recovery {
         self.material
     }
 
-    /// Its patches on Γ that hold any cell: the place in the block's interface and the patch.
+    /// Patches on Γ that hold any cell: the place in the block's interface and the patch.
     pub fn shared(&self) -> impl Iterator<Item = (usize, &PatchSum)> {
         let shared = self.shared.iter().enumerate();
         shared.filter(|(_, patch)| !patch.is_empty())

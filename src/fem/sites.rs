@@ -7,7 +7,7 @@ use crate::schur::pattern::Cliques;
 /// Runs of consecutive unknowns.
 #[derive(Clone, Debug)]
 pub(super) struct Sites {
-    /// Where each one begins, and the end of the last.
+    /// First entry of each site, and the end of the last.
     pub starts: Vec<u32>,
     /// The site of each node's own unknowns, if it has any.
     pub of_node: Vec<u32>,

@@ -245,7 +245,7 @@ impl LocalCell {
         middle
     }
 
-    /// Where a point is (m).
+    /// Position of a point (m).
     fn place(&self, point: &TabulatedPoint) -> [f64; 3] {
         let mut at = [0.0; 3];
         for (n, x) in point.shape.iter().zip(&self.points) {

@@ -64,12 +64,12 @@ pub struct CoupledStep {
     pub converged: bool,
     /// Whether something was seen to slide on and on.
     pub slides: bool,
-    /// Where it didn't for friction, the conditions of every pair whose status is wrong.
+    /// The conditions of every pair whose status is wrong, where friction kept it from converging.
     pub unsettled: Vec<Vec<usize>>,
 }
 
 impl CoupledStep {
-    /// What pairs are to expect of it.
+    /// Statuses and jumps that the pairs start from.
     pub fn expected(&self) -> Vec<Expected> {
         let both = self.statuses.iter().cloned();
         both.zip(self.jumps.iter().cloned()).collect()
@@ -289,7 +289,7 @@ impl<'a> CoupledContact<'a> {
         tangents.any(|tangent| tangent.beside != Beside::Nothing)
     }
 
-    /// What every pair has of normal jumps, then what every pair has of linearly dependent constraints.
+    /// Entries of every pair's normal jumps, then those of every pair's linearly dependent constraints.
     fn side_by_side<'b, T: Copy + 'b>(
         &self,
         of_pairs: impl Iterator<Item = &'b [T]> + Clone,

@@ -25,7 +25,7 @@ const SINGULAR_PIVOT: f64 = 1e-13;
 /// The contribution of a cluster to the interface problem.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Contribution {
-    /// Its Schur complement on its interface dofs, with every contact closed.
+    /// Schur complement on the interface dofs, with every contact closed.
     #[serde(with = "crate::bytes::symmetric")]
     pub s: Mat<f64>,
     /// The smallest pivot of its interior relative to its diagonal entry.
@@ -51,9 +51,9 @@ pub struct Interface {
     s_0: SparseSymmetric,
     /// S_0 + S_CON' of the bilateral problem.
     bilateral: SparseSymmetric,
-    /// Which clusters are in contact.
+    /// Clusters in contact.
     pub in_contact: Vec<bool>,
-    /// What solves the bilateral problem.
+    /// Solver of the bilateral problem.
     pub solver: DirectSolver,
     condensed_laws: OnceCell<Mat<f64>>,
     /// The patch of these laws that touched last.

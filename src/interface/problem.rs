@@ -14,7 +14,7 @@ const LEFT: f64 = 1e-3;
 /// The load of a cluster.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClusterLoad {
-    /// Its condensed load on its interface dofs, with every contact closed.
+    /// Condensed load on the interface dofs, with every contact closed.
     #[serde(with = "crate::bytes")]
     pub load: Vec<f64>,
     /// The largest displacement that is prescribed in a cluster in contact (m).

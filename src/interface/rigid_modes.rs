@@ -55,7 +55,7 @@ pub struct RigidBasis {
 #[derive(Clone, Debug)]
 struct Direction {
     part: usize,
-    /// Its entries there.
+    /// Entries of the mode there.
     values: Vec<f64>,
 }
 

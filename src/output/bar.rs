@@ -9,19 +9,19 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Time after which a log gets a sign of life.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// How often a bar moves by itself.
+/// Interval at which a bar moves by itself.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
-/// What a run is doing: a bar on the terminal, now and then a line in a log.
+/// Progress of a run: a bar on the terminal, now and then a line in a log.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
     phase: Cell<&'static str>,
     part: Cell<Part>,
-    /// When the log last heard of the run; `None` where there is no log.
+    /// Time of the last line in the log; `None` without one.
     told: Option<Cell<Instant>>,
     began: Instant,
 }
@@ -150,7 +150,7 @@ impl Drop for Bar {
     }
 }
 
-/// How long something takes yet, in words.
+/// Remaining time, in words.
 pub fn in_words(seconds: f64) -> String {
     match seconds {
         s if s < 100.0 => format!("about {s:.0} s left"),

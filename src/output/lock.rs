@@ -15,10 +15,10 @@ use contact_dd_partition::destination::{beside, failure};
 use contact_dd_partition::error::OutputError;
 use rustix::system::uname;
 
-/// How long a lock is waited for: that of a run which was killed holds until the system has taken back its memory.
+/// Time to wait for a lock: that of a run which was killed holds until the system has taken back its memory.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// How long until it is tried for again.
+/// Time between two tries.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// The right to write an output, until it is dropped.
@@ -114,7 +114,7 @@ fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Holder {
     process: u32,
-    /// When it began, as Linux counts (ticks since the host did); another process of the same number began at
+    /// Start of the process, as Linux counts (ticks since that of the host); another process of the same number began at
     /// another time.
     began: u64,
     host: String,
@@ -164,7 +164,7 @@ fn this_host() -> String {
     uname().nodename().to_string_lossy().into_owned()
 }
 
-/// When a process of this host began; `None` where there is none.
+/// Start of a process of this host; `None` where there is none.
 fn beginning(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // The name, in brackets, may have spaces and brackets; what follows has neither.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::vtkhdf::column::List;
 
-/// How much room a subdomain takes.
+/// Sizes of the parts of a subdomain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PartitionSize {
     /// Number of nodes.
@@ -60,9 +60,9 @@ pub(super) enum Of {
 
 /// A list as the file has it.
 pub(super) struct ListField {
-    /// What messages call its rows.
+    /// Name of the rows in messages.
     pub(super) what: &'static str,
-    /// Where it stands below `/VTKHDF`.
+    /// Path below `/VTKHDF`.
     pub(super) place: &'static str,
     pub(super) per: Per,
     pub(super) of: Of,

@@ -22,7 +22,7 @@ use crate::sweep::SweepRecord;
 const NAMED: usize = 6;
 /// Time that is left of a run from which on it is told (s).
 const LONG: f64 = 10.0;
-/// How the reason is shown for which sweeps ended well.
+/// Text for sweeps that converged.
 const CONVERGED: Style = AnsiColor::Green.on_default();
 
 /// The head of the table of sweeps.

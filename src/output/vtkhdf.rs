@@ -128,7 +128,7 @@ impl ResultFile {
         written.map_err(|error| failure(&self.destination, &error))
     }
 
-    /// Where other ranks find what they fill themselves; `None` where a dataset has no place in the file yet, as in
+    /// Offsets of the datasets that other ranks fill themselves; `None` where one has no place in the file yet, as in
     /// one that an older run left.
     pub fn places(&self) -> Option<Places> {
         let path = self.destination.temporary().to_path_buf();

@@ -34,7 +34,7 @@ const PULSE: Duration = Duration::from_secs(1);
 pub struct Checked {
     /// Warnings of their rigid motions.
     pub warnings: Vec<String>,
-    /// What solving them would cost every rank.
+    /// Estimated cost of solving them, for every rank.
     pub costs: Vec<CostEstimate>,
     /// Memory that there is (bytes).
     pub available: f64,
@@ -48,9 +48,9 @@ pub struct RunLog<'a> {
     settings: &'a Settings,
     voice: Option<LogFormat>,
     began: Instant,
-    /// What shows how far a phase has come.
+    /// Progress bar of a phase.
     bar: Bar,
-    /// When programs last heard of that.
+    /// Time of the last progress event.
     heard: Cell<Instant>,
     /// The first load step of this run, and when it began.
     first_step: Cell<Option<(usize, Instant)>>,
@@ -193,7 +193,7 @@ impl<'a> RunLog<'a> {
         });
     }
 
-    /// Which load step comes, where there are any.
+    /// Log line of a load step that begins, where there are any.
     pub fn step(&self, catalog: &Catalog, k: usize) {
         let Some(step) = catalog.steps.get(k) else {
             return;

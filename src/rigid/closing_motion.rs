@@ -157,7 +157,7 @@ fn prescribed(dim: usize, body: &BodyState, start: &[f64]) -> Vec<f64> {
         .map_or_else(|_| vec![0.0; modes], |z| z.iter().copied().collect())
 }
 
-/// How far motions close a gap.
+/// Amount by which motions close a gap.
 fn jump(row: &RigidRow, motions: &[Vec<f64>]) -> f64 {
     let of_body = |(body, action): &(usize, Vec<f64>)| -> f64 {
         let terms = action.iter().zip(&motions[*body]);

@@ -21,7 +21,7 @@ const STEEP: f64 = 1e3;
 /// Work along a motion that proves that nothing balances a load, relative to that along the one before, if it is worth
 /// another one: the motion is told, and the steepest one tells most.
 const WORTH_TURNING: f64 = 1.0 + 1e-10;
-/// How often cones get more forces.
+/// Most refinements of the cones' polygons.
 const REFINEMENTS: usize = 40;
 /// Half of the directions in a tangential plane that stand for all.
 const DIRECTIONS: usize = 4;
@@ -35,7 +35,7 @@ struct Generator {
     largest: f64,
 }
 
-/// What forces leave of a load.
+/// Part of a load that forces don't balance.
 #[derive(Debug)]
 pub(super) struct Unbalanced {
     /// It, 0 where they balance it.
@@ -119,7 +119,7 @@ impl Forces {
         }
     }
 
-    /// Their work on motions of which `b` holds what each condition makes, a column each.
+    /// Work of the forces on motions whose jumps at the conditions are the columns of `b`, a column each.
     fn actions(&self, b: &DMatrix<f64>) -> DMatrix<f64> {
         let mut actions = DMatrix::zeros(b.ncols(), self.generators.len());
         for (generator, mut action) in self.generators.iter().zip(actions.column_iter_mut()) {
@@ -242,7 +242,7 @@ impl Forces {
         Some((&held * (found.left + found.outside), held * found.drive))
     }
 
-    /// What drives the bodies of a `load` that these forces don't balance.
+    /// Part of a `load` that drives the bodies, as these forces don't balance it.
     ///
     /// With friction they slip that way and don't fly as high as the friction angle: the tangential forces that
     /// come nearest are taken from the load, and normal ones balance what they can of the rest.

@@ -115,7 +115,7 @@ pub fn residual_in_span(
 pub struct InSpan {
     /// r.
     pub left: DVector<f64>,
-    /// What A's columns don't span of b.
+    /// Part of b that A's columns don't span.
     pub outside: DVector<f64>,
     /// The direction that r is in the turned problem, V Σ⁻¹ times it: along it b does more work than such λ take up, as
     /// Farkas says of r in [`nearest`].

@@ -92,7 +92,7 @@ impl MotionProducts {
         gram
     }
 
-    /// How much of each motion the field has.
+    /// Coefficients of the motions in the field.
     pub fn coefficients(&self) -> Vec<f64> {
         let mut coefficients = vec![0.0; self.field.len()];
         for together in self.sharing_bodies() {

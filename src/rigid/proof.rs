@@ -19,7 +19,7 @@ const ROUND_OFF: f64 = 1e-14;
 /// How far from its limit, relative to what the motion may make there, a point is taken to be at it: the motion that
 /// is to be proof is known to some digits only.
 const AT_LIMIT: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
-/// How often directions of slip follow a motion that is brought to their limits; they converge quadratically.
+/// Most updates of the directions of slip for a motion that is brought to their limits; they converge quadratically.
 const TURNS: usize = 5;
 /// Force, relative to the largest one, that is none.
 const NO_FORCE: f64 = 1e-9;

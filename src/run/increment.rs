@@ -30,14 +30,14 @@ use crate::step::halving::StepHalving;
 use crate::step::state::{StepState, analyse, go_on};
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
-/// What all increments share: what was made of matrices.
+/// Data that all increments share: everything made of matrices.
 #[derive(Clone, Copy)]
 pub struct Increments<'a> {
-    /// What the run works on.
+    /// Context of the run.
     pub context: Context<'a>,
-    /// What a user sets.
+    /// Settings.
     pub settings: &'a Settings,
-    /// Where it is told how the run goes.
+    /// Log of the run.
     pub log: &'a RunLog<'a>,
     /// The factors of this rank.
     pub factors: &'a CondensedBlocks,
@@ -57,13 +57,13 @@ pub struct Increment {
     pairs: BTreeMap<usize, ContactPair>,
     /// The statuses of the contact groups of this rank, where the tree solves for them.
     statuses: BTreeMap<usize, Statuses>,
-    /// What the sweeps found; on the root.
+    /// Outcome of the sweeps; on the root.
     pub outcome: Option<SweepOutcome>,
-    /// What follows from it.
+    /// Solution on the blocks of this rank.
     pub solution: Solution,
-    /// What friction leaves.
+    /// Slips of the tangential conditions.
     pub slips: Slips,
-    /// What the balance of energy of the next increment needs.
+    /// Data for the balance of energy of the next increment.
     energies: BTreeMap<usize, BlockEnergy>,
     /// The balance of this one, and of those before it in the load step; on the root.
     pub energy: EnergyBalance,

@@ -112,7 +112,7 @@ impl RunFiles {
     }
 }
 
-/// How much room everything takes in the result file. Collective.
+/// Sizes of all parts of the result file. Collective.
 fn layout(context: &Context<'_>, settings: &Settings) -> Layout {
     let &Context {
         comm,

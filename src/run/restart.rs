@@ -27,7 +27,7 @@ use crate::settings::Settings;
 use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;
 
-/// What a run keeps beside the results of its finished load steps.
+/// State that a run keeps beside the results of its finished load steps.
 #[derive(Serialize, Deserialize)]
 struct KeptState {
     /// The identity of the run.
@@ -42,9 +42,9 @@ struct KeptState {
     statuses: Vec<Option<Statuses>>,
     /// The tangential jumps of every contact group (m).
     slips: Vec<Vec<f64>>,
-    /// What the balance of energy needs of every block, where there is friction.
+    /// Data of every block for the balance of energy, where there is friction.
     energies: Vec<BlockEnergy>,
-    /// What passed to the stage of the next load step.
+    /// Transfer to the stage of the next load step.
     transfer: StageTransfer,
 }
 
@@ -89,7 +89,7 @@ pub struct Finished {
     pub count: usize,
     /// The totals of the finished load steps; on the root.
     pub steps: Vec<StepTotals>,
-    /// What passed to the stage of the next one.
+    /// Transfer to the stage of the next one.
     pub transfer: StageTransfer,
     /// The state that the next one starts from; on the root.
     kept: Option<KeptState>,

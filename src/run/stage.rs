@@ -56,7 +56,7 @@ pub struct Handover {
     pub state: StepState,
     /// The plan before.
     pub plan: Plan,
-    /// Which solver didn't converge, and why, as the root knows it.
+    /// The solver that didn't converge, and the reason, as the root knows it.
     pub why: String,
 }
 

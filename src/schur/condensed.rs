@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Condensed {
     /// Number of normal jumps.
     pub jumps: usize,
-    /// Its unknowns on Γ, ascending.
+    /// Unknowns on Γ, ascending.
     pub interface_dofs: Vec<InterfaceDof>,
     /// S (Pa); only the lower triangle counts.
     #[serde(with = "crate::bytes::lower")]

@@ -15,7 +15,7 @@ pub(super) struct Fronts<'a> {
     supernodes: &'a Supernodes,
     count: usize,
     children: Children,
-    /// What the eliminated supernodes leave to the rows below, until their parents take it.
+    /// Updates of the rows below the eliminated supernodes, until their parents take them.
     updates: Vec<Vec<f64>>,
     /// Memory of updates that were taken.
     free: Vec<Vec<f64>>,
@@ -131,7 +131,7 @@ impl<'a> Fronts<'a> {
     }
 }
 
-/// Where the rows below a child are in its parent's front.
+/// Positions of a child's rows in its parent's front.
 #[derive(Debug, Default)]
 struct Targets {
     rows: Vec<u32>,
@@ -143,7 +143,7 @@ impl Targets {
         self.rows.extend(below.iter().map(|&i| place[i as usize]));
     }
 
-    /// How many rows of the child are before row `row` of the front.
+    /// Number of rows of the child before row `row` of the front.
     fn before(&self, row: usize) -> usize {
         self.rows.partition_point(|&to| (to as usize) < row)
     }

@@ -76,7 +76,7 @@ impl CondensedLoad {
         Self { y, interior }
     }
 
-    /// What stays behind on I.
+    /// Load that is left on I.
     pub fn interior(&self) -> &[f64] {
         &self.y[..self.interior]
     }

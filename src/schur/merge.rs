@@ -30,7 +30,7 @@ pub struct Merge {
     columns: Mat<f64>,
     /// Where the boundary of every child is found among [E | K].
     places: Vec<Vec<u32>>,
-    /// What normal jumps replace here.
+    /// Traces that normal jumps replace here.
     substitution: Substitution,
 }
 

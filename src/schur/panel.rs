@@ -36,7 +36,7 @@ impl<'a> Panel<'a> {
         &self.column(j)[self.columns - j..]
     }
 
-    /// How many of its columns are among the first `count`; a supernode may reach from I into B.
+    /// Number of columns among the first `count`; a supernode may reach from I into B.
     pub fn columns_before(&self, count: usize) -> usize {
         count.saturating_sub(self.start).min(self.columns)
     }

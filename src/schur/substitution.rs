@@ -27,9 +27,9 @@ pub struct Replaced {
 /// T of a front.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Substitution {
-    /// Where the front has what each normal jump replaces.
+    /// Positions in the front of the traces that normal jumps replace.
     places: Vec<usize>,
-    /// Where it has what stays, and β, for each.
+    /// Positions of the traces that stay, and β, for each.
     staying: Vec<Vec<(usize, f64)>>,
     /// Normal jumps and γ, for each.
     jumps: Vec<Vec<(usize, f64)>>,

@@ -26,11 +26,11 @@ const UNSEEN: u32 = u32::MAX;
 pub(super) struct Supernodes {
     /// First column of each supernode, and the end of the last.
     pub begin: Vec<u32>,
-    /// Where each one's rows below its own columns begin in `rows`, and the end of the last.
+    /// Offset in `rows` of each one's rows below its own columns, and the end of the last.
     pub row_offsets: Vec<usize>,
     /// Rows below, ascending.
     pub rows: Vec<u32>,
-    /// Where each one's values begin, and the end of the last.
+    /// Offset of each one's values, and the end of the last.
     pub value_offsets: Vec<usize>,
     /// The supernode that holds the first row below; [`NO_PARENT`] where that row isn't eliminated, or
     /// there is none.

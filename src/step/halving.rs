@@ -3,7 +3,7 @@
 /// Smallest part of a load step that is tried.
 const SMALLEST: f64 = 1.0 / 8.0;
 
-/// How far a load step has come.
+/// Progress of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepHalving {
     done: f64,
@@ -23,7 +23,7 @@ impl Default for StepHalving {
 }
 
 impl StepHalving {
-    /// How much of the load acts at the end of the next increment.
+    /// Share of the load at the end of the next increment.
     pub fn next(&self) -> f64 {
         f64::min(1.0, self.done + self.part)
     }

@@ -20,7 +20,7 @@ use crate::rigid::infeasible_nodes;
 use crate::settings::Settings;
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 
-/// Where a load step leaves the scene: what the next one starts from.
+/// State at the end of a load step, from which the next one starts.
 #[derive(Clone, Debug, Default)]
 pub struct StepState {
     /// U, and the statuses of every cluster in contact; on the root.
@@ -32,7 +32,7 @@ pub struct StepState {
     /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
     /// were unloaded (m).
     pub slips: BTreeMap<usize, Vec<f64>>,
-    /// Where there is friction, what the balance of energy needs of the blocks of this rank.
+    /// Data of the blocks of this rank for the balance of energy, where there is friction.
     pub energies: BTreeMap<usize, BlockEnergy>,
     /// The scales of the load steps that converged so far; on the root.
     pub scales: Scales,
@@ -112,7 +112,7 @@ impl StepState {
         }
     }
 
-    /// Where the sweeps of the next step begin; on the root.
+    /// Start of the sweeps of the next step; on the root.
     pub fn start(&self) -> Start {
         match &self.interface {
             Some((u, statuses)) => Start::Before(u.clone(), statuses.clone()),

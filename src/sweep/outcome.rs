@@ -48,7 +48,7 @@ pub enum SweepStatus {
     NotConverged(String),
 }
 
-/// What an iterative interface solver took.
+/// Iterations of an iterative interface solver.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct IterativeSolves {
     /// Iterations of the start and of every sweep.
@@ -57,7 +57,7 @@ pub struct IterativeSolves {
     pub coarse_dofs: usize,
 }
 
-/// What the sweeps found.
+/// Outcome of the sweeps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SweepOutcome {
     /// U.
@@ -66,7 +66,7 @@ pub struct SweepOutcome {
     pub status: SweepStatus,
     /// History.
     pub records: Vec<SweepRecord>,
-    /// What a user should know.
+    /// Warnings.
     pub notes: Vec<String>,
     /// Linear systems solved in contact problems, those of single pairs and the coupled one.
     pub active_set_iterations: usize,
@@ -80,7 +80,7 @@ pub struct SweepOutcome {
     pub totals: ConTotals,
     /// The statuses of every pair then.
     pub statuses: Vec<Vec<Status>>,
-    /// What an iterative interface solver took, where there was one.
+    /// Iterations of the iterative interface solver, where there was one.
     pub iterative: Option<IterativeSolves>,
     /// Increments that the load step was solved in.
     pub increments: usize,
@@ -96,7 +96,7 @@ pub struct SweepOutcome {
 }
 
 impl SweepOutcome {
-    /// What is known at U before the first sweep.
+    /// Outcome at U before the first sweep.
     pub fn before(u: Vec<f64>) -> Self {
         Self {
             u,

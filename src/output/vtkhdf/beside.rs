@@ -28,7 +28,7 @@ const COHERENT: [u32; 5] = [
 pub struct Places {
     /// The file, while it isn't complete.
     pub(super) path: PathBuf,
-    /// Its number on its file system.
+    /// Inode number.
     pub(super) inode: u64,
     /// The first byte of every dataset of the grid.
     pub(super) datasets: Vec<u64>,
@@ -45,7 +45,7 @@ pub struct FileBeside {
     /// Of what was written of each dataset in this load step.
     digests: Vec<u64>,
     file: File,
-    /// Its final name.
+    /// Final name.
     path: PathBuf,
 }
 
@@ -97,7 +97,7 @@ impl FileBeside {
     /// the datasets.
     ///
     /// # Errors
-    /// What the system said.
+    /// Error of the system.
     pub fn finish_step(&mut self, hosts: usize) -> Result<Vec<u64>, OutputError> {
         self.step += 1;
         if hosts > 1 {

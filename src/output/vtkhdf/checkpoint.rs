@@ -30,7 +30,7 @@ pub(super) fn digest(first: usize, row_bytes: usize, rows: &[u8]) -> u64 {
 /// A dataset as it lies in the file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Column {
-    /// Its path.
+    /// Path.
     name: String,
     first_byte: u64,
     row_bytes: usize,
@@ -53,7 +53,7 @@ impl Column {
         })
     }
 
-    /// Its bytes in the file, for so many load steps.
+    /// Size in the file, for so many load steps (bytes).
     fn bytes(&self, steps: usize) -> (u64, u64) {
         let steps = if self.changes { steps } else { 1 };
         let length = self.rows * self.row_bytes * steps;
@@ -86,7 +86,7 @@ pub struct Checkpoint {
     /// Length of the file (bytes).
     length: u64,
     columns: Vec<Column>,
-    /// What is in the file beside the columns, and where it begins.
+    /// Parts of the file beside the columns, and their offsets.
     rest: Vec<(u64, Part)>,
     /// The digest of every column in each finished load step.
     digests: Vec<Vec<u64>>,

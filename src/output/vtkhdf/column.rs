@@ -11,7 +11,7 @@ use super::checkpoint::{Column, digest};
 pub(crate) trait Row: Pod {
     /// The type of its numbers.
     type Number: H5Type + Pod;
-    /// How many they are; `None` for a number that is alone.
+    /// Number of components; `None` for a scalar.
     const WIDTH: Option<usize> = None;
 }
 
@@ -50,7 +50,7 @@ pub(crate) trait List {
     /// Fills a dataset from row `start` on.
     fn fill(&self, dataset: &Dataset, start: usize) -> Result<()>;
 
-    /// Its rows as the file has them.
+    /// Rows as the file has them.
     fn bytes(&self) -> &[u8];
 
     /// Bytes of a row.

@@ -16,7 +16,7 @@ use super::{Layout, column};
 /// columns of numbers are past the 64 KiB up to which HDF5 reads from a file where it writes.
 const SLAB_POINTS: usize = 1 << 14;
 
-/// Where subdomains stand in the datasets of the grid.
+/// Offsets of the subdomains in the datasets of the grid.
 #[derive(Debug)]
 pub(super) struct GridPlacement {
     left_out: Vec<Of>,

@@ -48,7 +48,7 @@ impl Kept {
         self.checkpoint.finished()
     }
 
-    /// What the last run with the result `path` kept; `None` where there is none.
+    /// State that the last run with the result `path` kept; `None` where there is none.
     ///
     /// # Errors
     /// It is of another version of the program, or not what was written.

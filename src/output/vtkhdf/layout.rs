@@ -6,14 +6,14 @@ use contact_dd_partition::scene::units::Units;
 
 use super::super::result::{Of, PartitionSize};
 
-/// How much room everything takes.
+/// Sizes of all parts of a result file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// One entry a subdomain.
     pub partitions: Vec<PartitionSize>,
     /// One entry a contact.
     pub contacts: Vec<ContactSummary>,
-    /// What every load step stands at on the axis of time; none where the problem has none.
+    /// Time of every load step; none where the problem has no steps.
     pub times: Vec<f64>,
     /// Whether there are stresses.
     pub stress: bool,

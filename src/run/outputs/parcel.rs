@@ -17,7 +17,7 @@ use crate::recover::stresses::Stress;
 /// A slab of the result file, or a part of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Parcel {
-    /// Its subdomains.
+    /// Subdomains.
     pub subdomains: Range<usize>,
     /// The rank that owns them all.
     pub owner: usize,
