@@ -16,7 +16,7 @@ use crate::element::geometry::{advance, cross, dot, length};
 pub struct ContactPoint<N> {
     /// Index of its contact among those of the scene.
     pub contact: u32,
-    /// Its place within that contact, along the side that has its node.
+    /// Place within that contact, along the side that has its node.
     pub place: u32,
     /// Nodes and their weights. Those of side a sum to 1, those of side b to −1; an obstacle has none.
     pub entries: Vec<(N, f64)>,
@@ -166,7 +166,7 @@ impl<N: Copy> ContactPoint<N> {
         std::iter::once(self.normal()).chain(self.tangents(dim).iter().copied())
     }
 
-    /// Its row of B: every node with weight·n.
+    /// Row of B: every node with weight·n.
     pub fn row(&self) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
         self.row_along(self.frame.normal)
     }

@@ -25,7 +25,7 @@ pub struct Destination {
     owned: Option<File>,
 }
 
-/// How often a temporary file is made that another program takes for a left one before it is locked.
+/// Most tries to make a temporary file that another program takes for a left one before it is locked.
 const TRIES: usize = 10;
 
 impl Destination {

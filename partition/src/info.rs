@@ -20,7 +20,7 @@ pub struct Info {
     problem: Problem,
     /// Name of the file.
     name: String,
-    /// Its size (bytes).
+    /// Size (bytes).
     bytes: u64,
 }
 
@@ -51,7 +51,7 @@ impl Info {
         (sum, moment)
     }
 
-    /// How many nodes each condition of the scene supports, by name.
+    /// Number of nodes that each condition of the scene supports, by name.
     pub fn supported_nodes(&self) -> Vec<(&str, usize)> {
         let names = &self.problem.catalog.supports;
         let mut nodes = vec![BTreeSet::new(); names.len()];

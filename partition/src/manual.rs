@@ -92,7 +92,7 @@ impl Answer {
 }
 
 impl Manual {
-    /// What ends the short help.
+    /// End of the short help.
     pub fn in_short(&self) -> String {
         let examples = self.examples.iter().map(|(command, _)| *command);
         format!(
@@ -101,7 +101,7 @@ impl Manual {
         )
     }
 
-    /// What ends the long help.
+    /// End of the long help.
     pub fn at_length(&self) -> String {
         let examples = self
             .examples

@@ -28,7 +28,7 @@ pub struct Mesh {
     pub cells: Elements,
     /// The mesh file's tag of each cell.
     pub cell_tags: Vec<i64>,
-    /// Which cells have incompatible modes; empty where none has.
+    /// Cells with incompatible modes; empty where none has.
     pub has_modes: Vec<bool>,
     /// Facets that the mesh file lists (dimension `dim − 1`), by node index.
     pub facets: Elements,

@@ -7,10 +7,10 @@ use anstyle::{AnsiColor, Style};
 
 use crate::error::OutputError;
 
-/// How the word "error:" is shown.
+/// Style of the word "error:".
 pub const ERROR: Style = AnsiColor::Red.on_default().bold();
 
-/// How the word "warning:" is shown.
+/// Style of the word "warning:".
 pub const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 
 /// Prints on stdout. Where nobody reads any more, as behind `| head`, there is nobody to tell.

@@ -32,7 +32,7 @@ pub const FORMAT: &str = "contact-dd-mpi problem";
 /// The square of a unit normal's part that supports leave free above which a node can move along it.
 const LEAST_FREE: f64 = 0.01;
 
-/// How far a unit vector's length may be from 1, and two orthogonal ones' product from 0.
+/// Largest difference of a unit vector's length from 1, and of two orthogonal ones' product from 0.
 const UNIT_TOLERANCE: f64 = 1e-10;
 
 /// A node on Γ.
@@ -40,14 +40,14 @@ const UNIT_TOLERANCE: f64 = 1e-10;
 pub struct InterfaceNode {
     /// Node of the subdomain.
     pub node: u32,
-    /// Its number on Γ, equal in all subdomains that share it.
+    /// Number on Γ, equal in all subdomains that share it.
     pub interface: u32,
 }
 
 /// One subdomain Ω^n: a piece of one body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subdomain {
-    /// Its number.
+    /// Number.
     pub index: usize,
     /// Index of its body among [`Catalog::bodies`].
     pub body: usize,
@@ -65,7 +65,7 @@ pub struct Subdomain {
     pub forces: Vec<(u32, [f64; 3])>,
     /// Stress without strain.
     pub initial_stress: InitialStress,
-    /// Its nodes on Γ, in ascending order of their number on Γ.
+    /// Nodes on Γ, in ascending order of their number on Γ.
     pub interface: Vec<InterfaceNode>,
     /// Values of its supports and forces in every load step; none where the problem has none.
     pub steps: Vec<StepLoads>,
@@ -92,7 +92,7 @@ pub struct InitialStress {
 }
 
 impl Subdomain {
-    /// Its supports with the values that they have in a load step.
+    /// Supports with the values that they have in a load step.
     pub fn supports_in(&self, step: usize) -> impl Iterator<Item = Support> + '_ {
         let loads = self.steps.get(step);
         let supports = self.supports.iter().enumerate();
@@ -102,14 +102,14 @@ impl Subdomain {
         })
     }
 
-    /// Its loaded nodes and the forces on them in a load step.
+    /// Loaded nodes and the forces on them in a load step.
     pub fn forces_in(&self, step: usize) -> impl Iterator<Item = (u32, [f64; 3])> + '_ {
         let loads = self.steps.get(step);
         let forces = self.forces.iter().enumerate();
         forces.map(move |(i, &(node, force))| (node, loads.map_or(force, |loads| loads.forces[i])))
     }
 
-    /// Its stress without strain in a load step.
+    /// Stress without strain in a load step.
     pub fn initial_stress_in(&self, step: usize) -> &InitialStress {
         let loads = self.steps.get(step);
         loads.map_or(&self.initial_stress, |loads| &loads.initial_stress)
@@ -152,7 +152,7 @@ pub struct SubdomainNode {
 /// A node of a contact point in the catalog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointNode {
-    /// Its number on Γ, if several subdomains have it.
+    /// Number on Γ, if several subdomains have it.
     pub interface: Option<u32>,
     /// Whether supports leave it free along the normal of the point, or nearly so, and where the point has friction
     /// along its tangents, too: one free direction is not enough for two.
@@ -187,7 +187,7 @@ impl PointNode {
 pub struct SubdomainSummary {
     /// Index of its body.
     pub body: usize,
-    /// Its group in contact; `None` for a linear subdomain.
+    /// Group in contact; `None` for a linear subdomain.
     pub group: Option<usize>,
     /// Number of nodes.
     pub nodes: usize,
@@ -211,7 +211,7 @@ pub struct ContactSummary {
 pub struct LoadStep {
     /// Name.
     pub name: String,
-    /// Its time on the load path.
+    /// Time on the load path.
     pub time: f64,
     /// The bodies and contacts that are absent.
     pub absent: Absent,
@@ -280,7 +280,7 @@ pub struct Catalog {
     pub groups: Vec<usize>,
     /// The contact points, group by group.
     pub points: Vec<ContactPoint<SubdomainNode>>,
-    /// Where solutions are looked at for penetration.
+    /// Places at which solutions are checked for penetration.
     pub probes: Vec<Probe<SubdomainNode>>,
     /// The nodes of every contact point.
     pub point_nodes: Vec<Vec<PointNode>>,

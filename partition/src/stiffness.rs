@@ -6,7 +6,7 @@ use nalgebra::{Cholesky, DMatrix};
 
 use crate::magnitude::SMALLEST_STIFFNESS;
 
-/// How far a stiffness may be from its transpose, relative to its largest entry.
+/// Largest difference of a stiffness from its transpose, relative to its largest entry.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
 /// C of σ = C ε (Pa), a row for each component of a stress.
@@ -35,17 +35,17 @@ impl Stiffness {
         &self.values
     }
 
-    /// Its rows as they are needed where the number of components is known.
+    /// Rows as they are needed where the number of components is known.
     pub fn rows<const V: usize>(&self) -> [[f64; V]; V] {
         std::array::from_fn(|i| std::array::from_fn(|j| self[i][j]))
     }
 
-    /// Its largest entry on the diagonal.
+    /// Largest entry on the diagonal.
     pub fn largest(&self) -> f64 {
         (0..self.size).map(|i| self[i][i]).fold(0.0, f64::max)
     }
 
-    /// Its smallest eigenvalue: what resists the strain that costs least.
+    /// Smallest eigenvalue: what resists the strain that costs least.
     pub fn smallest(&self) -> f64 {
         let c = DMatrix::from_row_slice(self.size, self.size, &self.values);
         c.symmetric_eigenvalues().min()

@@ -21,7 +21,7 @@ const BUSY: f64 = 0.25;
 pub struct Times {
     /// By the clock on the wall (s).
     pub elapsed: f64,
-    /// Its work, without messages and waiting (s).
+    /// Work, without messages and waiting (s).
     pub work: f64,
     /// On a core of its own, messages by the network that is assumed (s).
     pub modelled: f64,

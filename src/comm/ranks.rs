@@ -79,14 +79,14 @@ impl RankSeconds {
 /// The report of a rank.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct RankReport {
-    /// Its time in each phase.
+    /// Time in each phase.
     #[serde(flatten)]
     pub seconds: PhaseSeconds,
     /// Processor time of each phase, without messages and waiting for them; with several threads, of the first.
     pub work: PhaseSeconds,
     /// Time of each phase on a core of its own: its work, and messages by a network of 12.5 GB/s and 2 µs.
     pub modelled: PhaseSeconds,
-    /// Its peak resident memory (bytes).
+    /// Peak resident memory (bytes).
     pub peak_memory_bytes: u64,
     /// What it sent to other ranks, broadcasts counted once (bytes).
     pub bytes_sent: u64,

@@ -11,7 +11,7 @@ use contact_dd_partition::problem::{Subdomain, SubdomainNode};
 pub struct Block {
     /// The subdomain.
     pub subdomain: Subdomain,
-    /// Its nodes on Γ, those that it shares with others and those of contact points: node and number on
+    /// Nodes on Γ, those that it shares with others and those of contact points: node and number on
     /// Γ, in ascending order of the second.
     pub interface: Vec<(u32, u32)>,
     /// The nodes whose displacement along this normal alone is on Γ where they have no supports.

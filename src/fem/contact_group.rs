@@ -135,7 +135,7 @@ impl ContactGroup {
             && supports.all(|(_, values)| values.iter().all(|&value| value == 0.0))
     }
 
-    /// Its conditions: the normal one of every point, then the tangential ones of the points that have friction.
+    /// Conditions: the normal one of every point, then the tangential ones of the points that have friction.
     pub fn conditions(&self) -> impl Iterator<Item = Condition> + '_ {
         let normal = |(point, of_point): (usize, &ContactPoint<u32>)| Condition {
             point,

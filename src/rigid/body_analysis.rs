@@ -22,7 +22,7 @@ use crate::interface::rigid_modes::RigidModes;
 pub struct RigidBodyAnalysis {
     /// The frame of every body.
     pub frames: Vec<BodyFrame>,
-    /// Its free motions, their pins, and warnings.
+    /// Free motions, their pins, and warnings.
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
     pub closing_motions: Vec<Vec<f64>>,

@@ -23,7 +23,7 @@ pub struct ConditionState {
     pub closed: bool,
     /// The gap that it has left (m).
     pub gap: f64,
-    /// Its force (N/m).
+    /// Force (N/m).
     pub force: f64,
 }
 

@@ -53,7 +53,7 @@ pub struct Scene {
     pub dim: usize,
     /// Bodies.
     pub bodies: Vec<BodyState>,
-    /// Their names.
+    /// Names.
     pub names: Vec<String>,
     /// Conditions, group by group.
     pub rows: Vec<RigidRow>,

@@ -24,7 +24,7 @@ pub(super) struct Cells {
 /// A set of aggregates, each of which hangs together across facets.
 pub(super) struct Aggregates<'a> {
     all: &'a Cells,
-    /// Its vertices are the aggregates.
+    /// Vertices are the aggregates.
     pub graph: Graph,
     /// The cells of every aggregate.
     pub cells: Lists<u32>,
@@ -32,7 +32,7 @@ pub(super) struct Aggregates<'a> {
 
 /// The aggregates near a cut, and on which side of it their cells are.
 struct Near {
-    /// Where every aggregate is; those between the sides have cells on both.
+    /// Side of every aggregate; those between the sides have cells on both.
     places: Vec<Region>,
     /// The number of the first cell of every aggregate between the sides.
     first: Vec<u32>,

@@ -28,14 +28,14 @@ pub(super) struct Aim {
     pub price: f64,
     /// Whether METIS is asked, too.
     pub with_metis: bool,
-    /// How hard it is sought.
+    /// Effort of the search.
     pub effort: Effort,
 }
 
-/// How hard a cut is sought.
+/// Effort of the search for a cut.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// How many of the directions in which a set may be cut are tried.
+    /// Number of directions in which cuts of a set are tried.
     pub directions: usize,
     /// Vertices by which a direction is judged, at most.
     pub sample: usize,
@@ -236,7 +236,7 @@ fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
     directions
 }
 
-/// What lies between two lines, or planes, across a direction.
+/// Vertices between two lines, or planes, across a direction.
 struct Slab {
     direction: [f32; 3],
     /// Where it starts, where both sides have their share, and where it ends.

@@ -2,7 +2,7 @@
 
 use super::graph::Graph;
 
-/// Where a vertex has to be.
+/// Side that a vertex has to be on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Region {
     Left,

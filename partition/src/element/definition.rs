@@ -20,7 +20,7 @@ pub enum Domain {
 }
 
 impl Domain {
-    /// Its dimension.
+    /// Dimension.
     pub fn dim(self) -> usize {
         match self {
             Self::Point => 0,
@@ -58,7 +58,7 @@ impl Domain {
             .collect()
     }
 
-    /// Its measure.
+    /// Measure.
     pub fn measure(self) -> f64 {
         match self {
             Self::Point => 1.0,
@@ -86,7 +86,7 @@ impl Domain {
 /// The definition of a kind, from which all else of it follows.
 #[derive(Debug)]
 pub struct Definition {
-    /// Its name in words.
+    /// Name in words.
     pub name: &'static str,
     /// The domain that it fills.
     pub domain: Domain,

@@ -58,7 +58,7 @@ pub fn lagrange(a: f64, x: f64) -> f64 {
     }
 }
 
-/// Its derivative.
+/// Derivative.
 pub fn lagrange_slope(a: f64, x: f64) -> f64 {
     match a == 0.0 {
         true => -2.0 * x,

@@ -16,7 +16,7 @@ pub struct ReferenceElement {
     tables: OnceLock<Tables>,
 }
 
-/// What follows from a definition, made when first asked for.
+/// Data that follow from a definition, made when first asked for.
 #[derive(Debug)]
 struct Tables {
     along: Vec<usize>,
@@ -37,7 +37,7 @@ impl ReferenceElement {
         }
     }
 
-    /// Its name in words.
+    /// Name in words.
     pub fn name(&self) -> &'static str {
         self.definition.name
     }
@@ -47,7 +47,7 @@ impl ReferenceElement {
         self.definition.domain
     }
 
-    /// Its dimension.
+    /// Dimension.
     pub fn dim(&self) -> usize {
         self.definition.domain.dim()
     }
@@ -135,7 +135,7 @@ impl ReferenceElement {
         &self.tables().stress
     }
 
-    /// Where the Jacobian is sampled.
+    /// Points at which the Jacobian is sampled.
     pub(super) fn lattice(&self) -> &Lattice {
         &self.tables().lattice
     }

@@ -13,7 +13,7 @@ use crate::mesh::topology::Topology;
 pub(super) struct Cube {
     /// Group of its cells.
     body: String,
-    /// Where a point of the unit cube lies (m).
+    /// Position of a point of the unit cube (m).
     map: Map,
     /// Cells along each axis before they are refined.
     cells: [usize; 3],
@@ -26,7 +26,7 @@ pub(super) struct Cube {
     sides: [[Option<String>; 2]; 3],
 }
 
-/// Where a point of the unit cube lies (m).
+/// Position of a point of the unit cube (m).
 type Map = Box<dyn Fn([f64; 3]) -> [f64; 3]>;
 
 /// A place in a cube, in halves of cells.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::element::{ElementKind, Elements};
 
-/// How the unit square is divided before it is refined.
+/// Division of the unit square before it is refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
     /// Columns and rows of rectangles, each cut along its shorter diagonal where it isn't to

@@ -15,9 +15,9 @@ pub(super) const SAME: f64 = 1e-9;
 pub(super) struct Square {
     /// Group of its cells.
     body: String,
-    /// Where a point of the unit square lies (m); keeps orientation.
+    /// Position of a point of the unit square (m); keeps orientation.
     map: Map,
-    /// How the unit square is divided.
+    /// Division of the unit square.
     pattern: Pattern,
     /// Whether edges of quadratic cells follow the map; else they are straight, with the node in
     /// their middle, as a map that only grades the mesh wants them.
@@ -27,7 +27,7 @@ pub(super) struct Square {
     sides: [Option<String>; 4],
 }
 
-/// Where a point of the unit square lies (m).
+/// Position of a point of the unit square (m).
 type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
 
 impl Square {

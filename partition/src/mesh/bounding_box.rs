@@ -36,7 +36,7 @@ impl BoundingBox {
         }
     }
 
-    /// Its largest side (m); 0 without points.
+    /// Largest side (m); 0 without points.
     pub fn extent(&self) -> f64 {
         let sides = (0..3).map(|axis| self.high[axis] - self.low[axis]);
         sides.fold(0.0, f64::max)

@@ -25,7 +25,7 @@ pub struct CellFacet {
 }
 
 impl CellFacet {
-    /// Its nodes, from its start to its end and then those between.
+    /// Nodes, from its start to its end and then those between.
     pub fn nodes(self, cells: &Elements) -> Vec<u32> {
         let cell = self.cell as usize;
         let (_, local) = cells.kind(cell).facets()[self.facet as usize];
@@ -66,7 +66,7 @@ impl Entry {
 pub struct Tear {
     /// Two cells at the facet.
     pub cells: [u32; 2],
-    /// Its corners.
+    /// Corners.
     pub corners: Vec<u32>,
     /// Whether one of the cells has a node in its middle and the other has none; else each has one of its own, as the
     /// two sides of a crack do.

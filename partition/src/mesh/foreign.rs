@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::error::InputError;
 
-/// What makes a mesh in Gmsh's format of a file.
+/// Command that converts a file into Gmsh's format.
 #[derive(Clone, Copy)]
 enum Converter {
     /// Gmsh meshes the geometry.
@@ -148,7 +148,7 @@ fn by_name(path: &Path) -> Option<&'static Format> {
     (FORMATS.iter()).find(|(_, endings, _)| endings.contains(&&*ending))
 }
 
-/// What a file holds that isn't a scene, by its name and first bytes.
+/// Kind of a file that isn't a scene, by its name and first bytes.
 pub fn instead_of_scene(path: &Path, head: &[u8]) -> Option<&'static str> {
     if head.trim_ascii_start().starts_with(b"$MeshFormat") {
         return Some("a mesh in Gmsh's format");

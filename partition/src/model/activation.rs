@@ -58,7 +58,7 @@ pub(super) fn unload(
         .retain(|&(node, _), _| !is_absent[node as usize]);
 }
 
-/// Which nodes belong to bodies that are `absent`.
+/// Nodes of bodies that are `absent`.
 fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
     let mut is_absent = vec![false; bodies.mesh.points.len()];
     for ((_, nodes), body) in bodies.mesh.cells.iter().zip(&bodies.cell_body) {

@@ -19,7 +19,7 @@ const LOCKING: f64 = 0.49;
 /// Distance from the axis, relative to the bodies' extent, that is round-off.
 const AXIS: f64 = 1e-10;
 
-/// What becomes of incompatible modes around an axis.
+/// Warning of incompatible modes around an axis.
 const WITHOUT_MODES: &str = "elements with incompatible modes are solved without them where plane = \"axisymmetric\", too \
                              stiff in bending; quadratic ones, such as CAX8, aren't";
 

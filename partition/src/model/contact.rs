@@ -44,14 +44,14 @@ const STEEP: f64 = 10.0;
 #[derive(Default)]
 struct Paired {
     points: Vec<ContactPoint<u32>>,
-    /// Where the side without points is looked at for penetration.
+    /// Places at which the side without points is checked for penetration.
     probes: Vec<Probe<u32>>,
-    /// How far straight facets stand off the curve that they stand for (m).
+    /// Distance of straight facets from the curve that they stand for (m).
     off: f64,
     warnings: Vec<String>,
 }
 
-/// What contacts are made from.
+/// Data that contacts are made from.
 pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,

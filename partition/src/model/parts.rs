@@ -38,8 +38,8 @@ pub struct Support {
 pub struct Contact {
     /// Name in the scene.
     pub name: String,
-    /// Its points, along the side whose nodes have them, over the nodes of the mesh.
+    /// Points, along the side whose nodes have them, over the nodes of the mesh.
     pub points: Vec<ContactPoint<u32>>,
-    /// Where the side whose nodes have no conditions is looked at for penetration; none where nodes match.
+    /// Places at which the side whose nodes have no conditions is checked for penetration; none where nodes match.
     pub probes: Vec<Probe<u32>>,
 }

@@ -33,7 +33,7 @@ pub(super) struct Sides<'a> {
     pub nodes_a: Vec<SideNode>,
     /// Side b: what stands above for side a.
     pub nodes_b: Vec<SideNode>,
-    /// How far backwards the sides may reach into each other (m).
+    /// Largest overlap of the sides (m).
     pub behind: f64,
 }
 

@@ -12,7 +12,7 @@ use crate::scene::Scene;
 pub struct ModelStep {
     /// Name.
     pub name: String,
-    /// Its time on the load path.
+    /// Time on the load path.
     pub time: f64,
     /// Prescribed displacement of every support (m).
     pub supports: Vec<f64>,

@@ -49,7 +49,7 @@ pub(super) struct Turn {
     pub angle: f64,
     /// The larger size of the two (m).
     size: f64,
-    /// How far the straighter one is from its chords (m).
+    /// Distance of the straighter one from its chords (m).
     sag: f64,
 }
 
@@ -121,7 +121,7 @@ impl Surface {
         Ok(Self { facets })
     }
 
-    /// Its nodes with their normals and tributary areas.
+    /// Nodes with their normals and tributary areas.
     pub fn nodes(&self) -> HashMap<u32, SurfaceNode> {
         let mut nodes: HashMap<u32, SurfaceNode> = HashMap::new();
         for facet in &self.facets {
@@ -140,7 +140,7 @@ impl Surface {
         nodes
     }
 
-    /// Where two facets meet: the nodes, in space one end of every edge.
+    /// Nodes at which two facets meet, in space one end of every edge.
     pub fn turns(&self) -> Vec<Turn> {
         let turn = |(node, facets): (u32, &[usize])| {
             let [a, b] = *facets else {
@@ -176,7 +176,7 @@ impl Surface {
             .collect()
     }
 
-    /// How far straight facets stand off a curve that they stand for, at most (m).
+    /// Largest distance of straight facets from the curve that they stand for (m).
     pub fn stands_off(&self) -> f64 {
         let turns = self.turns();
         Self::largest_height(turns.iter().filter(|turn| turn.is_straight()))
@@ -209,7 +209,7 @@ impl Surface {
         smooth.map(Turn::height).fold(0.0, f64::max)
     }
 
-    /// Its nodes in the middle of facets; the others are corners.
+    /// Nodes in the middle of facets; the others are corners.
     pub fn mid_nodes(&self) -> HashSet<u32> {
         let of_facet = |facet: &'_ SurfaceFacet| facet.nodes[facet.kind.corners()..].to_vec();
         self.facets.iter().flat_map(of_facet).collect()
@@ -226,7 +226,7 @@ impl Surface {
         around
     }
 
-    /// Its nodes one after the other: lines are followed from end to end with the body to the
+    /// Nodes one after the other: lines are followed from end to end with the body to the
     /// left, closed ones from their point of least coordinates; pieces in the order of where they
     /// start. The nodes of faces are sorted by coordinates. Numbers of nodes play no part.
     pub fn in_order(&self) -> Vec<u32> {

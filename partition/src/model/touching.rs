@@ -37,7 +37,7 @@ pub(super) struct Declared {
     pub contact: Contact,
     /// The name in the scene of what asks for it.
     pub table: String,
-    /// Its facets and bodies, in words.
+    /// Facets and bodies, in words.
     pub words: Option<String>,
 }
 

@@ -8,10 +8,10 @@ use crate::error::InputError;
 use crate::model::PlaneState;
 use crate::problem::SubdomainNode;
 
-/// How far the sum of weights may be from what it should be, relative to the largest of them.
+/// Largest error of the sum of weights, relative to the largest of them.
 const WEIGHT: f64 = 1e-8;
 
-/// How far positions may be from the node that they belong to, relative to the extent of its subdomains.
+/// Largest distance of positions from the node that they belong to, relative to the extent of its subdomains.
 const PLACE: f64 = 1e-8;
 
 /// Largest area relative to the extent of its subdomains: no curved side around a node is longer.
@@ -24,7 +24,7 @@ type Point = ContactPoint<SubdomainNode>;
 pub struct NodePlace {
     /// The mesh file's tag.
     pub tag: i64,
-    /// Its body.
+    /// Body.
     pub body: usize,
     /// Coordinates (m).
     pub at: [f64; 3],

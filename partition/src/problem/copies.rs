@@ -10,7 +10,7 @@ use super::Subdomain;
 /// A node on Γ as one of its subdomains has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SharedNode {
-    /// Its number on Γ.
+    /// Number on Γ.
     pub interface: u32,
     /// The mesh file's tag.
     pub tag: i64,
@@ -54,7 +54,7 @@ impl OwnNodes {
 }
 
 impl Subdomain {
-    /// Its nodes, as far as others are concerned.
+    /// Nodes, as far as others are concerned.
     pub fn own_nodes(&self) -> OwnNodes {
         let mut is_shared = vec![false; self.points.len()];
         let shared = self.interface.iter().map(|on| {
@@ -174,7 +174,7 @@ fn repeated(mut list: Vec<i64>) -> Option<i64> {
     twice.map(|two| two[0])
 }
 
-/// What two copies of a node differ in.
+/// Difference between two copies of a node.
 fn difference(a: &SharedNode, b: &SharedNode) -> Option<&'static str> {
     if a.point != b.point {
         Some("coordinates (/VTKHDF/Points)")

@@ -19,7 +19,7 @@ const MARK: &[u8; 16] = b"contact-dd XXH3\n";
 /// Size of the trailer (bytes): the digest, the length of what it is of, both with low bytes first, and the mark.
 const TRAILER: usize = 16 + 8 + MARK.len();
 
-/// How much is read at once (bytes).
+/// Size of a read (bytes).
 const PIECE: usize = 1 << 18;
 
 /// Whether a file has a digest.

@@ -34,7 +34,7 @@ pub struct ProblemFile {
     catalog: Catalog,
 }
 
-/// How an HDF5 file begins.
+/// Signature of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// The error about a file that somebody wrote by hand, or a mesh, with the command that makes a problem file of it.

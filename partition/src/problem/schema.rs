@@ -10,7 +10,7 @@ use self::Kind::{
 };
 pub use self::counts::Counts;
 
-/// What a dataset holds, and the law that each of its values keeps.
+/// Content of a dataset, and the law that each of its values keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Integers.
@@ -63,9 +63,9 @@ impl Kind {
 /// A dataset.
 #[derive(Debug)]
 pub struct Field {
-    /// Its path in the file.
+    /// Path in the file.
     pub path: &'static str,
-    /// Its extents, by letter: "R, d". With a question mark one is there if it isn't 0.
+    /// Extents, by letter: "R, d". With a question mark one is there if it isn't 0.
     pub shape: &'static str,
     /// The kind of its values.
     pub kind: Kind,
@@ -80,9 +80,9 @@ pub struct Field {
 pub struct Attribute {
     /// The group that has it.
     pub group: &'static str,
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// Its value.
+    /// Value.
     pub value: &'static str,
 }
 

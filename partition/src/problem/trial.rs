@@ -23,7 +23,7 @@ use crate::error::InputError;
 /// Names the file to a process that tries it.
 const FILE: &str = "CONTACT_DD_TRIAL";
 
-/// How many subdomains are read at once.
+/// Number of subdomains that are read at once.
 const AT_ONCE: usize = 64;
 
 /// The computing time within which each step of reading a small file ends (seconds).
@@ -107,7 +107,7 @@ fn start(path: &OsStr) -> io::Result<Child> {
         .spawn()
 }
 
-/// How a process ended; `None` if it was ended because the program `is_asked_to_stop`.
+/// Exit status of a process; `None` if it was ended because the program `is_asked_to_stop`.
 fn wait(mut child: Child, is_asked_to_stop: fn() -> bool) -> io::Result<Option<ExitStatus>> {
     loop {
         if let Some(status) = child.try_wait()? {

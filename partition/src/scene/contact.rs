@@ -48,11 +48,11 @@ impl Declaration {
 /// Γ_c: two sides that may touch, or one side and a rigid obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// Its name, that of a group in the result file.
+    /// Name, that of a group in the result file.
     pub name: String,
     /// Side a.
     pub side_a: Names,
-    /// What side a may touch.
+    /// Partner of side a.
     pub partner: Partner,
     /// How conditions are made of two sides; `None` to let their nodes decide.
     pub pairing: Option<Pairing>,
@@ -60,12 +60,12 @@ pub struct Contact {
     pub gap: Option<Number>,
     /// Whether negative gaps are intended.
     pub interference: bool,
-    /// Its law of friction; `None` without.
+    /// Law of friction; `None` without.
     pub friction: Option<Friction>,
 }
 
 impl Contact {
-    /// Its sides, one of them where its partner is an obstacle.
+    /// Sides, one of them where its partner is an obstacle.
     pub fn sides(&self) -> impl Iterator<Item = &Names> {
         let side_b = match &self.partner {
             Partner::Side(names) => Some(names),

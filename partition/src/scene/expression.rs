@@ -91,7 +91,7 @@ impl Expression {
         Ok(parser.expression)
     }
 
-    /// Its value at a point; not finite where it isn't defined.
+    /// Value at a point; not finite where it isn't defined.
     pub fn value(&self, at: [f64; 3]) -> f64 {
         // A nesting level holds at most an operand of each of the four precedences.
         let mut stack = [0.0; 4 * DEEPEST];

@@ -27,7 +27,7 @@ impl InitialStress {
         }
     }
 
-    /// Its value at a point, in the order of results: XX YY ZZ XY YZ XZ (Pa).
+    /// Value at a point, in the order of results: XX YY ZZ XY YZ XZ (Pa).
     ///
     /// # Errors
     /// An expression that isn't finite there.
@@ -50,7 +50,7 @@ impl InitialStress {
     }
 }
 
-/// What heat makes of a body.
+/// Thermal strain of a body.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,

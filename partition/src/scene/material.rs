@@ -10,7 +10,7 @@ use super::number::Constant;
 use crate::magnitude::SMALLEST_STIFFNESS;
 use crate::stiffness::Stiffness;
 
-/// How a material answers to strain.
+/// Law of a material.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "MaterialKeys")]
 pub enum Elasticity {
@@ -31,7 +31,7 @@ pub enum Elasticity {
     },
 }
 
-/// Which plane state a two-dimensional scene is in.
+/// Plane state of a two-dimensional scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PlaneState {
@@ -47,7 +47,7 @@ impl PlaneState {
     /// All plane states.
     pub const ALL: [Self; 3] = [Self::Strain, Self::Stress, Self::Axisymmetric];
 
-    /// Its name in scenes and problem files.
+    /// Name in scenes and problem files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Strain => "strain",

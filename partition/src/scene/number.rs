@@ -16,7 +16,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Its value at a point (m).
+    /// Value at a point (m).
     ///
     /// # Errors
     /// An expression that isn't finite there.
@@ -166,7 +166,7 @@ impl Vector {
         }
     }
 
-    /// Its value at a point (m), with zero for a third component that it hasn't.
+    /// Value at a point (m), with zero for a third component that it hasn't.
     ///
     /// # Errors
     /// An expression that isn't finite there.
@@ -187,7 +187,7 @@ impl Vector {
 /// What to do about 'plane' where a value is one of space.
 pub(super) const OR_IN_SPACE: &str = "; where the mesh is one of space, 'plane' is left out";
 
-/// What was expected of a vector.
+/// Expectation of a vector, in words.
 pub(super) fn expected_components(dim: usize) -> String {
     match dim {
         2 => format!("a plane scene has vectors of two components{OR_IN_SPACE}"),
@@ -201,7 +201,7 @@ pub(super) fn expected_components(dim: usize) -> String {
 pub struct ConstantVector {
     /// Number of its components.
     pub dim: usize,
-    /// Its value, with zero for a third component that it hasn't.
+    /// Value, with zero for a third component that it hasn't.
     pub value: [f64; 3],
 }
 

@@ -18,9 +18,9 @@ use super::place;
     expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure and displacement"
 )]
 pub struct LoadStep {
-    /// Its name; its number without.
+    /// Name; its number without.
     pub name: Option<String>,
-    /// Its time on the load path; its number without.
+    /// Time on the load path; its number without.
     #[serde(deserialize_with = "time")]
     pub time: Option<f64>,
     /// The factors of its loads.

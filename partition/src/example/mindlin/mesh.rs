@@ -30,7 +30,7 @@ fn slow_start(s: f64) -> f64 {
     (4.0 * s).sinh() / 4.0_f64.sinh()
 }
 
-/// Where the columns of a part lie.
+/// Positions of the columns of a part.
 fn across(part: usize, s: f64) -> f64 {
     let between = |s: f64| FINE + (SIZE - FOOT - FINE) * slow_start(s);
     match part {

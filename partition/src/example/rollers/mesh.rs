@@ -32,7 +32,7 @@ const INWARD: usize = 12;
 const BETWEEN: usize = 18;
 const ACROSS: usize = 14;
 
-/// Where each roller is, and its axis (m).
+/// Position of each roller, and of its axis (m).
 const ROLLERS: [(&str, f64); 3] = [("left", -APART), ("middle", 0.0), ("right", APART)];
 
 /// From 0 to 1, slowly at first.

@@ -71,7 +71,7 @@ fn squares() -> Vec<Square> {
     ]
 }
 
-/// Its mirror image at the diagonal, exact to the last bit.
+/// Mirror image at the diagonal, exact to the last bit.
 fn mirrored(map: fn([f64; 2]) -> [f64; 2]) -> impl Fn([f64; 2]) -> [f64; 2] {
     move |[s, t]| {
         let [x, y] = map([s, 1.0 - t]);

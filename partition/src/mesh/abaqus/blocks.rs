@@ -11,7 +11,7 @@ use crate::{magnitude, name, source};
 /// Files that may include each other, one in the other: those of a deck that includes itself have no end.
 const DEEPEST: usize = 5;
 
-/// How often files may be included.
+/// Most inclusions of files.
 const INCLUSIONS: usize = 10_000;
 
 /// Size of what is included again and again, all together (bytes): what stands in files once has the size that
@@ -21,7 +21,7 @@ const REPEATED: usize = 64 << 20;
 /// The largest number of a node or an element: several of them added up are still numbers.
 const LARGEST_TAG: i64 = 1 << 50;
 
-/// What may stand before the text of a file.
+/// Byte order mark that may stand before the text of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Keywords whose data a parameter `INPUT` takes from another file.

@@ -157,7 +157,7 @@ impl Boundary {
 /// Groups by name and dimension.
 type Named = BTreeMap<(String, usize), Vec<u32>>;
 
-/// What groups are made of.
+/// Data that groups are made of.
 struct Grouping<'a> {
     deck: &'a Deck,
     mesh: &'a Mesh,

@@ -9,7 +9,7 @@ use super::sets::{Members, Set};
 use crate::error::InputError;
 use crate::name;
 
-/// What the items of a set's data are.
+/// Kinds of items in a set's data.
 #[derive(Clone, Copy)]
 enum Of {
     Nodes,
@@ -152,7 +152,7 @@ impl Deck {
         })
     }
 
-    /// What an item of data means: `7`, `set`, `instance.7`, `instance.set`.
+    /// Meaning of an item of data: `7`, `set`, `instance.7`, `instance.set`.
     fn meaning<'a>(&'a self, of: Of, instance: Option<&'a str>, item: &'a str) -> Meaning<'a> {
         let sets = match of {
             Of::Nodes => &self.node_sets,

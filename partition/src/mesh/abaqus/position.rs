@@ -45,7 +45,7 @@ impl Position {
         Ok(Self { shift, turn })
     }
 
-    /// Where a point of the part lies.
+    /// Position of a point of the part.
     pub(super) fn of(&self, point: Point) -> Point {
         let shifted = [0, 1, 2].map(|k| point[k] + self.shift[k]);
         self.turn

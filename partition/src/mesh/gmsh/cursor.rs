@@ -3,7 +3,7 @@
 use crate::error::InputError;
 use crate::{magnitude, name};
 
-/// How the numbers of a file are written.
+/// Encoding of the numbers of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     /// As words between blanks.
@@ -22,7 +22,7 @@ pub(super) enum Encoding {
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the number or line that was read last starts.
+    /// Offset of the number or line that was read last.
     last: usize,
     section: &'a str,
     encoding: Encoding,

@@ -197,7 +197,7 @@ fn keep_nodes(
     Ok(index)
 }
 
-/// What to do about a mesh in space without cells of volume.
+/// Advice for a mesh in space without cells of volume.
 fn without_volumes(content: &Content) -> String {
     let volume = content.names.keys().find(|(dim, _)| *dim == 3);
     let name = volume.and_then(|key| content.names.get(key));

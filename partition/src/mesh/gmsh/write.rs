@@ -48,7 +48,7 @@ struct Entity {
     elements: Vec<(i64, Vec<u32>)>,
 }
 
-/// What goes where in the file.
+/// Layout of the file.
 struct Plan<'a> {
     /// Dimension, number and name of the physical groups.
     names: Vec<(usize, usize, &'a str)>,

@@ -32,7 +32,7 @@ impl Bases {
         bases
     }
 
-    /// Which of them are those of a facet.
+    /// Functions of a facet among them.
     pub fn kind(facet: &SurfaceFacet) -> Kind {
         (facet.kind, facet.corner_on_axis())
     }

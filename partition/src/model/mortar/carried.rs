@@ -75,7 +75,7 @@ fn in_order<'a>(sides: &Sides<'a>) -> Vec<&'a SurfaceFacet> {
     facets
 }
 
-/// What of side b covers a facet of side a, and whether some of it faces the same way.
+/// Facets of side b that cover a facet of side a, and whether some of them face the same way.
 fn cover_of(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     match field.facet().kind.dim() {
         1 => segments::cover(opposite, field),

@@ -66,7 +66,7 @@ impl Chart {
         chart
     }
 
-    /// Its outward normal in the middle.
+    /// Outward normal in the middle.
     pub fn normal(&self) -> [f64; 3] {
         self.frame.normal
     }

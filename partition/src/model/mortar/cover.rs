@@ -26,7 +26,7 @@ pub(super) struct Sample {
     pub shape: Vec<f64>,
     /// Facet of side b opposite.
     pub opposite: usize,
-    /// Its shape functions at the projection.
+    /// Shape functions at the projection.
     pub opposite_shape: Vec<f64>,
     /// The gap along the averaged normal (m).
     pub gap: f64,
@@ -53,7 +53,7 @@ pub(super) enum Pieces {
 
 /// The part of a facet of side a that side b covers.
 pub(super) struct Cover {
-    /// Its measure (m, in space m²).
+    /// Measure (m, in space m²).
     pub measure: f64,
     /// ∫ N_i (m, in space m²).
     pub integrals: Vec<f64>,
@@ -65,7 +65,7 @@ pub(super) struct Cover {
     pub extent: Extent,
     /// The least gap, ends and corners of pieces included (m).
     pub least_gap: f64,
-    /// Its pieces.
+    /// Pieces.
     pub pieces: Pieces,
 }
 
@@ -133,7 +133,7 @@ pub(super) struct Opposite<'a> {
     /// Rules on triangles by their degree.
     pub rules: Vec<Quadrature>,
     pub target: Target<'a>,
-    /// How far backwards it may lie (m).
+    /// Largest distance backwards (m).
     pub behind: f64,
 }
 

@@ -15,8 +15,8 @@ pub(super) struct Covered<'a> {
 
 /// A covered part of a facet as a facet of its own.
 pub(super) struct Part {
-    /// Its shape functions as rows of coefficients of those of the facet.
+    /// Shape functions as rows of coefficients of those of the facet.
     pub functions: DMatrix<f64>,
-    /// Their integrals over what is covered.
+    /// Integrals over what is covered.
     pub cover: Cover,
 }

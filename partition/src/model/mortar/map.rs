@@ -33,7 +33,7 @@ fn powers([s, t]: Xi) -> [f64; MOST] {
     ]
 }
 
-/// Their derivatives by s and by t.
+/// Derivatives by s and by t.
 fn slopes([s, t]: Xi) -> [[f64; MOST]; 2] {
     let (double_s, double_t, double_st) = (2.0 * s, 2.0 * t, 2.0 * s * t);
     [
@@ -86,7 +86,7 @@ impl Map {
         self.combine(&powers(xi))
     }
 
-    /// Its slopes ∂/∂ξ.
+    /// Slopes ∂/∂ξ.
     pub fn slopes(&self, xi: Xi) -> [[f64; 3]; 2] {
         slopes(xi).map(|powers| self.combine(&powers))
     }

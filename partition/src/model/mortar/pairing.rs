@@ -25,7 +25,7 @@ const FINER: f64 = 0.6;
 pub(in crate::model) struct Mortar {
     /// A point for every node that carries a multiplier.
     pub points: Vec<ContactPoint<u32>>,
-    /// Where the other side is looked at for penetration.
+    /// Places at which the other side is checked for penetration.
     pub probes: Vec<Probe<u32>>,
     /// A warning.
     pub warning: Option<String>,

@@ -36,7 +36,7 @@ struct Piece {
     distance: f64,
 }
 
-/// What covers a facet of side a, and whether some of it faces the same way.
+/// Facets that cover a facet of side a, and whether some of them face the same way.
 pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let chart = Chart::new(field);
     let mut shadows = Shadows::new(&chart);

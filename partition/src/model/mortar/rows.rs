@@ -22,7 +22,7 @@ const NEARER: f64 = 0.8;
 /// Mean square of the distances of nodes, relative to the part of side a, below which they lie in one place.
 const TOGETHER: f64 = 1e-8;
 
-/// What a multiplier's weight ψ covers.
+/// Area that a multiplier's weight ψ covers.
 pub(super) struct Row {
     /// ∫ ψ (m, in space m²).
     area: f64,

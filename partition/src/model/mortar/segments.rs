@@ -12,7 +12,7 @@ use crate::element::geometry::difference;
 /// has degree 2; projections between facets that aren't parallel are rational.
 const DEGREE: usize = 9;
 
-/// What covers a facet of side a, and whether some of it faces the same way.
+/// Facets that cover a facet of side a, and whether some of them face the same way.
 ///
 /// The facet is cut wherever an end of a facet of side b is projected onto it; what the middle
 /// of a piece meets first is opposite all of it.
@@ -140,7 +140,7 @@ impl Samples {
     }
 }
 
-/// Where the line at ξ meets a facet that is opposite: η, and the gap (m).
+/// Point η at which the line at ξ meets an opposite facet, and the gap (m).
 fn project(field: &NormalField, facet: &SurfaceFacet, xi: f64) -> (f64, f64) {
     let (x, normal) = (field.position([xi, 0.0, 0.0]), field.normal([xi, 0.0, 0.0]));
     let side = |eta: f64| beside(facet, x, normal, eta);

@@ -141,7 +141,7 @@ impl Covered<'_> {
         lift(basis, &cover.integrals)
     }
 
-    /// Their dual basis.
+    /// Dual basis.
     fn dual(&self, basis: &DMatrix<f64>, floor: f64) -> Option<DMatrix<f64>> {
         match &self.part {
             None => dual_basis(&self.cover, basis, floor),

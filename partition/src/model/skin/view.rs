@@ -18,7 +18,7 @@ const MATERIAL: f64 = 0.5;
 
 /// A facet that is seen.
 pub(super) struct Seen {
-    /// Its index.
+    /// Index.
     pub facet: usize,
     /// Distance along the normal in the middle of what is seen of it (m).
     pub gap: f64,
@@ -108,7 +108,7 @@ impl<'a> View<'a> {
             || gap < -MATERIAL * self.thickness(self.facet).min(self.thickness(other))
     }
 
-    /// How far the cell of a facet reaches behind it (m).
+    /// Depth of the cell behind a facet (m).
     fn thickness(&self, facet: &SkinFacet) -> f64 {
         let nodes = self.mesh.cells.nodes_of(facet.place.cell as usize).iter();
         let depth = |&node: &u32| {

@@ -71,7 +71,7 @@ impl SurfaceFacet {
         (is_ring && !self.kind.is_linear()).then(corner).flatten()
     }
 
-    /// Its functions with positive integrals.
+    /// Functions with positive integrals.
     pub fn blending(&self) -> Blending {
         Blending::new(self.kind, self.corner_on_axis())
     }
@@ -82,7 +82,7 @@ impl SurfaceFacet {
         (self.at.iter()).fold([0.0; 3], |sum, &at| advance(sum, part, at))
     }
 
-    /// Its diameter, by the order of magnitude (m).
+    /// Diameter, by the order of magnitude (m).
     pub fn size(&self) -> f64 {
         match self.kind.dim() {
             0 => 0.0,
@@ -102,7 +102,7 @@ impl SurfaceFacet {
         area.map(|c| c / size)
     }
 
-    /// Its nodes from its start to its end.
+    /// Nodes from its start to its end.
     pub(super) fn along(&self) -> impl Iterator<Item = u32> {
         self.kind.along().iter().map(|&i| self.nodes[i])
     }
@@ -126,7 +126,7 @@ impl SurfaceFacet {
         area[0]
     }
 
-    /// How far nodes on its edges are from the middle of their chords, at most (m).
+    /// Largest distance of nodes on its edges from the middle of their chords (m).
     pub(super) fn sag(&self) -> f64 {
         let edges: Vec<&[usize]> = match self.kind.dim() {
             1 => vec![&[0, 1, 2][..self.nodes.len().min(3)]],

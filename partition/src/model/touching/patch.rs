@@ -18,7 +18,7 @@ const SAME: f64 = 1e-6;
 pub(super) struct Patch {
     /// The body of each.
     pub bodies: [u32; 2],
-    /// Their facets, ascending.
+    /// Facets, ascending.
     pub sides: [Vec<usize>; 2],
     /// Length or area of what they have in common.
     pub measure: f64,
@@ -83,7 +83,7 @@ pub(super) fn patches(skin: &Skin, neighbours: &[Vec<usize>], pairs: &[Facing]) 
     patches
 }
 
-/// What belongs to the two sides of a contact so far.
+/// Facets of the two sides of a contact so far.
 #[derive(Default)]
 struct Sides {
     facets: [BTreeSet<usize>; 2],

@@ -13,7 +13,7 @@ use crate::mesh::facets::Facets;
 use crate::model::{PlaneState, Support};
 use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
-/// What indices of nodes are, in messages.
+/// Name of indices of nodes in messages.
 const NODE: &str = "node of its subdomain";
 
 /// What the file says of consecutive subdomains, each value by itself as the schema says.

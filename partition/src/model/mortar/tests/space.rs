@@ -12,7 +12,7 @@ use crate::model::sides::Sides;
 use crate::model::surface::{Surface, SurfaceFacet};
 
 pub type Point = [f64; 3];
-/// Where a side lies, along x and y.
+/// Extent of a side along x and y.
 pub type Range = [[f64; 2]; 2];
 
 /// Sides of a mesh in space, without cells.
