@@ -36,16 +36,21 @@ fn main() -> ExitCode {
 }
 
 /// Keeps memory that is freed for what needs some next: a page that the system gives anew is cleared first and takes
-/// longer than what most matrices are made for.
+/// longer than what most matrices are made for. Large ones go back to the system: their arithmetic takes much longer, and
+/// between them what is kept would be in pieces that none of them fits in.
 fn keep_freed_memory() {
     #[cfg(target_env = "gnu")]
     // SAFETY: sets parameters of the C library's allocator while nothing else runs.
     unsafe {
-        libc::mallopt(libc::M_MMAP_MAX, 0);
+        libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE);
         libc::mallopt(libc::M_TRIM_THRESHOLD, -1);
         libc::mallopt(libc::M_TOP_PAD, TOP_PAD);
     }
 }
+
+/// Bytes from which on memory goes back to the system: the most that the C library allows, a matrix of 2048 rows.
+#[cfg(target_env = "gnu")]
+const LARGE: i32 = 32 << 20;
 
 /// Bytes that the allocator asks the system for beyond what it needs.
 #[cfg(target_env = "gnu")]

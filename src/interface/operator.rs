@@ -2,7 +2,7 @@
 //!
 //! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   S_CON' = Σ_ϑ R̄_klᵀ S_ΓΓ R̄_kl
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 
 use faer::{Mat, MatRef, Par};
 use serde::{Deserialize, Serialize};
@@ -45,8 +45,10 @@ pub struct Interface {
     pub linear: usize,
     /// The traces of every pair.
     pub pair_interface_dofs: Vec<Vec<u32>>,
-    /// The law of every pair; empty where they have too many normal jumps to be solved for at once.
+    /// The law of every pair, whose H is apart; empty where they have too many normal jumps to be solved for at once.
     pub laws: Vec<CondensedContact>,
+    /// H of every law until they are condensed: of many conditions no copy is left.
+    h_of_laws: RefCell<Vec<Mat<f64>>>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
     /// S_0 + S_CON' of the bilateral problem.
@@ -87,7 +89,7 @@ impl Interface {
         let mut s_0 = SparseSymmetric::zeros(LowerPattern::new(n, &linear).ok_or_else(too_large)?);
         let mut sum = SparseSymmetric::zeros(LowerPattern::new(n, &all).ok_or_else(too_large)?);
         let mut pair_interface_dofs = Vec::new();
-        let mut laws = Vec::new();
+        let mut laws: Vec<CondensedContact> = Vec::new();
         let mut smallest_pivot = f64::INFINITY;
         let parts = contributions.into_iter().zip(&numbering.interface_dofs);
         for ((part, interface_dofs), &in_contact) in parts.zip(in_contact) {
@@ -107,7 +109,11 @@ impl Interface {
                      ({error}): some part of the scene is held neither by supports nor by contact"
             ))
         })?;
+        let of_laws = laws
+            .iter_mut()
+            .map(|law| std::mem::replace(&mut law.h, Mat::new()));
         Ok(Self {
+            h_of_laws: RefCell::new(of_laws.collect()),
             len: n,
             linear: numbering.linear,
             pair_interface_dofs,
@@ -187,14 +193,10 @@ impl Interface {
 /// H − Cᵀ A⁻¹ C for the laws of all pairs.
 fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
     let laws = &interface.laws;
-    let m = laws.iter().map(CondensedContact::len).sum();
-    let mut h = Mat::zeros(m, m);
-    let mut w = Mat::zeros(interface.len - interface.linear, m);
+    let mut h = side_by_side(interface.h_of_laws.take());
+    let mut w = Mat::zeros(interface.len - interface.linear, h.nrows());
     let mut first = 0;
     for (law, interface_dofs) in laws.iter().zip(&interface.pair_interface_dofs) {
-        h.as_mut()
-            .submatrix_mut(first, first, law.len(), law.len())
-            .copy_from(&law.h);
         for (column, &trace) in law.s_t_gamma.col_iter().zip(interface_dofs) {
             for (i, s) in column.iter().enumerate() {
                 w[(trace as usize - interface.linear, first + i)] = *s;
@@ -203,13 +205,30 @@ fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
         first += law.len();
     }
     interface.solver.condense(w, h.as_mut());
-    for j in 0..m {
-        for i in j + 1..m {
+    for j in 0..h.nrows() {
+        for i in j + 1..h.nrows() {
             h[(j, i)] = h[(i, j)];
         }
     }
     motions.remove_energy(&mut h);
     h
+}
+
+/// The matrix that has these on its diagonal.
+fn side_by_side(mut parts: Vec<Mat<f64>>) -> Mat<f64> {
+    if let [_] = parts[..] {
+        return parts.swap_remove(0);
+    }
+    let m = parts.iter().map(Mat::nrows).sum();
+    let mut whole = Mat::zeros(m, m);
+    let mut first = 0;
+    for part in parts {
+        let n = part.nrows();
+        let mut target = whole.as_mut().submatrix_mut(first, first, n, n);
+        target.copy_from(&part);
+        first += n;
+    }
+    whole
 }
 
 /// The diagonal of what all laws are condensed from, side by side.

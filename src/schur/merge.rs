@@ -41,6 +41,9 @@ pub struct Spare(Vec<Mat<f64>>);
 
 /// Most matrices that are kept, about as many as wait at a time in a deep hierarchy.
 const MOST_SPARE: usize = 8;
+/// Most entries of all that are kept, 256 MB: beside the arithmetic of larger matrices page faults are nothing, and several
+/// of them are most of the memory of a run.
+const MOST_SPARE_ENTRIES: usize = 1 << 25;
 
 impl Spare {
     /// The smallest matrix that is large enough as zeros, or a new one.
@@ -58,9 +61,13 @@ impl Spare {
     /// Keeps what isn't needed any more.
     pub fn keep(&mut self, matrix: Mat<f64>) {
         self.0.push(matrix);
+        self.0.sort_by_key(Mat::nrows);
         if self.0.len() > MOST_SPARE {
-            let smallest = (0..self.0.len()).min_by_key(|&i| self.0[i].nrows());
-            smallest.map(|place| self.0.swap_remove(place));
+            self.0.remove(0);
+        }
+        let entries = |all: &[Mat<f64>]| all.iter().map(|one| one.nrows().pow(2)).sum::<usize>();
+        while entries(&self.0) > MOST_SPARE_ENTRIES {
+            self.0.pop();
         }
     }
 }
