@@ -1,6 +1,7 @@
 //! What is to be condensed and merged, and by whom: blocks, their hierarchy, clusters.
 
 mod assign;
+pub mod choice;
 pub mod cluster;
 pub mod cost;
 
@@ -11,7 +12,7 @@ pub mod memory;
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
-use contact_dd_partition::hierarchy::choice;
+use contact_dd_partition::hierarchy::choice::{coarse_dofs, iteration_flops};
 use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::problem::Catalog;
 
@@ -73,24 +74,6 @@ impl Plan {
         plan
     }
 
-    /// The merging that takes least for this scene, where newton may choose.
-    pub fn cheapest(catalog: &Catalog) -> Merging {
-        match Tree::new(catalog).freezing_pays(catalog) {
-            true => Merging::Frozen,
-            false => Merging::All,
-        }
-    }
-
-    /// What takes over where newton doesn't converge with a `merging`: the direct solver from the iterative one, the dense
-    /// problem of all conditions from frozen active sets.
-    pub fn more_robust(catalog: &Catalog, merging: Merging) -> Option<Merging> {
-        match merging {
-            Merging::Clusters => Some(Self::cheapest(catalog)),
-            Merging::Frozen => Some(Merging::All),
-            _ => None,
-        }
-    }
-
     /// Estimated time of what is done at node v of the hierarchy (flops).
     pub fn time(&self, v: usize, dim: usize) -> f64 {
         self.tree.time(v, dim, self.merging.is_frozen())
@@ -110,7 +93,7 @@ impl Plan {
         }
         if self.merging == Merging::Clusters {
             for &v in &self.merge_roots {
-                costs[v] += choice::iteration_flops(self.tree.nodes[v].dofs[1] as f64);
+                costs[v] += iteration_flops(self.tree.nodes[v].dofs[1] as f64);
             }
         }
         assign(&self.tree, &top, &costs, ranks)
@@ -199,7 +182,7 @@ impl Plan {
 
     /// Estimated number of coarse unknowns between clusters, where an iterative interface solver works.
     pub fn coarse_dofs(&self, dim: usize) -> Option<usize> {
-        (self.merging == Merging::Clusters).then(|| choice::coarse_dofs(&self.tree, dim))
+        (self.merging == Merging::Clusters).then(|| coarse_dofs(&self.tree, dim))
     }
 
     /// The owner of every group.

@@ -3,7 +3,6 @@
 pub mod log;
 pub mod totals;
 
-use contact_dd_partition::hierarchy::choice::InterfaceTimes;
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::Catalog;
 
@@ -100,7 +99,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         interface_residual: (totals.steps.iter())
             .fold(0.0, |worst: f64, step| worst.max(step.outcome.residual)),
         interface_solver: totals.interface_solver(),
-        interface_choice: interface_choice(totals, settings),
+        interface_choice: totals.took_over().unwrap_or(totals.why).into(),
         contact_operator: contact_operator(plan),
         interface_iterations: (totals.steps.iter())
             .flat_map(|step| step.interface_iterations().iter().copied())
@@ -183,29 +182,6 @@ fn contact_operator(plan: &Plan) -> ContactOperator {
         Merging::All | Merging::Linear | Merging::Groups => ContactOperator::Dense,
         Merging::Clusters if !plan.has_one_cluster() => ContactOperator::Bddc,
         Merging::Frozen | Merging::Clusters => ContactOperator::Tree,
-    }
-}
-
-/// Why the interface problem was solved as it was.
-fn interface_choice(totals: &Totals<'_>, settings: &Settings) -> String {
-    if let Some(why) = totals.took_over() {
-        return why.into();
-    }
-    if settings.interface == Some(totals.interface_solver()) {
-        return "asked for".into();
-    }
-    let is_direct = totals.interface_solver() == InterfaceMethod::Direct;
-    match InterfaceTimes::new(totals.catalog) {
-        Some(times) if is_direct && times.is_iterative() => {
-            "some contact conditions depend on others, which takes the direct solver".into()
-        }
-        Some(times) if settings.method == Method::Newton && settings.interface.is_none() => {
-            format!(
-                "estimated time in flops: direct {:.1e}, iterative {:.1e}",
-                times.direct, times.iterative
-            )
-        }
-        _ => "nothing to choose between".into(),
     }
 }
 

@@ -32,7 +32,7 @@ use crate::error::Failure;
 use crate::fem::contact_state::ContactRow;
 use crate::output::lock::OutputLock;
 use crate::plan::Plan;
-use crate::plan::cluster::Merging;
+use crate::plan::choice::Choice;
 use crate::read::check_problem;
 use crate::report::collect;
 use crate::report::log::RunLog;
@@ -58,8 +58,8 @@ pub enum Ending {
 struct Progress {
     /// The time that each phase took.
     seconds: RankSeconds,
-    /// The plan of the last stage.
-    plan: Option<Plan>,
+    /// The plan of the last stage, and why contact conditions are solved for as they are.
+    plan: Option<(Plan, String)>,
     files: RunFiles,
     /// The smallest pivot of all factorizations relative to its diagonal entry.
     smallest_pivot: f64,
@@ -165,13 +165,13 @@ impl Stages<'_> {
         let first = stage.steps.start;
 
         // What this rank has of the stage.
-        let merging = match &handover {
-            Some(handover) => handover.merging,
-            None => comm.agree(settings.merging(&stage.catalog))?,
+        let choices = match &handover {
+            Some(handover) => vec![handover.choice.clone()],
+            None => self.choices(&stage.catalog)?,
         };
         let lap = comm.times();
         let is_first = progress.plan.is_none();
-        let parts = self.parts(stage, merging, is_first)?;
+        let parts = self.parts(stage, &choices, is_first)?;
         let context = self.context(stage, &parts);
         let done = progress.finished.count;
         stop_if_asked(&context, settings, done)?;
@@ -215,11 +215,11 @@ impl Stages<'_> {
             before: &before,
             operators: &operators,
             absent: &absent,
-            robust,
+            robust: robust.as_ref(),
         };
         let handover = self.solve_steps(&steps, (state, took_over), progress)?;
         progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
-        progress.plan = Some(parts.plan);
+        progress.plan = Some((parts.plan, parts.why));
         Ok(handover)
     }
 
@@ -304,8 +304,8 @@ struct StageSteps<'a> {
     operators: &'a Operators,
     /// The rows of contact points that are absent; on the root.
     absent: &'a [ContactRow],
-    /// The merging that takes over where the steps don't converge.
-    robust: Option<Merging>,
+    /// What takes over where the steps don't converge.
+    robust: Option<&'a Choice>,
 }
 
 impl Progress {
@@ -355,7 +355,7 @@ impl Progress {
         settings: &Settings,
         log: &RunLog<'_>,
     ) -> Result<Ending, Failure> {
-        let Some(plan) = self.plan else {
+        let Some((plan, why)) = self.plan else {
             return Err(Failure::internal("no load step is left"));
         };
         let ranks = collect(comm, &self.seconds, &plan);
@@ -367,6 +367,7 @@ impl Progress {
                 let totals = Totals {
                     catalog,
                     plan: &plan,
+                    why: &why,
                     steps,
                     smallest_pivot: self.smallest_pivot,
                     ranks,

@@ -9,16 +9,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use contact_dd_partition::hierarchy::choice::InterfaceTimes;
-use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::solver::{Method, Positive, SolverSettings};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
-use crate::plan::Plan;
-use crate::plan::cluster::Merging;
+use crate::plan::choice::Wishes;
 
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -151,30 +148,14 @@ impl Settings {
         })
     }
 
-    /// What becomes of contact when Schur complements are merged: picard inverts S_0 alone, which has to be that of
-    /// all linear subdomains; anderson needs the contact problems of groups; newton takes what costs least.
-    ///
-    /// # Errors
-    /// The iterative solver is asked for, and the problem file has no clusters.
-    pub fn merging(&self, catalog: &Catalog) -> Result<Merging, Failure> {
-        let is_iterative = match self.interface {
-            Some(method) => method == InterfaceMethod::Iterative,
-            None => InterfaceTimes::new(catalog).is_some_and(InterfaceTimes::is_iterative),
-        };
-        Ok(match self.method {
-            Method::Picard => Merging::Linear,
-            Method::Anderson => Merging::Groups,
-            Method::Newton if is_iterative && catalog.hierarchy.clusters.is_empty() => {
-                return Err(Failure::input(
-                    "dataset /hierarchy/cluster is missing, which --interface iterative needs; make the problem file \
-                     anew, or use --interface direct",
-                ));
-            }
-            // Another solution is looked for with all conditions at once.
-            Method::Newton if catalog.has_friction() && self.second_start => Merging::All,
-            Method::Newton if is_iterative => Merging::Clusters,
-            Method::Newton => Plan::cheapest(catalog),
-        })
+    /// What a user asks for of the solvers.
+    pub fn wishes(&self) -> Wishes {
+        let interface = self.interface;
+        Wishes {
+            method: self.method,
+            iterative: interface.map(|method| method == InterfaceMethod::Iterative),
+            second_start: self.second_start,
+        }
     }
 
     /// The settings by name, for people: those that aren't the default with what settled them.

@@ -39,6 +39,8 @@ pub struct Summary<'a> {
     pub ranks: usize,
     /// Number of threads of each rank.
     pub threads: usize,
+    /// Why contact conditions are solved for as they are, in words.
+    pub interface_choice: &'a str,
 }
 
 /// One line of the log; `event` names its kind. Numbers that aren't finite are `null`.
@@ -112,6 +114,8 @@ pub enum Event<'a> {
         flops: f64,
         /// Arithmetic of the busiest rank (flop).
         busiest_rank_flops: f64,
+        /// Why contact conditions are to be solved for as they are, in words.
+        interface_choice: &'a str,
         /// Unknowns of the coarse problem of the iterative interface solver, about; none where it is direct.
         #[serde(skip_serializing_if = "Option::is_none")]
         coarse_dofs: Option<usize>,

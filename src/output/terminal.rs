@@ -59,6 +59,8 @@ fn costs(event: &Event<'_>) -> Option<String> {
         flops,
         busiest_rank_flops,
         coarse_dofs,
+        // The summary of the problem has it.
+        interface_choice: _,
     } = event
     else {
         return None;
@@ -107,6 +109,7 @@ fn summary(of: &Summary) -> String {
         entry("subdomains", of.subdomains),
         entry("contact", contact),
         entry("ranks", format!("{} with {threads} each", of.ranks)),
+        entry("solved by", of.interface_choice),
     ]);
     lines.join("\n")
 }

@@ -76,7 +76,9 @@ fn kibibytes(list: &str, name: &str) -> Option<u64> {
 }
 
 /// Share of the estimate that is needed for certain.
-const CERTAIN: f64 = 0.7;
+pub const CERTAIN: f64 = 0.8;
+/// Share of the estimate that is needed most likely.
+pub const LIKELY: f64 = 1.0;
 
 /// The memory of a host, and the need of its ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,13 +88,13 @@ struct Host {
     ranks: usize,
 }
 
-/// Refuses a run for which a host has too little memory, limits of control groups among it; each of
-/// its ranks has one of `costs`. Returns what the hosts have together, on the root (bytes).
+/// Refuses a run for which a host has less memory than this share of what it needs, limits of control groups among it; each
+/// of its ranks has one of `costs`. Returns what the hosts have together, on the root (bytes).
 /// Collective.
 ///
 /// # Errors
 /// The first host with too little.
-pub fn afford(comm: &Comm, costs: &[CostEstimate]) -> Result<f64, Failure> {
+pub fn afford(comm: &Comm, costs: &[CostEstimate], share: f64) -> Result<f64, Failure> {
     // Where the system doesn't tell, nothing is refused.
     let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
@@ -103,15 +105,15 @@ pub fn afford(comm: &Comm, costs: &[CostEstimate]) -> Result<f64, Failure> {
         host.needed += cost.bytes;
         host.ranks += 1;
     }
-    comm.agree(check(&hosts))?;
+    comm.agree(check(&hosts, share))?;
     Ok(hosts.values().map(|host| host.available).sum())
 }
 
-fn check(hosts: &BTreeMap<String, Host>) -> Result<(), Failure> {
+fn check(hosts: &BTreeMap<String, Host>, share: f64) -> Result<(), Failure> {
     let gigabytes = |bytes: f64| bytes / 1e9;
     match hosts
         .iter()
-        .find(|(_, host)| CERTAIN * host.needed > host.available)
+        .find(|(_, host)| share * host.needed > host.available)
     {
         None => Ok(()),
         Some((name, host)) => Err(Failure::internal(format!(
@@ -188,7 +190,10 @@ mod tests {
         };
         let of = |second: Host| {
             let all = [("first", host(8e9, 6e9)), ("second", second)];
-            check(&all.map(|(name, host)| (name.to_string(), host)).into())
+            check(
+                &all.map(|(name, host)| (name.to_string(), host)).into(),
+                CERTAIN,
+            )
         };
         assert!(of(host(8e9, 9e9)).is_ok());
         assert!(of(host(f64::INFINITY, 9e12)).is_ok());

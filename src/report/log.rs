@@ -38,6 +38,8 @@ pub struct Checked {
     pub costs: Vec<CostEstimate>,
     /// Memory that there is (bytes).
     pub available: f64,
+    /// Why contact conditions are to be solved for as they are, in words.
+    pub why: String,
     /// Coarse unknowns of an iterative interface solver.
     pub coarse_dofs: Option<usize>,
 }
@@ -137,8 +139,8 @@ impl<'a> RunLog<'a> {
         });
     }
 
-    /// Tells the problem and the settings.
-    pub fn problem(&self, catalog: &Catalog, plan: &Plan) {
+    /// Tells the problem and the settings, and `why` contact conditions are solved for as they are.
+    pub fn problem(&self, catalog: &Catalog, plan: &Plan, why: &str) {
         let summary = Summary {
             version: env!("CARGO_PKG_VERSION"),
             problem: self.settings.problem.display().to_string(),
@@ -151,6 +153,7 @@ impl<'a> RunLog<'a> {
             conditions_with_friction: catalog.conditions_with_friction(),
             ranks: self.comm.size(),
             threads: usize::from(self.settings.threads),
+            interface_choice: why,
         };
         self.tell(&Event::Problem(&summary));
         if !self.settings.check {
@@ -175,6 +178,7 @@ impl<'a> RunLog<'a> {
         let Some(Checked {
             costs,
             available,
+            why,
             coarse_dofs,
             ..
         }) = largest
@@ -189,6 +193,7 @@ impl<'a> RunLog<'a> {
             available_bytes: available,
             flops: all.flops,
             busiest_rank_flops: most.flops,
+            interface_choice: why,
             coarse_dofs,
         });
     }

@@ -20,6 +20,8 @@ pub struct Totals<'a> {
     pub catalog: &'a Catalog,
     /// The owners of blocks and fronts.
     pub plan: &'a Plan,
+    /// Why contact conditions were solved for as they were, in words.
+    pub why: &'a str,
     /// Every load step, one where the problem has none.
     pub steps: Vec<StepTotals>,
     /// The smallest pivot of all factorizations relative to its diagonal entry.

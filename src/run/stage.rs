@@ -14,9 +14,9 @@ use crate::error::{Failure, FailureKind};
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
 use crate::plan::Plan;
+use crate::plan::choice::{Choice, ChosenPlan};
 use crate::plan::cluster::Merging;
 use crate::plan::cost::CostEstimate;
-use crate::plan::memory::afford;
 use crate::read::{check_copies, collect_groups, depend_on_each_other, read_blocks};
 use crate::report::log::{Checked, RunLog};
 use crate::settings::Settings;
@@ -46,12 +46,14 @@ pub struct Parts {
     groups: BTreeMap<usize, ContactGroup>,
     costs: Vec<CostEstimate>,
     available: f64,
+    /// Why contact conditions are solved for as they are, in words.
+    pub why: String,
 }
 
 /// A handover: where a more robust solver takes over in a stage.
 pub struct Handover {
-    /// The merging of the more robust solver.
-    pub merging: Merging,
+    /// The choice of the more robust solver.
+    pub choice: Choice,
     /// The state that it starts from, with the owners of the plan before.
     pub state: StepState,
     /// The plan before.
@@ -63,10 +65,9 @@ pub struct Handover {
 impl Handover {
     /// The handover of a stage from one solver to another, which starts from the `state` before the load step that didn't
     /// converge.
-    pub fn new(plan: &Plan, to: Merging, state: StepState, why: &str) -> Self {
-        let from = plan.merging;
+    pub fn new(plan: &Plan, to: &Choice, state: StepState, why: &str) -> Self {
+        let (from, choice) = (plan.merging, to.clone());
         Self {
-            merging: to,
             // Of another solver the state on Γ says nothing.
             state: StepState {
                 interface: None,
@@ -77,8 +78,9 @@ impl Handover {
             why: format!(
                 "{} didn't converge ({why}); {} took over",
                 from.solver(),
-                to.solver()
+                to.merging.solver()
             ),
+            choice,
         }
     }
 }
@@ -107,8 +109,8 @@ impl Stages<'_> {
     /// A part that moves freely, or one for which there is no place.
     pub fn check(&self, steps: Range<usize>) -> Result<Checked, Failure> {
         let stage = self.file.catalog().stage(steps, &[]);
-        let merging = self.comm.agree(self.settings.merging(&stage.catalog))?;
-        let parts = self.parts(&stage, merging, self.settings.check)?;
+        let choices = self.choices(&stage.catalog)?;
+        let parts = self.parts(&stage, &choices, self.settings.check)?;
         self.log.phase("looking for free rigid motions", None);
         let analyses = analyse_steps(&self.context(&stage, &parts), stage.steps.clone(), &[])?;
         let warnings = analyses
@@ -118,49 +120,62 @@ impl Stages<'_> {
             warnings: warnings.collect(),
             costs: parts.costs,
             available: parts.available,
+            why: parts.why,
             coarse_dofs: parts.plan.coarse_dofs(stage.catalog.dim),
         })
     }
 
-    /// The merging that takes over where a `merging` doesn't lead to a solution, if there is memory for it. Collective.
-    pub fn more_robust(&self, catalog: &Catalog, merging: Merging) -> Option<Merging> {
+    /// The choices of what answers for the contact conditions of a stage, the best one first. Collective.
+    ///
+    /// # Errors
+    /// What is asked for can't be.
+    pub fn choices(&self, catalog: &Catalog) -> Result<Vec<Choice>, Failure> {
+        self.comm
+            .agree(Choice::all(catalog, self.settings.wishes()))
+    }
+
+    /// The choice that takes over where a `merging` doesn't lead to a solution, if there is memory for it. Collective.
+    pub fn more_robust(&self, catalog: &Catalog, merging: Merging) -> Option<Choice> {
         // A limit on sweeps is one on all solvers.
         if self.settings.max_sweeps.is_some() {
             return None;
         }
-        let robust = Plan::more_robust(catalog, merging)?;
-        let plan = Plan::new(catalog, self.comm.size(), robust);
-        let costs = plan.cost_estimates(catalog, self.comm.size());
-        afford(self.comm, &costs).is_ok().then_some(robust)
+        let robust = Choice::more_robust(catalog, merging)?;
+        ChosenPlan::new(self.comm, catalog, std::slice::from_ref(&robust)).ok()?;
+        Some(robust)
     }
 
-    /// The part of this rank of a stage to be solved with this `merging`; of the `first` stage the log describes the
-    /// problem. Collective.
+    /// The part of this rank of a stage to be solved by the first of some `choices` for which there is memory; of the `first`
+    /// stage the log describes the problem. Collective.
     ///
     /// # Errors
     /// Too little memory, or a part of the problem file that isn't what it should be.
     pub fn parts(
         &self,
         stage: &Stage<'_>,
-        merging: Merging,
+        choices: &[Choice],
         first: bool,
     ) -> Result<Parts, Failure> {
         let Self { comm, file, .. } = *self;
         let catalog = &stage.catalog;
         phase("reading");
-        let mut plan = Plan::new(catalog, comm.size(), merging);
-        let costs = plan.cost_estimates(catalog, comm.size());
-        let available = afford(comm, &costs)?;
-        let blocks = comm.agree(read_blocks(comm.rank(), file, &plan))?;
+        let mut chosen = ChosenPlan::new(comm, catalog, choices)?;
+        let blocks = comm.agree(read_blocks(comm.rank(), file, &chosen.plan))?;
         if first {
             check_copies(comm, file, &blocks)?;
         }
-        let groups = collect_groups(comm, file, catalog, &plan, &blocks)?;
-        if merging.is_frozen() && depend_on_each_other(comm, &plan, &groups) {
-            plan.form_clusters(Merging::All);
+        let groups = collect_groups(comm, file, catalog, &chosen.plan, &blocks)?;
+        if chosen.choice.merging.is_frozen() && depend_on_each_other(comm, &chosen.plan, &groups) {
+            chosen = chosen.of_dependent(comm, catalog)?;
         }
+        let ChosenPlan {
+            choice,
+            plan,
+            costs,
+            available,
+        } = chosen;
         if first {
-            self.log.problem(file.catalog(), &plan);
+            self.log.problem(file.catalog(), &plan, &choice.why);
         }
         Ok(Parts {
             plan,
@@ -168,6 +183,7 @@ impl Stages<'_> {
             groups,
             costs,
             available,
+            why: choice.why,
         })
     }
 

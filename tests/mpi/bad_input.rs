@@ -128,7 +128,7 @@ pub fn bad_usage(trials: &mut Trials) {
         let ended = case.run_on(ranks, &["--check"]);
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         assert_eq!(
-            ended.stdout.matches("9 conditions").count(),
+            ended.stdout.matches("contact      9 conditions").count(),
             1,
             "{}",
             ended.stdout

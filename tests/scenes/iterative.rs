@@ -3,6 +3,7 @@
 mod choice;
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
+use contact_dd_partition::model::Model;
 
 use crate::space::contact::rocking_scene;
 use crate::support::blocks::{Blocks, joined};
@@ -261,32 +262,33 @@ fn what_friction_cannot_hold_slides() {
     }
 }
 
-#[test]
-fn many_conditions_with_friction_are_solved_alike_up_the_hierarchy_and_between_clusters() {
-    let names = ["base", "first", "second", "third", "fourth"];
+/// Blocks on top of each other, pressed and pushed, so that their joints stick here and slip there.
+fn pile(names: &[&str], cells: usize) -> Model {
     let mesh = names
         .iter()
         .enumerate()
         .fold(Blocks::new(), |mesh, (k, name)| {
             let below = 0.2 * k as f64;
-            mesh.rectangle(name, [0.0, 8.0], [below, below + 0.2], [400, 2])
+            mesh.rectangle(name, [0.0, 8.0], [below, below + 0.2], [cells, 2])
         });
-    let mut scene = "
+    let highest = names[names.len() - 1];
+    let mut scene = format!(
+        "
     plane = 'strain'
-    materials.rock = {young = 20e9, poisson = 0.25}
+    materials.rock = {{young = 20e9, poisson = 0.25}}
     bodies.base.material = 'rock'
     [[displacement]]
     on = 'base bottom'
     x = 0
     y = 0
     [[pressure]]
-    on = 'fourth top'
+    on = '{highest} top'
     value = '2e5*(1+sin(2*x))'
     [[traction]]
-    on = 'fourth left'
+    on = '{highest} left'
     value = [2e5, 0.0]
     "
-    .to_owned();
+    );
     for both in names.windows(2) {
         let [lower, upper] = [both[0], both[1]];
         scene += &format!(
@@ -300,17 +302,37 @@ fn many_conditions_with_friction_are_solved_alike_up_the_hierarchy_and_between_c
             "
         );
     }
-    let case = Case::in_clusters(&model(&scene, mesh.mesh), 24, 5);
-    let (direct, iterative) = (case.solve(&[]), case.solve(&ITERATIVE));
-    assert_eq!(direct.report["interface_solver"], "direct");
-    assert!(iterations(&iterative).len() > 1);
-    let difference = difference(&direct, &iterative);
-    assert!(difference < FRICTION, "{difference:e}");
-    for acts in ["sticking", "slipping"] {
-        let of = |solution: &Solution| solution.report["friction"][acts].as_u64();
-        assert!(of(&direct) > Some(0), "none {acts}");
-        assert_eq!(of(&direct), of(&iterative), "{acts}");
+    model(&scene, mesh.mesh)
+}
+
+/// Up the hierarchy for more than 3000 conditions, by a dense matrix in one cluster for more than 1000.
+#[test]
+fn many_conditions_with_friction_are_solved_alike_by_every_operator() {
+    for (names, cells, operator) in [
+        (
+            &["base", "first", "second", "third", "fourth"][..],
+            400,
+            "tree",
+        ),
+        (&["base", "first"], 600, "dense"),
+    ] {
+        let case = Case::in_clusters(&pile(names, cells), 24, 5);
+        let (direct, iterative) = (case.solve(&[]), case.solve(&ITERATIVE));
+        assert_eq!(direct.report["contact_operator"], operator);
+        assert!(iterations(&iterative).len() > 1);
+        let difference = difference(&direct, &iterative);
+        assert!(difference < FRICTION, "{operator}: {difference:e}");
+        for acts in ["sticking", "slipping"] {
+            let of = |solution: &Solution| solution.report["friction"][acts].as_u64();
+            assert!(of(&direct) > Some(0), "{operator}: none {acts}");
+            assert_eq!(of(&direct), of(&iterative), "{operator}: {acts}");
+        }
+        // One cluster settles all its conditions before any sweep.
+        let sweeps = direct.report["sweeps"].as_u64();
+        assert_eq!(sweeps == Some(0), operator == "dense", "{sweeps:?}");
+        let ended = case.run_on(2, &[]);
+        assert_eq!(ended.code(), 0, "{operator}: {}", ended.stderr);
+        let on_ranks = Solution::read(&case.result());
+        assert_eq!(on_ranks.displacement, direct.displacement, "{operator}");
     }
-    // At once they settle in one sweep.
-    assert!(direct.report["sweeps"].as_u64() > Some(1));
 }

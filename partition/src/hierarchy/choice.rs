@@ -1,7 +1,8 @@
-//! Which interface solver takes less time: factors up to the roots of the hierarchy, or iterations between clusters.
+//! Which operator answers for contact conditions in least time: a dense matrix of all of them, the tree of fronts, or
+//! iterations between clusters.
 //!
-//! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs:
-//! they say which is faster there, and about where one becomes the other elsewhere.
+//! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs, and of
+//! pins in plates with friction: they say which is faster there, and about where one becomes the other elsewhere.
 
 use std::collections::BTreeMap;
 
@@ -9,6 +10,18 @@ use super::cost::ACTIVE_SETS;
 use super::tree::Tree;
 use crate::problem::Catalog;
 
+/// Flops that the dense contact problem takes, over the cube of its size: it is condensed some nine times onto what touches.
+const AT_ONCE: f64 = 3.0;
+/// Times that what is above contacts takes with friction, over those without: each of some 20 steps of Newton's method
+/// eliminates it again, and solves for slip forces by up to 40 products. On 2 ranks a pin in a plate with 1878 conditions and
+/// 20 thousand dofs took 7.4 s in the tree and 2.1 s with the dense matrix.
+const WITH_FRICTION: f64 = 4.0;
+/// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
+/// are held by next to nothing.
+const FEW_CONDITIONS: usize = 600;
+/// Contact conditions with friction up to which they are solved for at once: active sets that come back find a way
+/// out there alone.
+const FEW_WITH_FRICTION: usize = 3000;
 /// Iterations that an active set takes in all, about.
 const ITERATIONS: f64 = 60.0;
 /// What an entry of S of a cluster takes in an iteration, in flops: it and its factor are read from memory.
@@ -41,49 +54,154 @@ pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
     of_class.sum()
 }
 
-/// Estimated times, in flops: arithmetic, and what goes with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InterfaceTimes {
-    /// Factors up to the roots.
-    pub direct: f64,
-    /// Iterations between clusters.
-    pub iterative: f64,
-    /// The coarse problem, a part of these.
-    pub coarse: f64,
+/// What answers for the statuses of contact conditions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// A dense matrix of all conditions.
+    Dense,
+    /// Fronts up to the roots of the hierarchy, those above changed statuses eliminated again.
+    Tree,
+    /// Fronts up to clusters, and iterations between these.
+    Clusters,
 }
 
-impl InterfaceTimes {
-    /// The times of a scene in space without friction, whose clusters are known and whose contact is node by node:
-    /// others
-    /// are solved directly, mortar because its conditions tie many unknowns of two clusters to each other.
-    pub fn new(catalog: &Catalog) -> Option<Self> {
-        let is_node_by_node = (catalog.points.iter()).all(|point| point.entries.len() <= 2);
-        let can_be_either = catalog.dim == 3 && !catalog.has_friction() && is_node_by_node;
-        if !can_be_either || catalog.hierarchy.clusters.len() < 2 {
-            return None;
-        }
-        let tree = Tree::new(catalog);
-        let is_frozen = tree.freezing_pays(catalog);
-        let time = |v: usize, is_frozen| tree.time(v, catalog.dim, is_frozen);
-        let direct = (0..tree.nodes.len()).map(|v| time(v, is_frozen)).sum();
-        let of_cluster = |&c: &usize| {
-            let size = tree.nodes[c].dofs[1] as f64;
-            let below = tree.subtree(c).into_iter();
-            let below: f64 = below.map(|v| time(v, true)).sum();
-            below + iteration_flops(size)
+/// The operators that are known to solve a problem, by estimated times: arithmetic, and what goes with it, in flops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OperatorTimes {
+    /// Each with its time, the fastest first.
+    pub all: Vec<(Operator, f64)>,
+    /// The time of the coarse problem, a part of that of iterations.
+    pub coarse: f64,
+    /// What is left for want of memory.
+    last_resort: Option<Operator>,
+    /// Why others are left out.
+    left_out: Vec<String>,
+    /// Number of contact conditions, tangential ones among them.
+    conditions: usize,
+}
+
+impl OperatorTimes {
+    /// The times of a problem. Few conditions have a dense matrix; iterations are for scenes in space without friction whose
+    /// contact is node by node and whose clusters are known.
+    ///
+    /// With friction or mortar iterations are left out, because conditions tie many unknowns of several clusters to each
+    /// other there: on 2 ranks they took 5 to 7 times as long as the dense matrix on two boxes of 28 thousand dofs, and
+    /// didn't converge in 209 s on a pin in a plate of 20 thousand dofs, which the dense matrix solved in 9 s.
+    pub fn new(catalog: &Catalog) -> Self {
+        let (tree, dim) = (Tree::new(catalog), catalog.dim);
+        let has_friction = catalog.has_friction();
+        let conditions: usize = tree.roots().map(|root| tree.nodes[root].conditions).sum();
+        let few = if has_friction {
+            FEW_WITH_FRICTION
+        } else {
+            FEW_CONDITIONS
         };
-        let coarse = (coarse_dofs(&tree, catalog.dim) as f64).powi(2);
-        let coarse = ACTIVE_SETS * PER_COARSE_PAIR * coarse;
-        let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
-        Some(Self {
-            direct,
-            iterative: clusters + coarse,
-            coarse,
-        })
+        let sum = |is_frozen| {
+            let nodes = 0..tree.nodes.len();
+            nodes.map(|v| tree.time(v, dim, is_frozen)).sum::<f64>()
+        };
+        let cubes = tree
+            .roots()
+            .map(|v| (tree.nodes[v].conditions as f64).powi(3));
+        let mut times = Self {
+            all: vec![(Operator::Dense, sum(false) + AT_ONCE * cubes.sum::<f64>())],
+            coarse: 0.0,
+            last_resort: None,
+            left_out: Vec::new(),
+            conditions,
+        };
+        if conditions > few {
+            let again = if has_friction { WITH_FRICTION } else { 1.0 };
+            let above = (tree.subdomains..tree.nodes.len())
+                .filter(|&v| tree.nodes[v].conditions > 0)
+                .map(|v| tree.time(v, dim, true));
+            let time = sum(true) + (again - 1.0) * above.sum::<f64>();
+            times.all.push((Operator::Tree, time));
+        } else if conditions > 0 {
+            let with = if has_friction { " with friction" } else { "" };
+            let why = format!(
+                "up to {few} conditions{with} have a dense matrix because that is most robust"
+            );
+            times.left_out.push(why);
+        }
+        let is_node_by_node = (catalog.points.iter()).all(|point| point.entries.len() <= 2);
+        let why_not = match catalog.hierarchy.clusters.len() {
+            _ if dim == 2 => Some("iterations pay in space alone"),
+            0 | 1 => Some("there are no clusters to iterate between"),
+            _ if has_friction => Some("iterations take longer with friction or don't converge"),
+            _ if !is_node_by_node => Some("iterations take longer with mortar"),
+            _ => None,
+        };
+        match why_not {
+            Some(why) => {
+                let can_be = dim == 3 && catalog.hierarchy.clusters.len() > 1;
+                times.last_resort = can_be.then_some(Operator::Clusters);
+                times.left_out.push(why.to_owned());
+            }
+            None => times.add_iterations(&tree, dim),
+        }
+        times.all.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        times
     }
 
-    /// Whether iterations take less.
-    pub fn is_iterative(self) -> bool {
-        self.iterative < self.direct
+    fn add_iterations(&mut self, tree: &Tree, dim: usize) {
+        let of_cluster = |&c: &usize| {
+            let below = tree.subtree(c).into_iter();
+            let below: f64 = below.map(|v| tree.time(v, dim, true)).sum();
+            below + iteration_flops(tree.nodes[c].dofs[1] as f64)
+        };
+        let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
+        self.coarse = ACTIVE_SETS * PER_COARSE_PAIR * (coarse_dofs(tree, dim) as f64).powi(2);
+        self.all.push((Operator::Clusters, clusters + self.coarse));
+    }
+
+    /// The fastest operator.
+    pub fn fastest(&self) -> Operator {
+        self.all
+            .first()
+            .map_or(Operator::Dense, |(operator, _)| *operator)
+    }
+
+    /// All operators, the fastest first; iterations that aren't known to get there as fast last, as they take least memory.
+    pub fn operators(&self) -> impl Iterator<Item = Operator> + '_ {
+        let known = self.all.iter().map(|(operator, _)| *operator);
+        known.chain(self.last_resort)
+    }
+
+    /// The operators but iterations, the fastest first.
+    pub fn direct(&self) -> impl Iterator<Item = Operator> + '_ {
+        let all = self.all.iter().map(|(operator, _)| *operator);
+        all.filter(|operator| *operator != Operator::Clusters)
+    }
+
+    /// The name of an operator in words.
+    pub fn name(&self, operator: Operator) -> String {
+        match (operator, self.conditions) {
+            (Operator::Dense, 0) => "factors up to the roots".into(),
+            (Operator::Dense, count) => format!("a dense matrix of {count} conditions"),
+            (Operator::Tree, _) => "fixed active sets in the tree of fronts".into(),
+            (Operator::Clusters, _) => "iterations between clusters".into(),
+        }
+    }
+
+    /// Why `chosen` is, in words: its time against those of others, and why others are left out.
+    pub fn reason(&self, chosen: Operator) -> String {
+        let (own, others): (Vec<_>, Vec<_>) = self
+            .all
+            .iter()
+            .partition(|(operator, _)| *operator == chosen);
+        let own: Vec<String> = own
+            .iter()
+            .map(|(_, time)| format!(": {time:.1e} flops"))
+            .collect();
+        let others: Vec<String> = (others.iter())
+            .map(|(operator, time)| format!("{time:.1e} for {}", self.name(*operator)))
+            .collect();
+        let against = match others.is_empty() {
+            true => String::new(),
+            false => format!(" against {}", others.join(" and ")),
+        };
+        let left_out: String = self.left_out.iter().map(|why| format!("; {why}")).collect();
+        format!("{}{}{against}{left_out}", self.name(chosen), own.concat())
     }
 }

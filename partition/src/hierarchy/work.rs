@@ -1,6 +1,6 @@
 //! What a tree costs.
 
-use super::choice::{InterfaceTimes, iteration_flops};
+use super::choice::{Operator, OperatorTimes, iteration_flops};
 use super::tree::Tree;
 use crate::flops::Front;
 use crate::problem::Catalog;
@@ -25,19 +25,19 @@ impl Work {
     /// of iterations between clusters where these take less time.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
-        let is_frozen = tree.freezing_pays(catalog);
+        let operators = OperatorTimes::new(catalog);
+        let is_frozen = operators.direct().next() == Some(Operator::Tree);
         let front = |v: usize| match is_frozen {
             true => tree.frozen_front(v, dim),
             false => tree.front(v, dim),
         };
-        let iterative = InterfaceTimes::new(catalog).filter(|times| times.is_iterative());
-        let times: Vec<f64> = match iterative {
-            Some(_) => times_to_clusters(&tree, dim),
-            None => (0..tree.nodes.len())
-                .map(|v| tree.time(v, dim, is_frozen))
-                .collect(),
+        let (times, coarse) = match operators.fastest() {
+            Operator::Clusters => (times_to_clusters(&tree, dim), operators.coarse),
+            _ => {
+                let nodes = 0..tree.nodes.len();
+                (nodes.map(|v| tree.time(v, dim, is_frozen)).collect(), 0.0)
+            }
         };
-        let coarse = iterative.map_or(0.0, |times| times.coarse);
         let nodes = 0..tree.nodes.len();
         let costs: Vec<f64> = nodes.map(|v| tree.flops(v, dim)).collect();
         let inner = tree.subdomains..tree.nodes.len();

@@ -148,6 +148,13 @@ fn a_check_ends_with_what_solving_would_take() {
     for key in ["memory_bytes", "flops", "available_bytes"] {
         assert!(check[key].as_f64().unwrap() > 0.0, "{key}");
     }
+    // What answers for contact conditions, and why, is said before the work and after it in the same words.
+    let solved = self::events(&case.run(&["--log", "json"]).stdout);
+    let choice = &solved.last().unwrap().1["report"]["interface_choice"];
+    let words = choice.as_str().unwrap();
+    assert!(words.contains(" conditions: "), "{words}");
+    assert_eq!(&check["interface_choice"], choice);
+    assert_eq!(&solved[0].1["interface_choice"], choice);
 }
 
 #[test]
