@@ -4,8 +4,11 @@
 //! No matrix holds all conditions: an open normal jump is eliminated in the front where it appears, like a
 //! displacement, a closed one is known there.
 
-pub mod active_set;
+mod active_set;
+pub mod contact;
 mod exchange;
-pub mod friction;
 pub mod fronts;
+mod operator;
+pub mod slip_law;
+pub mod slip_problem;
 pub mod solution;

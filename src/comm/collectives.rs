@@ -137,6 +137,14 @@ impl Comm {
         self.gather(&ranks, |_| value.clone(), |_, value| all.push(value));
         all
     }
+
+    /// The largest size of all numbers on all ranks. Collective.
+    pub fn largest<'a>(&self, own: impl IntoIterator<Item = &'a f64>) -> f64 {
+        let own = own.into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let mut largest = self.collect(&own).into_iter().fold(0.0, f64::max);
+        self.broadcast(&mut largest);
+        largest
+    }
 }
 
 /// The places of each owner among some consecutive ones, by rank.

@@ -2,7 +2,8 @@
 //! which statuses are wrong.
 //!
 //! All wrong statuses change at once. What is missed of the laws, in the norm of energies, is the merit of a step, which is
-//! halved as long as it doesn't lessen that: all iterates keep λ = c − H t − Dᵀ μ, so a part of a step needs no further solve.
+//! halved as long as it doesn't lessen that; where no part does, the best is taken: all iterates keep λ = c − H t − Dᵀ μ, so
+//! a part of a step needs no further solve.
 //!
 //! S. Hüeber, G. Stadler, B. Wohlmuth, *A primal-dual active set algorithm for three-dimensional contact problems with
 //! Coulomb friction*, SIAM J. Sci. Comput. 30 (2008).
@@ -60,8 +61,8 @@ pub trait ContactOperator {
     /// The norm of energies of the forces that act before anything moves, or infinity where it isn't known.
     fn acting(&self) -> f64;
 
-    /// How accurate a step has to be as long as statuses are wrong, and so much is missed of the laws.
-    fn accuracy(&self, missed: f64) -> StepAccuracy;
+    /// How accurate the step has to be that follows one with this residual.
+    fn accuracy(&self, total: &TotalResidual) -> StepAccuracy;
 
     /// Takes note of a step.
     ///
@@ -95,6 +96,15 @@ pub struct TotalResidual {
 }
 
 impl TotalResidual {
+    /// The residual before the first step.
+    const UNKNOWN: Self = Self {
+        merit: f64::INFINITY,
+        missed: f64::INFINITY,
+        active: 0,
+        wrong: usize::MAX,
+        parts: false,
+    };
+
     /// Adds that of another group.
     pub fn include(&mut self, other: Self) {
         self.merit += other.merit;
@@ -161,7 +171,7 @@ pub fn newton<O: ContactOperator>(
     let (mut at, mut statuses) = (start.clone(), statuses.clone());
     let (mut merit, mut changed) = (f64::INFINITY, None);
     let (mut least, mut patience) = (f64::INFINITY, settings.patience);
-    let (mut accuracy, mut missed) = (operator.accuracy(f64::INFINITY), f64::INFINITY);
+    let (mut accuracy, mut missed) = (operator.accuracy(&TotalResidual::UNKNOWN), f64::INFINITY);
     let (mut best, mut wrong): (Option<Found>, _) = (None, OnGroups::new());
     for steps in 1..=settings.most {
         let target = operator.step(&at, &statuses, accuracy)?;
@@ -203,10 +213,7 @@ pub fn newton<O: ContactOperator>(
             break;
         }
         least = least.min(total.merit);
-        accuracy = match total.wrong {
-            0 => StepAccuracy::Full,
-            _ => operator.accuracy(total.missed),
-        };
+        accuracy = operator.accuracy(&total);
         (missed, changed) = (total.missed, Some(total.wrong));
         let opened: OnGroups<Vec<bool>> = look
             .iter()
@@ -258,7 +265,7 @@ pub fn look<O: ContactOperator>(
     (residuals, total)
 }
 
-/// The part of the way from an iterate with this merit to a `target` that lessens it; the whole way if none does. Collective.
+/// The part of the way from an iterate to a `target` that lessens this merit, or the one with the least if none does. Collective.
 fn part_of_way<O: ContactOperator>(
     operator: &O,
     laws: &OnGroups<ContactLaws<'_>>,
@@ -275,6 +282,7 @@ fn part_of_way<O: ContactOperator>(
     if merit == f64::INFINITY || of_whole.parts || lessens(of_whole, 1.0) {
         return (target, of_whole.merit, statuses(whole));
     }
+    let mut best = (target.clone(), of_whole.merit, whole);
     let mut part = 0.5;
     while part >= SMALLEST {
         let there = operator.between(&from, &target, part);
@@ -282,9 +290,13 @@ fn part_of_way<O: ContactOperator>(
         if lessens(total, part) {
             return (there, total.merit, statuses(residuals));
         }
+        if total.merit < best.1 {
+            best = (there, total.merit, residuals);
+        }
         part *= 0.5;
     }
-    (target, of_whole.merit, statuses(whole))
+    let (there, merit, residuals) = best;
+    (there, merit, statuses(residuals))
 }
 
 impl LawResidual {

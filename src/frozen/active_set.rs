@@ -7,33 +7,13 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use crate::bddc::solution::{Accuracy, ClusterLoads};
-use crate::contact::laws::Statuses;
-use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::frozen::exchange::{Descent, Exchange};
 use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::operator::{ROUND_OFF, go_on};
 use crate::frozen::solution::FrozenSolution;
-use crate::interface::s_con::ConTotals;
-use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
-
-/// Most steps.
-const MAX_STEPS: usize = 400;
-/// What is none beside the largest force or displacement.
-pub(super) const ROUND_OFF: f64 = 1e-12;
-
-/// What the steps found, on this rank.
-#[derive(Clone, Debug)]
-pub struct FrozenContact {
-    /// Forces and closed conditions of every contact group.
-    pub conditions: BTreeMap<usize, Vec<(f64, bool)>>,
-    /// The unknowns on the boundary of every cluster.
-    pub boundaries: BTreeMap<usize, Vec<f64>>,
-    /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
-    pub statuses: BTreeMap<usize, Statuses>,
-    /// How they got there; the same on all ranks but for times.
-    pub outcome: SweepOutcome,
-}
+use crate::sweep::{SweepOutcome, SweepRecord};
 
 /// What is wrong with the active set.
 #[derive(Clone, Debug, Default)]
@@ -52,8 +32,8 @@ struct Faults {
 pub(super) struct Settled {
     pub open: BTreeMap<usize, Vec<bool>>,
     pub solution: FrozenSolution,
-    /// How many conditions are wrong; none where it is found.
-    pub wrong: usize,
+    /// Whether nothing is wrong.
+    pub is_right: bool,
 }
 
 /// What an active set is found for: `loads` on the boundaries of the clusters, the jumps at which conditions are closed,
@@ -63,97 +43,6 @@ pub(super) struct Conditions<'a> {
     pub loads: &'a BTreeMap<usize, Vec<f64>>,
     pub bounds: &'a BTreeMap<usize, Vec<f64>>,
     pub stay: &'a BTreeMap<usize, Vec<bool>>,
-}
-
-/// Finds the active set under `loads` on the boundaries of the clusters, within the `limits` of every contact group
-/// of this rank, from the statuses of the load step `before`, else from the bilateral problem. Collective.
-///
-/// # Errors
-/// Some part of the scene moves freely, or a signal has asked the run to stop.
-pub fn solve(
-    context: &Context<'_>,
-    fronts: &mut FrozenFronts,
-    limits: &BTreeMap<usize, Limits>,
-    (loads, before): (&BTreeMap<usize, Vec<f64>>, &BTreeMap<usize, Statuses>),
-    max_steps: Option<usize>,
-    observer: &mut dyn FnMut(&SweepRecord),
-) -> Result<FrozenContact, Failure> {
-    let bounds: BTreeMap<usize, Vec<f64>> = (limits.iter())
-        .map(|(&g, limits)| (g, limits.bounds.clone()))
-        .collect();
-    let of_set = Conditions {
-        loads,
-        bounds: &bounds,
-        stay: &BTreeMap::new(),
-    };
-    let mut outcome = SweepOutcome::before(Vec::new());
-    let most = max_steps.unwrap_or(MAX_STEPS);
-    let first = bounds.iter().map(|(&g, bounds)| {
-        let known = before
-            .get(&g)
-            .filter(|known| known.closed.len() == bounds.len());
-        let open = known.map(|known| known.closed.iter().map(|closed| !closed).collect());
-        (g, open.unwrap_or_else(|| vec![false; bounds.len()]))
-    });
-    let first = first.collect();
-    let mut settled = settle(
-        context,
-        fronts,
-        of_set,
-        (first, most),
-        &mut outcome,
-        observer,
-    )?;
-    let sweep = outcome.records.len() - 1;
-    outcome.status = match settled.wrong {
-        _ if !settled.solution.is_finite(context.comm) => not_finite(sweep),
-        0 => SweepStatus::Converged,
-        n => SweepStatus::NotConverged(format!(
-            "newton stopped after {sweep} sweeps: {n} conditions aren't settled"
-        )),
-    };
-    settled.solution.cut();
-    end(&mut outcome);
-    let Settled { open, solution, .. } = settled;
-    let conditions = limits.iter().map(|(g, limits)| {
-        let forces = solution.forces[g]
-            .iter()
-            .map(|f| f.max(0.0))
-            .collect::<Vec<_>>();
-        let both = limits
-            .forces(&forces)
-            .into_iter()
-            .zip(limits.closed(open[g].iter().map(|open| !open)));
-        (*g, both.collect())
-    });
-    let conditions = conditions.collect();
-    let statuses = open
-        .into_iter()
-        .filter(|_| outcome.status == SweepStatus::Converged);
-    let statuses = statuses.map(|(g, open)| {
-        let closed = open.into_iter().map(|open| !open).collect();
-        (
-            g,
-            Statuses {
-                closed,
-                ..Statuses::default()
-            },
-        )
-    });
-    Ok(FrozenContact {
-        conditions,
-        boundaries: solution.boundaries,
-        statuses: statuses.collect(),
-        outcome,
-    })
-}
-
-/// What is said where a linear problem has no finite solution.
-pub(super) fn not_finite(sweep: usize) -> SweepStatus {
-    SweepStatus::NotConverged(format!(
-        "newton stopped after {sweep} sweeps: with the contacts that are closed then, forces and displacements aren't \
-         finite"
-    ))
 }
 
 /// Finds the active set of these conditions, from one that is `open` at first, or the one after `most` steps. Collective.
@@ -227,7 +116,7 @@ pub(super) fn settle(
             return Ok(Settled {
                 open,
                 solution,
-                wrong: faults.count,
+                is_right: faults.count == 0,
             });
         }
         go_on(context, sweep)?;
@@ -247,34 +136,6 @@ pub(super) fn settle(
             iterations: 0,
             ..solution
         });
-    }
-}
-
-/// Counts what the steps took, at their end.
-pub(super) fn end(outcome: &mut SweepOutcome) {
-    let steps = outcome.records.len();
-    outcome.active_set_iterations = steps;
-    if let Some(last) = outcome.records.last() {
-        outcome.residual = last.residual;
-        outcome.totals = ConTotals {
-            active: last.active,
-            changed: last.changed.unwrap_or(0),
-            steps,
-            ..ConTotals::default()
-        };
-    }
-}
-
-/// Goes on unless a signal has asked the run to stop. Collective.
-///
-/// # Errors
-/// A signal did.
-pub(super) fn go_on(context: &Context<'_>, sweeps: usize) -> Result<(), Failure> {
-    match context.comm.is_any_asked_to_stop() {
-        false => Ok(()),
-        true => Err(Failure::interrupted(format!(
-            "interrupted after {sweeps} sweeps"
-        ))),
     }
 }
 

@@ -96,6 +96,12 @@ impl FrozenFronts {
         Ok(fronts)
     }
 
+    /// Whether what slips is to be held: springs hold what is open, as something moves without them, and friction in space
+    /// depends on how far that goes.
+    pub fn has_to_hold(&self, context: &Context<'_>) -> bool {
+        self.spring > 0.0 && context.catalog.dim == 3 && context.catalog.has_friction()
+    }
+
     /// Number of coarse unknowns of the iterative interface solver, where there is one; 0 but on the root.
     pub fn coarse_dofs(&self) -> Option<usize> {
         self.bddc.as_ref().map(|bddc| bddc.coarse_dofs)
@@ -129,7 +135,8 @@ impl FrozenFronts {
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<(), Failure> {
-        self.make(context, open, false)
+        let is_known = self.fronts_known(context);
+        self.make(context, open, is_known, false)
     }
 
     /// Makes the preconditioner that of the active set, where there is one that isn't. Collective.
@@ -142,7 +149,7 @@ impl FrozenFronts {
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<(), Failure> {
         match self.bddc.as_ref().is_some_and(Bddc::is_stale) {
-            true => self.make(context, open, true),
+            true => self.make(context, open, true, true),
             false => Ok(()),
         }
     }
@@ -160,16 +167,16 @@ impl FrozenFronts {
         if let Some(bddc) = self.bddc.as_mut().filter(|bddc| !bddc.is_stale()) {
             bddc.look_deeper();
         }
-        self.make(context, open, true)
+        self.make(context, open, true, true)
     }
 
     fn make(
         &mut self,
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
+        is_known: bool,
         renewed: bool,
     ) -> Result<(), Failure> {
-        let is_known = self.fronts_known(context);
         if self.factorize(context, open, is_known, renewed).is_ok() && !self.nearly_moves(context) {
             return Ok(());
         }
@@ -177,8 +184,7 @@ impl FrozenFronts {
         self.factorize(context, open, false, true)
     }
 
-    /// Takes the springs of earlier active sets away where the iterative interface solver needs none for this one;
-    /// returns whether it did. Collective.
+    /// Takes the springs of earlier active sets away where this one needs none; returns whether it did. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -187,11 +193,11 @@ impl FrozenFronts {
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<bool, Failure> {
-        if self.spring == 0.0 || self.bddc.is_none() {
+        if self.spring == 0.0 {
             return Ok(false);
         }
         self.spring = 0.0;
-        self.make(context, open, true)?;
+        self.make(context, open, false, true)?;
         Ok(self.spring == 0.0)
     }
 

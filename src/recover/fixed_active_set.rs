@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
@@ -13,9 +14,9 @@ use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::balance::Balance;
-use crate::frozen::friction::slip_law::SlipLaw;
-use crate::frozen::friction::slip_problem::{Forces, Laws, SlipProblem};
 use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::slip_law::SlipLaw;
+use crate::frozen::slip_problem::{Laws, OnJumps, SlipProblem};
 use crate::frozen::solution::FrozenSolution;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
@@ -28,7 +29,6 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
-use crate::vector::axpy;
 
 /// How well slip forces follow what presses, at best.
 const FOLLOWED: f64 = 1e-4;
@@ -174,7 +174,7 @@ impl<'a> FixedActiveSet<'a> {
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
-        let (mut open, mut missing) = (BTreeMap::new(), BTreeMap::new());
+        let (mut open, mut missing): (BTreeMap<usize, Vec<bool>>, OnJumps) = Default::default();
         let mut laws = Laws::new();
         for (g, of_group) in conditions {
             let (statuses, lacking) = limits[&g].fixed(&of_group);
@@ -184,17 +184,16 @@ impl<'a> FixedActiveSet<'a> {
                     SlipLaw::of_slipping(group, &limits[&g], (&statuses, &lacking), forces);
                 laws.insert(g, laws_of_group);
             }
-            let is_closed: Vec<bool> = statuses.iter().map(|status| status.is_closed()).collect();
-            let lacking = lacking.into_iter().zip(&is_closed);
-            let lacking = lacking.map(|([way, _], is_closed)| if *is_closed { way } else { 0.0 });
+            let lacking = lacking.into_iter().zip(&statuses);
+            let lacking = lacking.map(|([way, _], s)| if s.is_closed() { way } else { 0.0 });
             missing.insert(g, lacking.collect());
-            open.insert(g, is_closed.iter().map(|is_closed| !is_closed).collect());
+            open.insert(g, statuses.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();
-        if fronts.freeze(&self.context, &open).is_err() {
+        let Ok(is_held) = freeze(&self.context, &mut fronts, &mut open, &laws) else {
             // The contacts that are left hold nothing: no change is better than any.
             return Change::default();
-        }
+        };
         let condensed = factors.condense(loads);
         let on_clusters = condensed
             .iter()
@@ -204,10 +203,10 @@ impl<'a> FixedActiveSet<'a> {
             open: &open,
             clusters: &on_clusters.collect(),
             prescribed: &missing,
+            laws: &laws,
+            is_held,
         };
-        let follows = self.context.catalog.has_friction();
-        let solved = follow(&mut fronts, &problem, &laws, follows, tolerance);
-        let Ok(solution) = solved else {
+        let Ok(solution) = follow(&mut fronts, &problem, tolerance) else {
             return Change::default();
         };
         let forces = solution.forces.iter();
@@ -277,27 +276,40 @@ impl<'a> FixedActiveSet<'a> {
     }
 }
 
-/// Solves for what acts, and for the forces of what slips where that `follows` what presses. Collective.
+/// Freezes what is `open`, and returns whether what slips by `laws` is held, which it is where that has to be. Collective.
+fn freeze(
+    context: &Context<'_>,
+    fronts: &mut FrozenFronts,
+    open: &mut BTreeMap<usize, Vec<bool>>,
+    laws: &Laws,
+) -> Result<bool, Failure> {
+    fronts.freeze(context, open)?;
+    if !fronts.has_to_hold(context) {
+        return Ok(false);
+    }
+    for (g, laws) in laws {
+        if let Some(open) = open.get_mut(g) {
+            (laws.iter().flat_map(SlipLaw::limits)).for_each(|t| open[t] = false);
+        }
+    }
+    fronts.freeze(context, open)?;
+    fronts.release(context, open)?;
+    Ok(true)
+}
+
+/// Solves for what acts, and for slips where any follow laws. Collective.
 fn follow(
     fronts: &mut FrozenFronts,
     problem: &SlipProblem<'_>,
-    laws: &Laws,
-    follows: bool,
     tolerance: f64,
 ) -> Result<FrozenSolution, Failure> {
-    let solution = problem.respond(fronts, &Forces::new(), tolerance, None)?;
-    if !follows {
-        return Ok(solution);
-    }
-    let reduction = tolerance.max(FOLLOWED);
-    let Some(slip_forces) = problem.follow(fronts, laws, &solution, reduction)? else {
-        return Ok(solution);
+    let at_rest = |(&g, prescribed): (&usize, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
+    let forces: OnJumps = problem.prescribed.iter().map(at_rest).collect();
+    let tolerance = match problem.context.catalog.has_friction() {
+        true => Accuracy::FULL.tolerance,
+        false => tolerance,
     };
-    let mut solution = problem.respond(fronts, &slip_forces, tolerance, Some(&solution))?;
-    for (g, forces) in &mut solution.forces {
-        axpy(1.0, &slip_forces[g], forces);
-    }
-    Ok(solution)
+    problem.solve(fronts, forces, (tolerance, None), FOLLOWED)
 }
 
 /// What the owner of a cluster tells the root.

@@ -10,10 +10,9 @@
 
 use crate::contact::friction::{Status, TangentialCondition};
 use crate::fem::contact_group::ContactGroup;
+use crate::frozen::slip_law::AT_BOUND;
 use crate::recover::GroupSolution;
 
-/// Part of its bound below which a force that slips isn't at it: the contact is about to open.
-const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Angle between force and slip, about, beyond which the slip is too small to tell its direction.
 const TOLD: f64 = 0.1;
 

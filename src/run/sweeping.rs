@@ -7,8 +7,7 @@ use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::active_set::{self, FrozenContact};
-use crate::frozen::friction;
+use crate::frozen::contact::{self, FrozenContact};
 use crate::frozen::fronts::FrozenFronts;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::SCon;
@@ -66,16 +65,11 @@ pub fn sweep_frozen(
         .iter()
         .map(|(&v, load)| (v, load.boundary().to_vec()));
     let mut observer = |record: &SweepRecord| log.sweep(record);
-    let loads = loads.collect();
-    let solve = match context.catalog.has_friction() {
-        true => friction::solve,
-        false => active_set::solve,
-    };
-    solve(
+    contact::solve(
         context,
         fronts,
         limits,
-        (&loads, before),
+        (&loads.collect(), before),
         settings.max_sweeps,
         &mut observer,
     )

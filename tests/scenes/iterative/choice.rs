@@ -128,7 +128,7 @@ fn what_friction_holds_far_from_other_contacts_is_solved_as_directly() {
 fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
     // The direct solver doesn't converge with the second one, either.
     for (drawn, verdict) in [
-        (draw_frictional(71_064, 8), Verdict::Right),
+        (draw_frictional(685_154, 12), Verdict::Right),
         (draw_frictional_in_space(910_050, 12), Verdict::NotConverged),
     ] {
         let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
@@ -157,7 +157,7 @@ fn conditions_with_friction_that_share_a_jump_are_solved_directly() {
 /// the slips that these left.
 #[test]
 fn the_direct_solver_goes_on_from_the_slips_of_before_on_any_number_of_ranks() {
-    let mut drawn = draw_frictional(71_068, 8);
+    let mut drawn = draw_frictional(685_154, 12);
     drawn.ranks = 2;
     let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
     assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);

@@ -298,7 +298,7 @@ impl ContactOperator for Dense<'_, '_> {
         STAYS
     }
 
-    fn accuracy(&self, _: f64) -> StepAccuracy {
+    fn accuracy(&self, _: &TotalResidual) -> StepAccuracy {
         StepAccuracy::Full
     }
 

@@ -13,6 +13,9 @@ use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::limits::{Limits, TangentialLimit};
 use crate::fem::contact_group::ContactGroup;
 
+/// Part of its bound below which a force that slips isn't at it: the contact is about to open.
+pub const AT_BOUND: f64 = 1.0 - 1e-9;
+
 /// The linear law of a slipping point.
 #[derive(Clone, Debug)]
 pub struct SlipLaw {
@@ -26,6 +29,8 @@ pub struct SlipLaw {
     slope: f64,
     /// w.
     weight: f64,
+    /// r (N/m).
+    stiffness: f64,
     /// κ (N/m).
     turning: f64,
     /// The slip along the second tangent where supports prescribe it (m).
@@ -51,6 +56,7 @@ impl SlipLaw {
             constant: if coheres { point.bound.cohesion } else { 0.0 },
             slope: normal.map_or(0.0, |_| point.bound.coefficient),
             weight: point.stiffness / (point.stiffness + turning),
+            stiffness: point.stiffness,
             turning,
             prescribed: point.prescribed,
             parts,
@@ -59,7 +65,7 @@ impl SlipLaw {
 
     /// The laws of the points of a `group` within `limits` that slip as these statuses of limits say, under these `forces`
     /// of their conditions, whose directions turn with the slip by the second of `shares`; the constant part of the bound
-    /// is what these lack of it.
+    /// is what these lack of it, and where they lack more than round-off the contact is about to open.
     pub fn of_slipping(
         group: &ContactGroup,
         limits: &Limits,
@@ -83,6 +89,7 @@ impl SlipLaw {
             };
             let mut all = tangents.into_iter().flatten();
             let slips = all.all(|t| !statuses[t].is_closed());
+            let parts = presses.is_some() && size < AT_BOUND * bound;
             let [_, turning] = shares[tangent.limit];
             let stiffness = group.stiffness_at(points[of_limits[tangent.limit]]);
             (slips && size > 0.0).then(|| Self {
@@ -90,11 +97,12 @@ impl SlipLaw {
                 tangents,
                 normal: presses,
                 constant: bound - size,
-                slope: tangent.bound.coefficient,
+                slope: presses.map_or(0.0, |_| tangent.bound.coefficient),
                 weight: stiffness / (stiffness + turning),
+                stiffness,
                 turning,
                 prescribed: 0.0,
-                parts: false,
+                parts,
             })
         };
         limits.tangents.iter().filter_map(law).collect()
@@ -135,8 +143,13 @@ impl SlipLaw {
         }
     }
 
-    /// The force of a point under this pressure (N/m) whose slip is along e.
-    pub fn set_first(&self, forces: &[f64], first: &mut [f64]) {
+    /// κ (N/m).
+    pub fn turning(&self) -> f64 {
+        self.turning
+    }
+
+    /// The force of the point under this pressure (N/m) where its slip is along e.
+    pub fn set_force(&self, forces: &[f64], own: &mut [f64]) {
         let e = self.direction;
         let pressure = self.normal.map_or(0.0, |n| forces[n].max(0.0));
         let known = self.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
@@ -146,9 +159,28 @@ impl SlipLaw {
         };
         for (t, e) in self.tangents.into_iter().zip(e) {
             if let Some(t) = t {
-                first[t] = size * e;
+                own[t] = size * e;
             }
         }
+    }
+
+    /// The forces that would make these slips at a point as stiff as it is.
+    pub fn set_holding(&self, slip: impl Fn(usize) -> f64, forces: &mut [f64]) {
+        for t in self.tangents.into_iter().flatten() {
+            forces[t] = self.stiffness * slip(t);
+        }
+    }
+
+    /// Adds to `slips` those that `forces` on the jumps of the point would make if it were as stiff as it is.
+    pub fn add_slips(&self, forces: &[f64], slips: &mut [f64]) {
+        for t in self.tangents.into_iter().flatten() {
+            slips[t] += forces[t] / self.stiffness;
+        }
+    }
+
+    /// The limits of its tangential jumps.
+    pub fn limits(&self) -> impl Iterator<Item = usize> {
+        self.tangents.into_iter().flatten()
     }
 }
 

@@ -4,24 +4,24 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use super::slip_law::SlipLaw;
-use super::slip_problem::{Forces, Laws, SlipProblem};
 use crate::bddc::solution::Accuracy;
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, LawResidual, Statuses};
 use crate::contact::newton::{ContactOperator, NewtonStep, OnGroups, StepAccuracy, TotalResidual};
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::active_set::{ROUND_OFF, go_on};
 use crate::frozen::exchange::LOOSE;
 use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::slip_law::SlipLaw;
+use crate::frozen::slip_problem::{Laws, SlipProblem};
 use crate::frozen::solution::FrozenSolution;
 use crate::sweep::{SweepOutcome, SweepRecord};
-use crate::vector::{axpy, between};
+use crate::vector::between;
 
-/// How far GMRES goes, relative to what is missed before, at least and at most.
-const REDUCTION: [f64; 2] = [1e-1, 1e-3];
-
+/// What is none beside the largest force or displacement.
+pub(super) const ROUND_OFF: f64 = 1e-12;
+/// What may be missed where directions of slip turn, relative to the scales of forces, for the next step to be exact.
+const NEARLY: f64 = 1e-5;
 /// Share of the stiffness at a point, times the displacements, in the scale of forces: their round-off is relative to it.
 const STIFFNESS_SHARE: f64 = 1e-3;
 
@@ -40,21 +40,28 @@ pub(super) struct TreeOperator<'a, 'o> {
     pub solution: FrozenSolution,
     /// Whether there was one.
     pub is_answered: bool,
+    /// Whether what slips is held at its slip, without which something moves.
+    pub is_held: bool,
     /// Whether springs of earlier statuses were taken away.
     pub is_released: bool,
     pub outcome: &'a mut SweepOutcome,
     pub began: Instant,
     pub observer: &'o mut dyn FnMut(&SweepRecord),
+    /// Whether directions of slip turn with it.
+    pub turns: bool,
     /// Round-off of the last answer, relative to the largest force.
     pub accuracy: f64,
 }
 
-/// Which jumps are open, or slip, where a group has these statuses.
-fn open(laws: &ContactLaws<'_>, statuses: &Statuses) -> Vec<bool> {
+/// Which jumps are open, or slip unless that is held, where a group has these statuses.
+fn open(laws: &ContactLaws<'_>, statuses: &Statuses, is_held: bool) -> Vec<bool> {
     let mut open: Vec<bool> = statuses.closed.iter().map(|closed| !closed).collect();
     for (point, status) in laws.points.iter().zip(&statuses.points) {
         for t in point.tangents.into_iter().flatten() {
-            open[t] = *status != PointStatus::Sticks;
+            open[t] = match is_held {
+                true => *status == PointStatus::Open,
+                false => *status != PointStatus::Sticks,
+            };
         }
     }
     open
@@ -70,43 +77,55 @@ fn slip_laws(laws: &ContactLaws<'_>, statuses: &Statuses) -> Vec<SlipLaw> {
     points.filter_map(law).collect()
 }
 
+/// Goes on unless a signal has asked the run to stop. Collective.
+///
+/// # Errors
+/// A signal did.
+pub(super) fn go_on(context: &Context<'_>, sweeps: usize) -> Result<(), Failure> {
+    match context.comm.is_any_asked_to_stop() {
+        false => Ok(()),
+        true => Err(Failure::interrupted(format!(
+            "interrupted after {sweeps} sweeps"
+        ))),
+    }
+}
+
 impl TreeOperator<'_, '_> {
-    /// λ of a solution under slip forces. Collective.
-    fn iterates(&self, solution: &FrozenSolution, slip_forces: &Forces) -> OnGroups<Iterate> {
+    /// Freezes what these statuses leave open, which it returns; where that needs springs and directions of slip turn with
+    /// it, what slips is held from then on.
+    /// Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    fn freeze(
+        &mut self,
+        statuses: &OnGroups<Statuses>,
+    ) -> Result<BTreeMap<usize, Vec<bool>>, Failure> {
+        let (context, laws) = (self.context, self.laws);
+        let open = |is_held: bool| {
+            let all = statuses.iter();
+            all.map(|(&g, statuses)| (g, open(&laws[&g], statuses, is_held)))
+                .collect()
+        };
+        let free: BTreeMap<usize, Vec<bool>> = open(self.is_held);
+        self.fronts.freeze(context, &free)?;
+        if self.is_held || !self.fronts.has_to_hold(context) {
+            return Ok(free);
+        }
+        self.is_held = true;
+        let held = open(true);
+        self.fronts.freeze(context, &held)?;
+        self.fronts.release(context, &held)?;
+        Ok(held)
+    }
+
+    /// The iterate that a solution is.
+    pub fn iterate(solution: &FrozenSolution) -> OnGroups<Iterate> {
         let of_group = |(&g, jumps): (&usize, &Vec<f64>)| {
-            let mut forces = solution.forces[&g].clone();
-            axpy(1.0, &slip_forces[&g], &mut forces);
-            (
-                g,
-                Iterate {
-                    jumps: jumps.clone(),
-                    forces,
-                },
-            )
+            let (jumps, forces) = (jumps.clone(), solution.forces[&g].clone());
+            (g, Iterate { jumps, forces })
         };
         solution.jumps.iter().map(of_group).collect()
-    }
-
-    /// What slip forces miss of their laws. Collective.
-    fn missed(&self, laws: &Laws, at: &OnGroups<Iterate>) -> Forces {
-        let of_group = |(&g, at): (&usize, &Iterate)| {
-            let mut missed = vec![0.0; at.jumps.len()];
-            let slip = |i: usize| self.laws[&g].beyond(i, at);
-            for law in &laws[&g] {
-                law.add_missed(&at.forces, slip, false, &mut missed);
-            }
-            (g, missed)
-        };
-        at.iter().map(of_group).collect()
-    }
-
-    /// The largest of all numbers on all ranks. Collective.
-    fn largest<'f>(&self, own: impl Iterator<Item = &'f f64>) -> f64 {
-        let comm = self.context.comm;
-        let own = own.fold(0.0, |m: f64, x| m.max(x.abs()));
-        let mut largest = comm.collect(&own).into_iter().fold(0.0, f64::max);
-        comm.broadcast(&mut largest);
-        largest
     }
 }
 
@@ -121,9 +140,7 @@ impl ContactOperator for TreeOperator<'_, '_> {
     ) -> Result<OnGroups<Iterate>, Failure> {
         let context = self.context;
         go_on(context, self.outcome.records.len())?;
-        let of_group = |(&g, statuses): (&usize, &Statuses)| (g, open(&self.laws[&g], statuses));
-        let open: BTreeMap<usize, Vec<bool>> = statuses.iter().map(of_group).collect();
-        self.fronts.freeze(context, &open)?;
+        let open = self.freeze(statuses)?;
         let finest = match self.fronts.coarse_dofs() {
             Some(_) => Accuracy::FULL.tolerance,
             None => 0.0,
@@ -145,42 +162,25 @@ impl ContactOperator for TreeOperator<'_, '_> {
         let laws: Laws = (statuses.iter())
             .map(|(&g, statuses)| (g, slip_laws(&self.laws[&g], statuses)))
             .collect();
-        let mut slip_forces: Forces = (from.iter())
-            .map(|(&g, from)| {
-                let mut first = vec![0.0; from.jumps.len()];
-                laws[&g]
-                    .iter()
-                    .for_each(|law| law.set_first(&from.forces, &mut first));
-                (g, first)
-            })
-            .collect();
+        let turn: Vec<f64> = laws.values().flatten().map(SlipLaw::turning).collect();
+        self.turns = context.comm.largest(&turn) > 0.0;
         let problem = SlipProblem {
             context,
             open: &open,
             clusters: self.loads,
             prescribed: self.bounds,
+            laws: &laws,
+            is_held: self.is_held,
         };
+        let first = problem.first(self.laws, from);
         // The same on all ranks, of which some have no clusters.
         let start = self.is_answered.then(|| FrozenSolution {
             iterations: 0,
             ..std::mem::take(&mut self.solution)
         });
-        let mut solution = problem.respond(self.fronts, &slip_forces, tolerance, start.as_ref())?;
-        let mut at = self.iterates(&solution, &slip_forces);
-        let missed = self.missed(&laws, &at);
-        let size = self.largest(missed.values().flatten());
-        let scale = self.largest(at.values().flat_map(|at| &at.forces));
-        if size > self.accuracy * scale {
-            let aim = 0.3 * self.accuracy * scale / size;
-            let reduction = aim.clamp(REDUCTION[1], REDUCTION[0]);
-            let (change, iterations) = problem.gmres(self.fronts, &laws, missed, reduction)?;
-            for (g, forces) in &mut slip_forces {
-                axpy(1.0, &change[g], forces);
-            }
-            solution.iterations += iterations;
-            solution = problem.respond(self.fronts, &slip_forces, tolerance, Some(&solution))?;
-            at = self.iterates(&solution, &slip_forces);
-        }
+        let from = (tolerance, start.as_ref());
+        let solution = problem.solve(self.fronts, first, from, self.accuracy)?;
+        let at = Self::iterate(&solution);
         (self.solution, self.is_answered) = (solution, true);
         Ok(at)
     }
@@ -200,16 +200,15 @@ impl ContactOperator for TreeOperator<'_, '_> {
     }
 
     fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>> {
-        let largest = self.largest(at.values().flat_map(|at| &at.forces));
+        let comm = self.context.comm;
+        let largest = comm.largest(at.values().flat_map(|at| &at.forces));
         let scale = largest.max(f64::MIN_POSITIVE);
-        let displaced = self.largest(self.solution.boundaries.values().flatten());
+        let displaced = comm.largest(self.solution.boundaries.values().flatten());
+        // Of a rough answer no more than of an exact one.
+        let share = STIFFNESS_SHARE * (ROUND_OFF / self.accuracy) * displaced;
         let of_group = |&g: &usize| {
             let own = self.stiffest[&g].iter();
-            (
-                g,
-                own.map(|k| scale + STIFFNESS_SHARE * k * displaced)
-                    .collect(),
-            )
+            (g, own.map(|k| scale + share * k).collect())
         };
         self.laws.keys().map(of_group).collect()
     }
@@ -235,8 +234,15 @@ impl ContactOperator for TreeOperator<'_, '_> {
         self.accuracy
     }
 
-    fn accuracy(&self, missed: f64) -> StepAccuracy {
-        StepAccuracy::Rough(missed)
+    fn accuracy(&self, total: &TotalResidual) -> StepAccuracy {
+        let missed = total.missed;
+        match total.wrong {
+            0 if self.turns && missed > NEARLY => {
+                StepAccuracy::Rough(missed.min(missed * missed / LOOSE))
+            }
+            0 => StepAccuracy::Full,
+            _ => StepAccuracy::Rough(missed),
+        }
     }
 
     fn record(&mut self, step: NewtonStep) -> Result<(), Failure> {

@@ -1,16 +1,13 @@
-//! Friction where active sets are frozen: a tangential jump sticks, and is known like a closed normal one, or slips
-//! under a force that follows its law.
+//! The contact problem of a load step, solved by Newton's method on the laws of contact
+//! ([`newton`](crate::contact::newton)) with the tree as its operator, or the tree and BDDC.
 //!
-//! Newton's method on the laws of contact ([`newton`](crate::contact::newton)), with the tree as its operator.
-
-mod operator;
-pub mod slip_law;
-pub mod slip_problem;
+//! A jump is known where it is closed or sticks; where it slips its force follows its law. Where Newton's method gets no
+//! further, it begins anew at the solution of the convex problem in which nothing slips. That and the problem without friction
+//! [`settle`] solves, which needs fewer steps than the line search of Newton's method makes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 
-use self::operator::TreeOperator;
 use crate::contact::friction::Status;
 use crate::contact::law::PointStatus;
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
@@ -19,17 +16,33 @@ use crate::contact::newton::{Found, NewtonSettings, OnGroups, newton};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;
-use crate::frozen::active_set::{Conditions, FrozenContact, ROUND_OFF, end, not_finite, settle};
+use crate::frozen::active_set::{Conditions, settle};
 use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::operator::{ROUND_OFF, TreeOperator};
 use crate::frozen::solution::FrozenSolution;
+use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 
 /// Most steps.
 const MAX_STEPS: usize = 400;
 /// Most steps in a row without a smaller merit.
 const PATIENCE: usize = 20;
-/// What may be missed of the laws, relative to the largest force, where steps make it no smaller.
-const ACCEPTABLE: f64 = 1e-10;
+/// What may be missed of the laws, relative to the largest force, where steps make it no smaller: the rest is round-off,
+/// which refinement takes off.
+const ACCEPTABLE: f64 = 1e-7;
+
+/// What the steps found, on this rank.
+#[derive(Clone, Debug)]
+pub struct FrozenContact {
+    /// Forces and closed conditions of every contact group.
+    pub conditions: BTreeMap<usize, Vec<(f64, bool)>>,
+    /// The unknowns on the boundary of every cluster.
+    pub boundaries: BTreeMap<usize, Vec<f64>>,
+    /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
+    pub statuses: BTreeMap<usize, Statuses>,
+    /// How they got there; the same on all ranks but for times.
+    pub outcome: SweepOutcome,
+}
 
 /// The number of the point of every limit of a group.
 fn points_of_limits(group: &ContactGroup, limits: &Limits) -> Vec<usize> {
@@ -68,9 +81,10 @@ fn begin(
 }
 
 /// Finds what every contact point does under `loads` on the boundaries of the clusters, within the `limits` of every
-/// contact group of this rank, from the statuses of the load step `before`, else from where all are closed and stick. Where Newton's method gets no further, it begins anew
-/// where those are closed that press while everything sticks along tangents, open or closed: a convex problem, in which no
-/// body is without a hold because contacts open that are far from each other. Collective.
+/// contact group of this rank, from the statuses of the load step `before`, else from where all are closed and stick. Where
+/// Newton's method gets no further, it begins anew where those are closed that press while everything sticks along tangents,
+/// open or closed: a convex problem, in which no body is without a hold because contacts open that are far from each other.
+/// Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -100,16 +114,46 @@ pub fn solve(
         .map(|(&g, limits)| (g, limits.bounds.clone()))
         .collect();
     let mut outcome = SweepOutcome::before(Vec::new());
+    let all_closed: BTreeMap<usize, Vec<bool>> = (bounds.iter())
+        .map(|(&g, bounds)| (g, vec![false; bounds.len()]))
+        .collect();
+    let sticking = Conditions {
+        loads,
+        bounds: &bounds,
+        stay: &(laws.iter())
+            .map(|(&g, laws)| (g, laws.is_tangential.clone()))
+            .collect(),
+    };
+    if !context.catalog.has_friction() {
+        let mut open = all_closed;
+        for (g, own) in &mut open {
+            let known = before.get(g).filter(|b| b.closed.len() == own.len());
+            let closed = known.into_iter().flat_map(|known| &known.closed);
+            own.iter_mut()
+                .zip(closed)
+                .for_each(|(open, closed)| *open = !closed);
+        }
+        let first = (open, max_steps.unwrap_or(MAX_STEPS));
+        let settled = settle(context, fronts, sticking, first, &mut outcome, observer)?;
+        let found = Found {
+            at: TreeOperator::iterate(&settled.solution),
+            statuses: begin(&laws, |g| settled.open[&g].clone()).1,
+            wrong: OnGroups::new(),
+            missed: if settled.is_right { 0.0 } else { f64::INFINITY },
+            steps: outcome.records.len(),
+        };
+        return conclude(context, limits, &laws, found, settled.solution, outcome);
+    }
     let began = Instant::now();
     let mut settings = NewtonSettings {
-        most: max_steps.unwrap_or(MAX_STEPS),
+        most: max_steps.unwrap_or(MAX_STEPS) + 1,
         patience: PATIENCE,
         tolerance: ROUND_OFF,
         acceptable: ACCEPTABLE,
         round_off: ROUND_OFF,
         law: 1.0,
     };
-    let (mut start, mut statuses) = begin(&laws, |g| vec![false; bounds[&g].len()]);
+    let (mut start, mut statuses) = begin(&laws, |g| all_closed[&g].clone());
     for (g, own) in &mut statuses {
         if let Some(known) = before.get(g) {
             laws[g].take_over(known, own);
@@ -126,11 +170,13 @@ pub fn solve(
             bounds: &bounds,
             solution: FrozenSolution::default(),
             is_answered: false,
+            is_held: false,
             is_released: false,
             outcome: &mut outcome,
             began,
             observer,
             accuracy: ROUND_OFF,
+            turns: false,
         };
         let found = newton(&mut operator, &laws, &start, &statuses, settings)?;
         let solution = std::mem::take(&mut operator.solution);
@@ -140,17 +186,7 @@ pub fn solve(
             return conclude(context, limits, &laws, found, solution, outcome);
         }
         is_anew = true;
-        let sticking = Conditions {
-            loads,
-            bounds: &bounds,
-            stay: &(laws.iter())
-                .map(|(&g, laws)| (g, laws.is_tangential.clone()))
-                .collect(),
-        };
-        let first = (bounds.iter())
-            .map(|(&g, bounds)| (g, vec![false; bounds.len()]))
-            .collect();
-        let first = (first, settings.most);
+        let first = (all_closed.clone(), settings.most);
         let settled = settle(context, fronts, sticking, first, &mut outcome, observer)?;
         (start, statuses) = begin(&laws, |g| settled.open[&g].clone());
     }
@@ -215,6 +251,29 @@ fn conclude(
         statuses,
         outcome,
     })
+}
+
+/// What is said where a linear problem has no finite solution.
+fn not_finite(sweep: usize) -> SweepStatus {
+    SweepStatus::NotConverged(format!(
+        "newton stopped after {sweep} sweeps: with the contacts that are closed then, forces and displacements aren't \
+         finite"
+    ))
+}
+
+/// Counts what the steps took, at their end.
+fn end(outcome: &mut SweepOutcome) {
+    let steps = outcome.records.len();
+    outcome.active_set_iterations = steps;
+    if let Some(last) = outcome.records.last() {
+        outcome.residual = last.residual;
+        outcome.totals = ConTotals {
+            active: last.active,
+            changed: last.changed.unwrap_or(0),
+            steps,
+            ..ConTotals::default()
+        };
+    }
 }
 
 /// The points of wrong limits, by contact and node; on the root. Collective.

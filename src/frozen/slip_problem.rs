@@ -1,0 +1,284 @@
+//! The linear problem of points that slip while the active set is frozen: forces and slips that follow their laws.
+//!
+//! GMRES solves it (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986): a product is a solution of the frozen fronts
+//! for forces at the slipping points and nothing else. Where friction alone keeps bodies from moving on, these forces would
+//! move them without end: there what slips is held at its slip, as what sticks is held where it is, and slips are the
+//! unknowns; that takes more products.
+
+use std::collections::BTreeMap;
+
+use faer::linalg::solvers::SolveLstsq;
+use faer::{Col, Mat};
+
+use crate::bddc::solution::{Accuracy, ClusterLoads};
+use crate::contact::laws::{ContactLaws, Iterate};
+use crate::contact::newton::OnGroups;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::frozen::fronts::FrozenFronts;
+use crate::frozen::slip_law::SlipLaw;
+use crate::frozen::solution::FrozenSolution;
+use crate::vector::{axpy, dot};
+
+/// Most rounds.
+const ROUNDS: usize = 2;
+/// Part of what a round before missed that is no less.
+const STALLS: f64 = 0.5;
+/// How far GMRES goes, relative to what is missed before, at least and at most, and beyond what is enough.
+const REDUCTION: [f64; 2] = [1e-1, 1e-6];
+const MARGIN: f64 = 0.3;
+/// Most products.
+const PRODUCTS: usize = 40;
+/// Tolerance of the first product beside what GMRES is to reach. The nearer that is, the less a product matters: later
+/// ones may be as much less exact (Bouras and Frayssé, SIAM J. Matrix Anal. Appl. 26, 2005).
+const PRODUCT: f64 = 0.3;
+/// Tolerance of a product at most.
+const LEAST_EXACT: f64 = 1e-2;
+
+/// A number for every jump of the contact groups of this rank.
+pub type OnJumps = BTreeMap<usize, Vec<f64>>;
+/// The laws of the slipping points of every contact group of this rank.
+pub type Laws = BTreeMap<usize, Vec<SlipLaw>>;
+
+/// What a frozen active set is solved for with.
+#[derive(Clone, Copy)]
+pub struct SlipProblem<'a> {
+    /// What the run works on.
+    pub context: &'a Context<'a>,
+    /// Which jumps are open, by contact group of this rank; those that slip are unless they are held.
+    pub open: &'a BTreeMap<usize, Vec<bool>>,
+    /// Whether what slips is held.
+    pub is_held: bool,
+    /// Loads on the boundaries of clusters, by node.
+    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    /// The values of the closed jumps of every group, and of those that slip before they do (m).
+    pub prescribed: &'a OnJumps,
+    /// The laws of the slipping points.
+    pub laws: &'a Laws,
+}
+
+impl SlipProblem<'_> {
+    /// The solution of a load with these forces on what slips, or the slips that such forces would make at points as stiff as
+    /// these are, with an iterative solver as `accuracy` says. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    fn respond(
+        &self,
+        fronts: &mut FrozenFronts,
+        (clusters, prescribed): (&BTreeMap<usize, Vec<f64>>, &OnJumps),
+        forces: &OnJumps,
+        accuracy: Accuracy<'_>,
+    ) -> Result<FrozenSolution, Failure> {
+        let mut loads = ClusterLoads {
+            clusters,
+            prescribed,
+            forces,
+        };
+        let (mut held, none) = (prescribed.clone(), OnJumps::new());
+        if self.is_held {
+            add(&mut held, &self.slips(forces));
+            (loads.prescribed, loads.forces) = (&held, &none);
+        }
+        let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
+        if !self.is_held {
+            add(&mut solution.forces, forces);
+        }
+        Ok(solution)
+    }
+
+    /// The forces from which a solution begins near these iterates.
+    pub fn first(&self, laws: &OnGroups<ContactLaws<'_>>, from: &OnGroups<Iterate>) -> OnJumps {
+        let of_group = |(&g, from): (&usize, &Iterate)| {
+            let mut forces = vec![0.0; from.jumps.len()];
+            for law in &self.laws[&g] {
+                match self.is_held {
+                    true => law.set_holding(|t| laws[&g].beyond(t, from), &mut forces),
+                    false => law.set_force(&from.forces, &mut forces),
+                }
+            }
+            (g, forces)
+        };
+        from.iter().map(of_group).collect()
+    }
+
+    /// The solution that follows the laws, but for a part `accuracy` of the largest force, as far as rounds of GMRES make what
+    /// is missed less; from `forces` and an earlier solution, of the same on all ranks. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    pub fn solve(
+        &self,
+        fronts: &mut FrozenFronts,
+        mut forces: OnJumps,
+        (tolerance, start): (f64, Option<&FrozenSolution>),
+        accuracy: f64,
+    ) -> Result<FrozenSolution, Failure> {
+        let respond =
+            |fronts: &mut FrozenFronts, forces: &OnJumps, start: Option<&FrozenSolution>| {
+                let known = start.map(|start| &start.merge_roots);
+                let accuracy = Accuracy {
+                    tolerance,
+                    start: known,
+                };
+                let load = (self.clusters, self.prescribed);
+                let mut solution = self.respond(fronts, load, forces, accuracy)?;
+                solution.iterations += start.map_or(0, |start| start.iterations);
+                Ok::<_, Failure>(solution)
+            };
+        let mut solution = respond(fronts, &forces, start)?;
+        let mut last = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let slip = |g: usize, i: usize| solution.jumps[&g][i] - self.prescribed[&g][i];
+            let missed = self.missed(&solution, slip, false);
+            let size = self.largest(&missed);
+            let enough = accuracy * self.largest(&solution.forces);
+            if size <= enough || size.is_nan() || size > STALLS * last {
+                break;
+            }
+            last = size;
+            let reduction = (MARGIN * enough / size).clamp(REDUCTION[1], REDUCTION[0]);
+            let (change, iterations) = self.gmres(fronts, &missed, reduction)?;
+            add(&mut forces, &change);
+            solution.iterations += iterations;
+            solution = respond(fronts, &forces, Some(&solution))?;
+        }
+        Ok(solution)
+    }
+
+    /// The largest of all numbers on all ranks. Collective.
+    pub fn largest(&self, of_jumps: &OnJumps) -> f64 {
+        self.context.comm.largest(of_jumps.values().flatten())
+    }
+
+    /// What the forces of a solution miss of the laws, where `slip` tells the slip of a jump of a group.
+    fn missed(
+        &self,
+        solution: &FrozenSolution,
+        slip: impl Fn(usize, usize) -> f64,
+        is_change: bool,
+    ) -> OnJumps {
+        let of_group = |(&g, forces): (&usize, &Vec<f64>)| {
+            let mut missed = vec![0.0; forces.len()];
+            for law in self.laws.get(&g).into_iter().flatten() {
+                law.add_missed(forces, |i| slip(g, i), is_change, &mut missed);
+            }
+            (g, missed)
+        };
+        solution.forces.iter().map(of_group).collect()
+    }
+
+    /// The change of forces that takes back what is `missed` of the laws, but for a part `reduction`, and the iterations
+    /// that it took. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    fn gmres(
+        &self,
+        fronts: &mut FrozenFronts,
+        missed: &OnJumps,
+        reduction: f64,
+    ) -> Result<(OnJumps, usize), Failure> {
+        let mut sum: OnJumps = missed
+            .iter()
+            .map(|(&g, m)| (g, vec![0.0; m.len()]))
+            .collect();
+        let size = self.dot(missed, missed).sqrt();
+        let mut iterations = 0;
+        if size == 0.0 {
+            return Ok((sum, iterations));
+        }
+        let mut basis = vec![scaled(missed, -1.0 / size)];
+        let mut h = Mat::<f64>::zeros(PRODUCTS + 1, PRODUCTS);
+        let mut weights = Vec::new();
+        let mut tolerance = PRODUCT * reduction;
+        for k in 0..PRODUCTS {
+            let (mut next, taken) = self.product(fronts, &basis[k], tolerance)?;
+            iterations += taken;
+            for (i, known) in basis.iter().enumerate() {
+                let share = self.dot(&next, known);
+                h[(i, k)] = share;
+                for (g, next) in &mut next {
+                    axpy(-share, &known[g], next);
+                }
+            }
+            let rest = self.dot(&next, &next).sqrt();
+            h[(k + 1, k)] = rest;
+            let small = h.submatrix(0, 0, k + 2, k + 1);
+            let right = Col::from_fn(k + 2, |i| if i == 0 { size } else { 0.0 });
+            let y = small.qr().solve_lstsq(&right);
+            let left = (small * &y - &right).norm_l2();
+            tolerance = (PRODUCT * reduction * size / left).min(LEAST_EXACT);
+            weights = y.subrows(0, k + 1).iter().copied().collect();
+            if left <= reduction * size || rest <= f64::EPSILON * size {
+                break;
+            }
+            basis.push(scaled(&next, 1.0 / rest));
+        }
+        for (known, weight) in basis.iter().zip(weights) {
+            for (g, sum) in &mut sum {
+                axpy(weight, &known[g], sum);
+            }
+        }
+        Ok((sum, iterations))
+    }
+
+    /// The slips that forces would make at points as stiff as these are (m).
+    fn slips(&self, forces: &OnJumps) -> OnJumps {
+        let of_group = |(&g, forces): (&usize, &Vec<f64>)| {
+            let mut slips = vec![0.0; forces.len()];
+            for law in self.laws.get(&g).into_iter().flatten() {
+                law.add_slips(forces, &mut slips);
+            }
+            (g, slips)
+        };
+        forces.iter().map(of_group).collect()
+    }
+
+    /// How what slipping points miss of their law changes with these forces. Collective.
+    fn product(
+        &self,
+        fronts: &mut FrozenFronts,
+        forces: &OnJumps,
+        tolerance: f64,
+    ) -> Result<(OnJumps, usize), Failure> {
+        let none = |(&k, values): (&usize, &Vec<f64>)| (k, vec![0.0; values.len()]);
+        let clusters = self.clusters.iter().map(none).collect();
+        let prescribed = self.prescribed.iter().map(none).collect();
+        let accuracy = Accuracy {
+            tolerance,
+            start: None,
+        };
+        let response = self.respond(fronts, (&clusters, &prescribed), forces, accuracy)?;
+        let product = self.missed(&response, |g, i| response.jumps[&g][i], true);
+        Ok((product, response.iterations))
+    }
+
+    /// a·b over all groups, added up in their order. Collective.
+    fn dot(&self, a: &OnJumps, b: &OnJumps) -> f64 {
+        let Context { comm, plan, .. } = *self.context;
+        let mut sum = 0.0;
+        comm.gather(
+            &plan.group_owners(),
+            |g| dot(&a[&g], &b[&g]),
+            |_, of_group: f64| sum += of_group,
+        );
+        comm.broadcast(&mut sum);
+        sum
+    }
+}
+
+/// Adds other numbers to those of every jump.
+fn add(to: &mut OnJumps, others: &OnJumps) {
+    for (g, to) in to {
+        if let Some(others) = others.get(g) {
+            axpy(1.0, others, to);
+        }
+    }
+}
+
+fn scaled(of_jumps: &OnJumps, factor: f64) -> OnJumps {
+    let all = of_jumps.iter();
+    all.map(|(&g, own)| (g, own.iter().map(|x| factor * x).collect()))
+        .collect()
+}
