@@ -3,7 +3,8 @@
 //!
 //! A jump is known where it is closed or sticks; where it slips its force follows its law. Where Newton's method gets no
 //! further, it begins anew at the solution of the convex problem in which nothing slips. That and the problem without friction
-//! [`settle`] solves, which needs fewer steps than the line search of Newton's method makes.
+//! are solved by [exchanges](crate::frozen::active_set) of the active set, which take fewer steps than Newton's method with its
+//! line search.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
