@@ -3,7 +3,7 @@
 //!
 //! A jump is known where it is closed or sticks; where it slips its force follows its law. Where Newton's method gets no
 //! further, it begins anew at the solution of the convex problem in which nothing slips. That and the problem without friction
-//! are solved by [exchanges](crate::frozen::active_set) of the active set, which take fewer steps than Newton's method with its
+//! are solved by exchanges of the active set, which take fewer steps than Newton's method with its
 //! line search.
 
 use std::collections::{BTreeMap, BTreeSet};
