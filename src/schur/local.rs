@@ -6,10 +6,6 @@ use faer::{Mat, MatRef, Par};
 use super::factor::{BoundaryLastCholesky, FactorError};
 use super::pattern::SparseSymmetric;
 
-/// Springs at I, relative to the diagonal, where pivots of K_II are lost in round-off, the softest first: rigid motions are
-/// held otherwise, so that these are of bodies that bend far more easily than they are compressed.
-const SPRINGS: [f64; 3] = [1e-15, 1e-14, 1e-13];
-
 /// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
 ///
 /// B holds the normal jumps first, then the interface dofs on Γ.
@@ -22,28 +18,17 @@ pub struct LocalSchur {
 }
 
 impl LocalSchur {
-    /// Factorizes a block's stiffness, whose first `interior` unknowns are I, with springs of round-off where it isn't
-    /// positive definite to round-off; the lower triangle of S (Pa) stands beside.
+    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; the lower triangle
+    /// of S (Pa) stands beside.
     ///
     /// # Errors
-    /// K_II isn't positive definite even so: the block can move with its boundary held.
+    /// K_II isn't positive definite: the block can move with its boundary held.
     pub fn new(
         matrix: &SparseSymmetric,
         interior: usize,
         par: Par,
     ) -> Result<(Self, Mat<f64>), FactorError> {
-        let mut condensed = BoundaryLastCholesky::condense(matrix, interior, par);
-        for spring in SPRINGS {
-            if !matches!(condensed, Err(FactorError::Pivot(_))) {
-                break;
-            }
-            let mut held = matrix.clone();
-            for j in 0..interior {
-                held.values[matrix.pattern.column(j).start] *= 1.0 + spring;
-            }
-            condensed = BoundaryLastCholesky::condense(&held, interior, par);
-        }
-        let (factor, s) = condensed?;
+        let (factor, s) = BoundaryLastCholesky::condense(matrix, interior, par)?;
         let diagonal = (interior..matrix.pattern.n())
             .map(|j| matrix.values[matrix.pattern.column(j).start])
             .collect();

@@ -161,13 +161,6 @@ fn refinement_in_space_keeps_the_law_of_friction() {
     }
 }
 
-/// A strip 6,000 times as long as thick, which bends so easily that pivots of its matrix are round-off.
-#[test]
-fn what_bends_with_next_to_no_force_is_not_said_to_move() {
-    let (verdict, why) = judged(draw(688391, 12));
-    assert_eq!(verdict, Verdict::Right, "{why}");
-}
-
 /// Nothing acts on them: gaps of round-off would press them together, by forces that are nothing else.
 #[test]
 fn what_touches_in_space_without_a_load_stays_where_it_is() {
