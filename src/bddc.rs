@@ -121,27 +121,27 @@ impl Bddc {
         })
     }
 
-    /// Freezes which conditions of the groups between clusters are `open`. Collective.
+    /// Fixes which conditions of the groups between clusters are `open`. Collective.
     ///
     /// # Errors
     /// A closed jump that replaces nothing.
-    fn freeze_groups(
+    fn fix_groups(
         &mut self,
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
     ) -> Result<(), Failure> {
         let plan = context.plan;
-        let mut frozen = Ok(());
+        let mut fixed = Ok(());
         for (&g, of_group) in &mut self.groups {
             let eliminated = &plan.tree.nodes[plan.groups[g].node].eliminated;
-            let result = of_group.freeze(&context.groups[&g], &open[&g], eliminated);
-            frozen = frozen.and(result.map_err(|NoUnknown(t)| {
+            let result = of_group.fix(&context.groups[&g], &open[&g], eliminated);
+            fixed = fixed.and(result.map_err(|NoUnknown(t)| {
                 Failure::internal(format!(
                     "contact group {g}: closed jump {t} replaces nothing"
                 ))
             }));
         }
-        context.comm.agree(frozen)
+        context.comm.agree(fixed)
     }
 
     /// The classes whose basis is made anew: those that aren't as `before`, and, where they are to be `renewed`, those of
@@ -163,13 +163,13 @@ impl Bddc {
         }
     }
 
-    /// Freezes which conditions are `open`, for `clusters` some of which were `touched` by that, with a `spring`,
+    /// Fixes which conditions are `open`, for `clusters` some of which were `touched` by that, with a `spring`,
     /// relative to the diagonal, on all unknowns of conditions between them. The preconditioner is made anew where clusters
     /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
     ///
     /// # Errors
     /// A part of the scene can move.
-    pub fn freeze(
+    pub fn fix(
         &mut self,
         context: &Context<'_>,
         clusters: &BTreeMap<usize, ClusterSchur>,
@@ -180,7 +180,7 @@ impl Bddc {
         let Context {
             comm, plan, par, ..
         } = *context;
-        self.freeze_groups(context, open)?;
+        self.fix_groups(context, open)?;
         let (before, changed) = self.classify(context, touched, renewed);
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();

@@ -41,7 +41,7 @@ pub struct Plan {
     pub contact: Vec<usize>,
     /// What becomes of contact on the way.
     pub merging: Merging,
-    /// The nodes of the hierarchy above which nothing is merged where active sets are frozen, ascending: its roots, or
+    /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.
     pub merge_roots: Vec<usize>,
 }
@@ -51,7 +51,7 @@ impl Plan {
     /// by estimated cost.
     pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
         let tree = match merging {
-            Merging::All | Merging::Frozen | Merging::Clusters => Tree::new(catalog),
+            Merging::All | Merging::ActiveSet | Merging::Clusters => Tree::new(catalog),
             Merging::Linear | Merging::Groups => Tree::by_group(catalog),
         };
         let in_contact = (0..tree.nodes.len()).filter(|&v| !tree.nodes[v].points.is_empty());
@@ -76,13 +76,13 @@ impl Plan {
 
     /// Estimated time of what is done at node v of the hierarchy (flops).
     pub fn time(&self, v: usize, dim: usize) -> f64 {
-        self.tree.time(v, dim, self.merging.is_frozen())
+        self.tree.time(v, dim, self.merging.has_active_set())
     }
 
     /// The owner of every node of the hierarchy.
     fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Vec<usize> {
         let top = match self.merging {
-            Merging::Frozen | Merging::Clusters => self.merge_roots.clone(),
+            Merging::ActiveSet | Merging::Clusters => self.merge_roots.clone(),
             _ => cluster_nodes(&self.tree, self.merging, &self.merge_roots),
         };
         let mut costs = vec![0.0; self.tree.nodes.len()];
@@ -131,7 +131,7 @@ impl Plan {
         nodes.iter().map(|&v| self.node_owners[v]).collect()
     }
 
-    /// Whether frozen active sets are merged no further than to node v of the hierarchy.
+    /// Whether fixed active sets are merged no further than to node v of the hierarchy.
     pub fn is_merge_root(&self, v: usize) -> bool {
         self.merge_roots.binary_search(&v).is_ok()
     }
@@ -141,7 +141,7 @@ impl Plan {
         self.tree.nodes[v].parent.filter(|_| !self.is_merge_root(v))
     }
 
-    /// Whether frozen active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
+    /// Whether fixed active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
     pub fn has_one_cluster(&self) -> bool {
         (self.merge_roots.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
     }
@@ -168,7 +168,7 @@ impl Plan {
         }
     }
 
-    /// Whether node v of the hierarchy is above the last ones that frozen active sets are merged to.
+    /// Whether node v of the hierarchy is above the last ones that fixed active sets are merged to.
     pub fn is_above_merge_roots(&self, v: usize) -> bool {
         let mut above = Some(v);
         while let Some(v) = above {
@@ -205,7 +205,7 @@ impl Plan {
         let node = &self.tree.nodes[v];
         let is_root = node.parent.is_none() && node.children.len() > 1;
         let is_small = node.conditions <= MANY_CONDITIONS || self.merging != Merging::All;
-        is_root && is_small && !self.merging.is_frozen()
+        is_root && is_small && !self.merging.has_active_set()
     }
 
     /// The nodes of Γ that the merge at node v eliminates.

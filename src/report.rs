@@ -181,7 +181,7 @@ fn contact_operator(plan: &Plan) -> ContactOperator {
     match plan.merging {
         Merging::All | Merging::Linear | Merging::Groups => ContactOperator::Dense,
         Merging::Clusters if !plan.has_one_cluster() => ContactOperator::Bddc,
-        Merging::Frozen | Merging::Clusters => ContactOperator::Tree,
+        Merging::ActiveSet | Merging::Clusters => ContactOperator::Tree,
     }
 }
 

@@ -254,7 +254,7 @@ impl Stages<'_> {
                 log,
                 factors: &operators.condensed,
                 interface: operators.interface.as_ref(),
-                frozen: operators.frozen.as_ref(),
+                fronts: operators.fronts.as_ref(),
                 is_relieved: robust.is_some(),
                 linear_solves: &progress.linear_solves,
             };

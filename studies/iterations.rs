@@ -168,7 +168,7 @@ fn document(linear: &[(&str, Taken)], contact: &[(&str, Taken)]) -> String {
             iterations[0]
         );
     }
-    text += "\n## With contact\n\nEach sweep freezes an active set. Its iterations begin at the solution of the sweep \
+    text += "\n## With contact\n\nEach sweep fixes an active set. Its iterations begin at the solution of the sweep \
              before and end where they are a\nhundredth of what was wrong with the active set; the last ones go as far \
              as those above.\n\n\
              | scene | dofs | conditions | clusters | coarse dofs | sweeps | iterations of start and sweeps | in all over the last |\n\

@@ -25,7 +25,7 @@ pub struct GroupBetween {
 }
 
 impl GroupBetween {
-    /// Contact group g of this rank, of which no condition is frozen yet.
+    /// Contact group g of this rank, of which no condition is fixed yet.
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.
@@ -48,11 +48,11 @@ impl GroupBetween {
         dofs
     }
 
-    /// Freezes which of its conditions are `open`.
+    /// Fixes which of its conditions are `open`.
     ///
     /// # Errors
     /// A closed one that nothing can be replaced for, which no subset of independent ones has.
-    pub fn freeze(
+    pub fn fix(
         &mut self,
         group: &ContactGroup,
         open: &[bool],

@@ -3,10 +3,10 @@
 //!
 //! The bound b is given, or grows with the normal force, b = c + μ λ: then the matrix of the slipping ones isn't
 //! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; all
-//! wrong statuses are exchanged at once until none is wrong, as semismooth Newton does, and where that gets no
+//! wrong statuses are corrected at once until none is wrong, as semismooth Newton does, and where that gets no
 //! further, from near the end of a path that leads to a solution: an interior one, and in the plane Lemke's.
 
-mod discs;
+mod cones;
 mod lemke;
 mod other;
 mod patch;
@@ -50,7 +50,7 @@ impl FrictionProblem<'_> {
             }
             return solution;
         }
-        self.solve_discs(status)
+        self.solve_cones(status)
     }
 
     /// The change of jumps and forces where limits keep these statuses; `bounds` are what the closed ones lack, and the
@@ -68,7 +68,7 @@ impl FrictionProblem<'_> {
             let trial = self.contact.linear(&open);
             return (trial.jumps, trial.forces);
         }
-        self.change_discs(status, turns)
+        self.change_cones(status, turns)
     }
 }
 

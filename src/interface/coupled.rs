@@ -284,7 +284,7 @@ impl<'a> CoupledContact<'a> {
     }
 
     /// Whether a point slips in a plane.
-    pub fn has_discs(&self) -> bool {
+    pub fn has_cones(&self) -> bool {
         let mut tangents = self.tangents.iter();
         tangents.any(|tangent| tangent.beside != Beside::Nothing)
     }

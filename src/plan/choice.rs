@@ -48,7 +48,7 @@ pub struct ChosenPlan {
 fn merging_of(operator: Operator) -> Merging {
     match operator {
         Operator::Dense => Merging::All,
-        Operator::Tree => Merging::Frozen,
+        Operator::Tree => Merging::ActiveSet,
         Operator::Clusters => Merging::Clusters,
     }
 }
@@ -103,7 +103,7 @@ impl Choice {
         let times = OperatorTimes::new(catalog);
         let operator = match merging {
             Merging::Clusters => times.direct().next()?,
-            Merging::Frozen => Operator::Dense,
+            Merging::ActiveSet => Operator::Dense,
             _ => return None,
         };
         Some(Self::new(merging_of(operator), times.reason(operator)))

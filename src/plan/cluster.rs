@@ -15,23 +15,23 @@ pub enum Merging {
     /// Contact groups are merged each by itself, so that Γ is away from contact: S_CON is as smooth as it can be.
     Groups,
     /// What has no contact is merged once, the rest for every active set anew.
-    Frozen,
+    ActiveSet,
     /// Active sets are fixed, too, and fronts merged no further than to the clusters between which the iterative
     /// interface solver works.
     Clusters,
 }
 
 impl Merging {
-    /// Whether active sets are frozen.
-    pub fn is_frozen(self) -> bool {
-        matches!(self, Self::Frozen | Self::Clusters)
+    /// Whether active sets are fixed.
+    pub fn has_active_set(self) -> bool {
+        matches!(self, Self::ActiveSet | Self::Clusters)
     }
 
     /// The name of the solver in messages.
     pub fn solver(self) -> &'static str {
         match self {
             Self::Clusters => "the iterative interface solver",
-            Self::Frozen => "the direct solver with frozen active sets",
+            Self::ActiveSet => "the direct solver with fixed active sets",
             Self::All | Self::Linear | Self::Groups => "the direct solver",
         }
     }
@@ -66,7 +66,9 @@ pub(super) fn cluster_nodes(tree: &Tree, merging: Merging, merge_roots: &[usize]
         match merging {
             Merging::All | Merging::Groups => !node.points.is_empty() || below_root(MAX_CONDITIONS),
             Merging::Linear => !node.points.is_empty() || below_root(0),
-            Merging::Frozen | Merging::Clusters => node.conditions == 0 && !is_above_merge_roots[v],
+            Merging::ActiveSet | Merging::Clusters => {
+                node.conditions == 0 && !is_above_merge_roots[v]
+            }
         }
     })
 }

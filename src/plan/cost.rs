@@ -61,8 +61,8 @@ impl CostEstimate {
 
 impl Plan {
     /// Whether the front of node v is made again for every active set.
-    fn is_frozen_at(&self, v: usize) -> bool {
-        self.merging.is_frozen() && self.tree.nodes[v].conditions > 0
+    fn has_active_set_at(&self, v: usize) -> bool {
+        self.merging.has_active_set() && self.tree.nodes[v].conditions > 0
     }
 
     /// What every one of `ranks` ranks needs.
@@ -86,14 +86,14 @@ impl Plan {
                 estimate.bytes += PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
             } else {
                 // Open jumps are eliminated, too, closed ones kept.
-                let own = match self.is_frozen_at(v) {
+                let own = match self.has_active_set_at(v) {
                     true => self.tree.own_conditions(v) as f64,
                     false => 0.0,
                 };
                 estimate.bytes += PER_ENTRY * (eliminated + own) * (eliminated + kept);
             }
             // What is merged there is kept for other active sets.
-            if (self.merged_into(v)).is_some_and(|parent| self.is_frozen_at(parent)) {
+            if (self.merged_into(v)).is_some_and(|parent| self.has_active_set_at(parent)) {
                 estimate.bytes += PER_ENTRY * kept * kept;
             }
         }
@@ -104,7 +104,7 @@ impl Plan {
             }
         }
         let mut held = self.waiting(catalog.dim, ranks);
-        if let (Some(root), false) = (held.first_mut(), self.merging.is_frozen()) {
+        if let (Some(root), false) = (held.first_mut(), self.merging.has_active_set()) {
             *root = root.max(self.of_interface_problem(catalog.dim));
         }
         for (estimate, held) in estimates.iter_mut().zip(held) {
@@ -132,7 +132,7 @@ impl Plan {
                 }
             }
             // Where active sets are fixed that of a cluster is counted with what is kept for other sets.
-            if self.merging.is_frozen() {
+            if self.merging.has_active_set() {
                 now[cluster.owner] -= s(cluster.node);
             }
         }
@@ -141,7 +141,7 @@ impl Plan {
 
     /// The front of node v as this plan merges it.
     fn front(&self, v: usize, dim: usize) -> Front {
-        let front = self.tree.front_of(v, dim, self.merging.is_frozen());
+        let front = self.tree.front_of(v, dim, self.merging.has_active_set());
         match self.leaves_its_nodes(v) {
             true => Front {
                 eliminated: 0,

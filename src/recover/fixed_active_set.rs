@@ -14,10 +14,6 @@ use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::balance::Balance;
-use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::slip_law::SlipLaw;
-use crate::frozen::slip_problem::{Laws, OnJumps, SlipProblem};
-use crate::frozen::solution::FrozenSolution;
 use crate::interface::coupled::CoupledContact;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
@@ -29,6 +25,10 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
+use crate::tree::fronts::ActiveSetFronts;
+use crate::tree::slip_law::SlipLaw;
+use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem};
+use crate::tree::solution::ActiveSetSolution;
 
 /// How well slip forces follow what presses, at best.
 const FOLLOWED: f64 = 1e-4;
@@ -49,11 +49,11 @@ pub struct FixedActiveSet<'a> {
     /// What the root holds besides.
     pub root: Option<FixedActiveSetRoot<'a>>,
     /// The fronts above all contact, where they are eliminated for every active set anew.
-    pub frozen: Option<Frozen<'a>>,
+    pub fronts: Option<ActiveSetOfStep<'a>>,
 }
 
 /// The fronts of the active set that was found last, and the limits of every contact group of this rank.
-pub type Frozen<'a> = (&'a RefCell<FrozenFronts>, &'a BTreeMap<usize, Limits>);
+pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a BTreeMap<usize, Limits>);
 
 /// What the root holds besides.
 #[derive(Clone, Copy)]
@@ -98,7 +98,7 @@ impl<'a> FixedActiveSet<'a> {
         step: &'a StepProblem<'a>,
         analysis: &'a RigidBodyAnalysis,
         interface: Option<&'a (Numbering, Interface)>,
-        frozen: Option<Frozen<'a>>,
+        fronts: Option<ActiveSetOfStep<'a>>,
         outcome: Option<&SweepOutcome>,
     ) -> Self {
         let interface = interface.zip(step.interface.as_ref());
@@ -118,7 +118,7 @@ impl<'a> FixedActiveSet<'a> {
                 converged: outcome.status == SweepStatus::Converged,
                 moves: false,
             }),
-            frozen,
+            fronts,
         }
     }
 
@@ -152,8 +152,8 @@ impl<'a> FixedActiveSet<'a> {
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
-        if let Some(frozen) = self.frozen {
-            return self.solve_frozen(frozen, loads, conditions, forces, tolerance);
+        if let Some(fronts) = self.fronts {
+            return self.solve_by_fronts(fronts, loads, conditions, forces, tolerance);
         }
         let limits = self.limits(factors.collect_conditions(conditions));
         let condensed = factors.condense(loads);
@@ -164,10 +164,10 @@ impl<'a> FixedActiveSet<'a> {
         }
     }
 
-    /// The same by the fronts of a frozen active set. Collective.
-    fn solve_frozen(
+    /// The same by the fronts of a fixed active set. Collective.
+    fn solve_by_fronts(
         &self,
-        (fronts, limits): Frozen<'_>,
+        (fronts, limits): ActiveSetOfStep<'_>,
         loads: BTreeMap<usize, Vec<f64>>,
         conditions: FixedConditions,
         forces: &BTreeMap<usize, Vec<f64>>,
@@ -190,7 +190,7 @@ impl<'a> FixedActiveSet<'a> {
             open.insert(g, statuses.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();
-        let Ok(is_held) = freeze(&self.context, &mut fronts, &mut open, &laws) else {
+        let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws) else {
             // The contacts that are left hold nothing: no change is better than any.
             return Change::default();
         };
@@ -276,14 +276,14 @@ impl<'a> FixedActiveSet<'a> {
     }
 }
 
-/// Freezes what is `open`, and returns whether what slips by `laws` is held, which it is where that has to be. Collective.
-fn freeze(
+/// Fixes what is `open`, and returns whether what slips by `laws` is held, which it is where that has to be. Collective.
+fn fix(
     context: &Context<'_>,
-    fronts: &mut FrozenFronts,
+    fronts: &mut ActiveSetFronts,
     open: &mut BTreeMap<usize, Vec<bool>>,
     laws: &Laws,
 ) -> Result<bool, Failure> {
-    fronts.freeze(context, open)?;
+    fronts.fix(context, open)?;
     if !fronts.has_to_hold(context) {
         return Ok(false);
     }
@@ -292,17 +292,17 @@ fn freeze(
             (laws.iter().flat_map(SlipLaw::limits)).for_each(|t| open[t] = false);
         }
     }
-    fronts.freeze(context, open)?;
+    fronts.fix(context, open)?;
     fronts.release(context, open)?;
     Ok(true)
 }
 
 /// Solves for what acts, and for slips where any follow laws. Collective.
 fn follow(
-    fronts: &mut FrozenFronts,
+    fronts: &mut ActiveSetFronts,
     problem: &SlipProblem<'_>,
     tolerance: f64,
-) -> Result<FrozenSolution, Failure> {
+) -> Result<ActiveSetSolution, Failure> {
     let at_rest = |(&g, prescribed): (&usize, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
     let forces: OnJumps = problem.prescribed.iter().map(at_rest).collect();
     let tolerance = match problem.context.catalog.has_friction() {

@@ -10,8 +10,8 @@
 
 use crate::contact::friction::{Status, TangentialCondition};
 use crate::fem::contact_group::ContactGroup;
-use crate::frozen::slip_law::AT_BOUND;
 use crate::recover::GroupSolution;
+use crate::tree::slip_law::AT_BOUND;
 
 /// Angle between force and slip, about, beyond which the slip is too small to tell its direction.
 const TOLD: f64 = 0.1;

@@ -34,8 +34,8 @@ const CORRECTION: f64 = 1e-6;
 const MAX_REFINEMENTS: usize = 3;
 /// The same in space with friction, whose forces turn.
 const MAX_REFINEMENTS_OF_SLIPS: usize = 8;
-/// Most exchanges of what sticks and slips.
-const MAX_EXCHANGES: usize = 20;
+/// Most corrections of what sticks and slips.
+const MAX_CORRECTIONS: usize = 20;
 
 /// Refines `solution` until the certificate holds or gets no better, and returns it; on the root
 /// it is that of the whole solution. Collective.
@@ -70,20 +70,20 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
     best
 }
 
-/// Exchanges what is against the laws of contact, as forces are known better after refinement than the sweeps know them,
+/// Corrects statuses against the laws of contact, as forces are known better after refinement than the sweeps know them,
 /// and refines anew, until they are fulfilled; where that isn't found, nothing is changed: what sticks and what slips
-/// against friction, and where a frozen active set falls short of the certificate, what is closed without a force or
+/// against friction, and where a fixed active set falls short of the certificate, what is closed without a force or
 /// open with an overlap, both less than the sweeps see. Collective.
-pub fn exchange_what_is_wrong(
+pub fn correct_statuses(
     fixed: &FixedActiveSet<'_>,
     solution: &mut DiscreteSolution,
     certificate: Certificate,
 ) -> Certificate {
-    let (mut exchanged, mut after) = (None, certificate);
-    for _ in 0..MAX_EXCHANGES {
+    let (mut corrected, mut after) = (None, certificate);
+    for _ in 0..MAX_CORRECTIONS {
         let is_rough = decide(fixed, after.friction > AGAINST_FRICTION);
-        let is_short = fixed.frozen.is_some() && decide(fixed, worst(&after) > GOOD);
-        let next: &mut DiscreteSolution = exchanged.get_or_insert_with(|| solution.clone());
+        let is_short = fixed.fronts.is_some() && decide(fixed, worst(&after) > GOOD);
+        let next: &mut DiscreteSolution = corrected.get_or_insert_with(|| solution.clone());
         let mut changed = is_rough;
         for (g, of_group) in &mut next.groups {
             let group = &fixed.context.groups[g];
@@ -91,7 +91,7 @@ pub fn exchange_what_is_wrong(
                 changed |= open_or_close(group, of_group);
             }
             if is_rough {
-                exchange(group, of_group);
+                stick_or_slip(group, of_group);
             }
         }
         let changed = fixed.context.comm.collect(&changed).contains(&true);
@@ -103,9 +103,9 @@ pub fn exchange_what_is_wrong(
     }
     let is_right = after.friction <= AGAINST_FRICTION;
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
-    match exchanged {
-        Some(exchanged) if decide(fixed, is_right && as_good) => {
-            *solution = exchanged;
+    match corrected {
+        Some(corrected) if decide(fixed, is_right && as_good) => {
+            *solution = corrected;
             after
         }
         _ => certificate,
@@ -134,7 +134,7 @@ fn open_or_close(group: &ContactGroup, solution: &mut GroupSolution) -> bool {
 
 /// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it. What slips without
 /// a force, which it lost with its pressure, gets the one that it has by the law.
-fn exchange(group: &ContactGroup, solution: &mut GroupSolution) {
+fn stick_or_slip(group: &ContactGroup, solution: &mut GroupSolution) {
     for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
         let TangentialCondition { normal, bound, .. } = of_point[0];
         let bound = bound.at(solution.forces[normal], solution.closed[normal]);

@@ -12,7 +12,6 @@ use crate::contact::laws::Statuses;
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
-use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
@@ -23,12 +22,13 @@ use crate::recover::{Slips, recover, substitute_back};
 use crate::report::log::RunLog;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::scene::Scene;
-use crate::run::sweeping::{sweep, sweep_frozen};
+use crate::run::sweeping::{sweep, sweep_active_sets};
 use crate::settings::Settings;
 use crate::step::Loading;
 use crate::step::halving::StepHalving;
 use crate::step::state::{StepState, analyse, go_on};
 use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
+use crate::tree::fronts::ActiveSetFronts;
 
 /// Data that all increments share: everything made of matrices.
 #[derive(Clone, Copy)]
@@ -43,8 +43,8 @@ pub struct Increments<'a> {
     pub factors: &'a CondensedBlocks,
     /// Γ and the operators on it; on the root.
     pub interface: Option<&'a (Numbering, Interface)>,
-    /// The fronts above all contact, where active sets are frozen.
-    pub frozen: Option<&'a RefCell<FrozenFronts>>,
+    /// The fronts above all contact, where active sets are fixed.
+    pub fronts: Option<&'a RefCell<ActiveSetFronts>>,
     /// Whether another solver takes over where this one doesn't converge.
     pub is_relieved: bool,
     /// Linear problems that were solved for contact conditions, in tries that were given up, too; on the root.
@@ -169,7 +169,7 @@ impl Increments<'_> {
             log,
             factors,
             interface,
-            frozen,
+            fronts,
             ..
         } = self;
         let comm = context.comm;
@@ -191,7 +191,7 @@ impl Increments<'_> {
         if (problem.interface.as_ref()).is_some_and(InterfaceProblem::is_unloaded) {
             start = Start::Bilateral;
         }
-        let limits = match frozen {
+        let limits = match fronts {
             Some(_) => limits_of_groups(&context, &problem.loads)?,
             None => BTreeMap::new(),
         };
@@ -202,12 +202,12 @@ impl Increments<'_> {
         log.phase("sweeping", None);
         let lap = comm.times();
         let mut found = None;
-        let mut outcome = match frozen {
+        let mut outcome = match fronts {
             Some(fronts) => {
                 let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
                 let before = fronts.solves;
                 let of_limits = (&limits, &statuses);
-                let contact = sweep_frozen(&context, settings, log, fronts, loads, of_limits)
+                let contact = sweep_active_sets(&context, settings, log, fronts, loads, of_limits)
                     .map_err(|failure| context.of_pivot(failure))?;
                 statuses.clone_from(&contact.statuses);
                 self.count(fronts.solves - before);
@@ -236,7 +236,7 @@ impl Increments<'_> {
             &problem,
             analysis,
             interface,
-            frozen.map(|fronts| (fronts, &limits)),
+            fronts.map(|fronts| (fronts, &limits)),
             outcome.as_ref(),
         );
         let discrete = match found {

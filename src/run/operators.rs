@@ -11,11 +11,11 @@ use crate::condense::interface::assemble_interface;
 use crate::condense::tree::condense_clusters;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
-use crate::frozen::fronts::FrozenFronts;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::report::log::RunLog;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::tree::fronts::ActiveSetFronts;
 
 /// The operators of a stage, as this rank has them.
 pub struct Operators {
@@ -24,7 +24,7 @@ pub struct Operators {
     /// Γ and the operators on it; on the root, where they are assembled.
     pub interface: Option<(Numbering, Interface)>,
     /// The fronts above all contact, where active sets are fixed one after the other.
-    pub frozen: Option<RefCell<FrozenFronts>>,
+    pub fronts: Option<RefCell<ActiveSetFronts>>,
 }
 
 impl Operators {
@@ -62,14 +62,14 @@ impl Operators {
 
         log.phase("assembling the interface problem", None);
         let lap = comm.times();
-        let frozen = match context.plan.merging.is_frozen() {
-            true => Some(RefCell::new(FrozenFronts::new(
+        let fronts = match context.plan.merging.has_active_set() {
+            true => Some(RefCell::new(ActiveSetFronts::new(
                 &condensation,
                 std::mem::take(&mut condensed.linear),
             )?)),
             false => None,
         };
-        let interface = match frozen {
+        let interface = match fronts {
             Some(_) => None,
             None => assemble_interface(&context, &condensed)
                 .map_err(|failure| context.of_pivot(failure))?,
@@ -78,13 +78,13 @@ impl Operators {
         Ok(Self {
             condensed,
             interface,
-            frozen,
+            fronts,
         })
     }
 
     /// The smallest pivot relative to its diagonal entry; on the root.
     pub fn smallest_pivot(&self) -> f64 {
-        match (&self.interface, &self.frozen) {
+        match (&self.interface, &self.fronts) {
             (Some((_, interface)), _) => interface.smallest_pivot(),
             (None, Some(fronts)) => fronts.borrow().smallest_pivot,
             (None, None) => 1.0,

@@ -165,7 +165,9 @@ impl Stages<'_> {
             check_copies(comm, file, &blocks)?;
         }
         let groups = collect_groups(comm, file, catalog, &chosen.plan, &blocks)?;
-        if chosen.choice.merging.is_frozen() && depend_on_each_other(comm, &chosen.plan, &groups) {
+        if chosen.choice.merging.has_active_set()
+            && depend_on_each_other(comm, &chosen.plan, &groups)
+        {
             chosen = chosen.of_dependent(comm, catalog)?;
         }
         let ChosenPlan {

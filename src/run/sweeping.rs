@@ -7,14 +7,14 @@ use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::contact::{self, FrozenContact};
-use crate::frozen::fronts::FrozenFronts;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::SCon;
 use crate::report::log::RunLog;
 use crate::schur::local::CondensedLoad;
 use crate::settings::Settings;
 use crate::sweep::{Start, SweepOutcome, SweepRecord, Sweeps};
+use crate::tree::contact::{self, TreeContact};
+use crate::tree::fronts::ActiveSetFronts;
 
 /// Solves S_0 U + S_CON(U) = F, (14), from the `start` and tells of every sweep: the root solves for U, the other
 /// ranks serve S_CON. Collective; problem and outcome are the root's.
@@ -47,19 +47,19 @@ pub fn sweep(
     context.comm.agree(solved.map(Some))
 }
 
-/// Finds which of many conditions are closed in a load step, one frozen active set after the other, and tells of
+/// Finds which of many conditions are closed in a load step, one fixed active set after the other, and tells of
 /// every one; the first has the statuses of the load step `before`. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely.
-pub fn sweep_frozen(
+pub fn sweep_active_sets(
     context: &Context<'_>,
     settings: &Settings,
     log: &RunLog<'_>,
-    fronts: &mut FrozenFronts,
+    fronts: &mut ActiveSetFronts,
     condensed: &BTreeMap<usize, CondensedLoad>,
     (limits, before): (&BTreeMap<usize, Limits>, &BTreeMap<usize, Statuses>),
-) -> Result<FrozenContact, Failure> {
+) -> Result<TreeContact, Failure> {
     log.sweeps(true);
     let loads = condensed
         .iter()

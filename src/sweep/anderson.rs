@@ -43,7 +43,7 @@ impl Chords {
 impl Sweeps<'_, '_> {
     pub(super) fn anderson(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
         let coupled = CoupledContact::new(self.problem);
-        let most = match coupled.is_some_and(|coupled| coupled.has_discs()) {
+        let most = match coupled.is_some_and(|coupled| coupled.has_cones()) {
             true => MAX_SWEEPS_OF_DISCS,
             false => MAX_SWEEPS,
         };

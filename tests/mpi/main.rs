@@ -75,7 +75,7 @@ fn main() -> ExitCode {
     outputs::folder_of_the_root_alone(&mut trials);
     outputs::vanished_folder(&mut trials);
     sudden_ends::sudden_ends(&mut trials);
-    sudden_ends::in_a_frozen_step(&mut trials);
+    sudden_ends::in_an_active_set_step(&mut trials);
     stopping::stopped_once_all_is_read(&mut trials);
     stopping::stopped_ahead_of_sweeps(&mut trials);
     stopping::stopped_while_sweeping(&mut trials);

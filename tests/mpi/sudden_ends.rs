@@ -47,13 +47,14 @@ pub fn sudden_ends(trials: &mut Trials) {
     }
 }
 
-/// A rank that fails while one of many active sets is frozen: all try once more with springs, and end.
-pub fn in_a_frozen_step(trials: &mut Trials) {
+/// A rank that fails while one of many active sets is fixed: all try once more with springs, and end.
+pub fn in_an_active_set_step(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
     }
     for ranks in [2, 3] {
-        let name = format!("sudden_end::failure_while_an_active_set_is_frozen::on_{ranks}_ranks");
+        let name =
+            format!("sudden_end::failure_while_an_active_set_has_active_set::on_{ranks}_ranks");
         trials.once(&name, move || {
             let case = Case::of(&built_in_model("wall", 1), 33);
             fs::write(case.result(), "the result of yesterday").unwrap();

@@ -27,10 +27,10 @@ fn granite_is_the_monolithic_solution() {
     assert_eq!(closed, 31);
 }
 
-/// So many conditions that the active set is frozen and corrected step by step; the certificate knows the whole
+/// So many conditions that the active set is fixed and corrected step by step; the certificate knows the whole
 /// problem.
 #[test]
-fn many_conditions_are_solved_for_by_frozen_active_sets() {
+fn many_conditions_are_solved_for_by_fixed_active_sets() {
     let solution = solve(&built_in_model("wall", 1), 33);
     let sweeps = solution.sweeps();
     assert!((3..=12).contains(&sweeps), "{sweeps}");

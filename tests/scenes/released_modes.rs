@@ -84,7 +84,7 @@ fn a_body_without_load_stays_when_its_support_leaves() {
     }
 }
 
-/// So many conditions that active sets are frozen: where all are open, springs hold the upper block.
+/// So many conditions that active sets are fixed: where all are open, springs hold the upper block.
 #[test]
 fn a_body_stays_that_many_contacts_let_go() {
     let cells = [650, 2];

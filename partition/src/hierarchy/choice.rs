@@ -96,9 +96,11 @@ impl OperatorTimes {
         } else {
             FEW_CONDITIONS
         };
-        let sum = |is_frozen| {
+        let sum = |has_active_set| {
             let nodes = 0..tree.nodes.len();
-            nodes.map(|v| tree.time(v, dim, is_frozen)).sum::<f64>()
+            nodes
+                .map(|v| tree.time(v, dim, has_active_set))
+                .sum::<f64>()
         };
         let cubes = tree
             .roots()

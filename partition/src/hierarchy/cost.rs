@@ -20,7 +20,7 @@ impl Tree {
     }
 
     /// The front of node v where every active set is fixed, so that no jump of what is under the node is kept.
-    pub fn frozen_front(&self, v: usize, dim: usize) -> Front {
+    pub fn active_set_front(&self, v: usize, dim: usize) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
         Front {
             eliminated: front.eliminated,
@@ -28,10 +28,10 @@ impl Tree {
         }
     }
 
-    /// The front of node v, which keeps all normal jumps under it unless active sets are frozen.
-    pub fn front_of(&self, v: usize, dim: usize, is_frozen: bool) -> Front {
+    /// The front of node v, which keeps all normal jumps under it unless active sets are fixed.
+    pub fn front_of(&self, v: usize, dim: usize, has_active_set: bool) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
-        match is_frozen {
+        match has_active_set {
             true => Front {
                 eliminated: front.eliminated,
                 kept: front.kept - node.conditions + self.own_conditions(v),
@@ -41,12 +41,12 @@ impl Tree {
     }
 
     /// Estimated time of node v, in flops: its arithmetic, and what goes with it; over all active sets where these are
-    /// frozen.
-    pub fn time(&self, v: usize, dim: usize, is_frozen: bool) -> f64 {
-        let front = self.front_of(v, dim, is_frozen);
+    /// fixed.
+    pub fn time(&self, v: usize, dim: usize, has_active_set: bool) -> f64 {
+        let front = self.front_of(v, dim, has_active_set);
         match v < self.subdomains {
             true => front.time_to_condense(dim),
-            false if is_frozen && self.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
+            false if has_active_set && self.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
             false => front.time(),
         }
     }

@@ -21,21 +21,24 @@ pub struct Work {
 const GAIN: f64 = 0.2;
 
 impl Work {
-    /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are frozen, and that
+    /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are fixed, and that
     /// of iterations between clusters where these take less time.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let operators = OperatorTimes::new(catalog);
-        let is_frozen = operators.direct().next() == Some(Operator::Tree);
-        let front = |v: usize| match is_frozen {
-            true => tree.frozen_front(v, dim),
+        let has_active_set = operators.direct().next() == Some(Operator::Tree);
+        let front = |v: usize| match has_active_set {
+            true => tree.active_set_front(v, dim),
             false => tree.front(v, dim),
         };
         let (times, coarse) = match operators.fastest() {
             Operator::Clusters => (times_to_clusters(&tree, dim), operators.coarse),
             _ => {
                 let nodes = 0..tree.nodes.len();
-                (nodes.map(|v| tree.time(v, dim, is_frozen)).collect(), 0.0)
+                (
+                    nodes.map(|v| tree.time(v, dim, has_active_set)).collect(),
+                    0.0,
+                )
             }
         };
         let nodes = 0..tree.nodes.len();

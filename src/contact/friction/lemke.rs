@@ -1,7 +1,7 @@
 //! The way to a solution from a problem whose solution is known: Lemke's method, on jumps and forces.
 //!
 //! With θ p more on every normal force and θ b more on every given bound, all is closed and sticks where θ is large.
-//! From there θ goes down. Wherever a force or a jump reaches its limit, one status is exchanged, and θ goes on in the
+//! From there θ goes down. Wherever a force or a jump reaches its limit, one status changes, and θ goes on in the
 //! direction, up or down, in which what was at its limit before moves away from it: a path of straight pieces that
 //! never comes back. No piece is endless: along one that is, jumps x would have xᵀ H x ≤ 0. So it gets to θ = 0,
 //! whatever the coefficients of friction, but for round-off; and where motions that nothing resists are driven.
@@ -21,16 +21,16 @@ use crate::contact::open_factor::scale_of;
 
 /// Limits up to which the path is followed: its matrix is dense.
 const MOST_LIMITS: usize = 3000;
-/// Exchanges between which its round-off may grow, but for that of large problems.
+/// Pivots between which its round-off may grow, but for that of large problems.
 const MOST_UPDATES: usize = 20;
-/// Exchanges, whatever the problem and for each limit.
+/// Pivots, whatever the problem and for each limit.
 const EXCHANGES: usize = 200;
 const EXCHANGES_EACH: usize = 8;
-/// Exchanges in a row at one θ: round-off goes round in circles there.
+/// Pivots in a row at one θ: round-off goes round in circles there.
 const STANDS_STILL: usize = 100;
 
 impl FrictionProblem<'_> {
-    /// The end of the path, and the exchanges that it took; `None` where it doesn't get there. Every `attempt` goes
+    /// The end of the path, and the pivots that it took; `None` where it doesn't get there. Every `attempt` goes
     /// another way.
     pub(super) fn follow(&self, attempt: usize) -> (Option<End>, usize) {
         if self.contact.bounds.len() > MOST_LIMITS {
@@ -41,25 +41,25 @@ impl FrictionProblem<'_> {
         let (mut theta, mut way) = (f64::INFINITY, -1.0);
         let (mut entered, mut still) = (None, 0);
         let often = (self.contact.bounds.len() / 4).max(MOST_UPDATES);
-        for exchanges in 0..most {
-            if exchanges % often == often - 1 {
+        for pivots in 0..most {
+            if pivots % often == often - 1 {
                 path.refresh();
             }
             if let Some((i, quantity)) = entered {
                 way = path.quantity(i, quantity)[1].signum();
             }
             match path.next(theta, way, entered) {
-                Some((at, _, _)) if at <= 0.0 => return (Some(path.end()), exchanges),
-                None if way < 0.0 => return (Some(path.end()), exchanges),
+                Some((at, _, _)) if at <= 0.0 => return (Some(path.end()), pivots),
+                None if way < 0.0 => return (Some(path.end()), pivots),
                 Some((at, i, quantity)) => {
                     still = if at == theta { still + 1 } else { 0 };
                     if still > STANDS_STILL {
-                        return (None, exchanges);
+                        return (None, pivots);
                     }
                     theta = at;
-                    entered = Some(path.exchange(theta, i, quantity));
+                    entered = Some(path.pivot(theta, i, quantity));
                 }
-                None => return (None, exchanges),
+                None => return (None, pivots),
             }
         }
         (None, most)

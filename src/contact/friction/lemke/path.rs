@@ -202,7 +202,7 @@ impl Path {
         [of(0), of(1)]
     }
 
-    /// Computes responses and values anew from the start, without the round-off of exchanges.
+    /// Computes responses and values anew from the start, without the round-off of pivots.
     pub(super) fn refresh(&mut self) {
         let count = self.bounds.len();
         self.value = [self.at_start.clone(), vec![0.0; 2 * count]];
@@ -245,7 +245,7 @@ impl Path {
     fn replace(&mut self, i: usize, quantity: Quantity) {
         let of_value = self.quantity(i, quantity);
         let (terms, _) = self.terms(i, quantity);
-        let column = self.responses.exchange(i, terms);
+        let column = self.responses.pivot(i, terms);
         for (value, of_value) in self.value.iter_mut().zip(of_value) {
             axpy(-of_value, column, value);
         }
@@ -315,13 +315,8 @@ impl Path {
         nearest
     }
 
-    /// Exchanges the status of limit i, one of whose quantities has become 0; what isn't any more.
-    pub(super) fn exchange(
-        &mut self,
-        theta: f64,
-        i: usize,
-        quantity: Quantity,
-    ) -> (usize, Quantity) {
+    /// Changes the status of limit i, one of whose quantities has become 0; what isn't any more.
+    pub(super) fn pivot(&mut self, theta: f64, i: usize, quantity: Quantity) -> (usize, Quantity) {
         let was = self.zero[i];
         let at = |[value, slope]: [f64; 2]| value + theta * slope;
         // What vanishes with a normal force slips as it opens, and from where it closes towards its slip.

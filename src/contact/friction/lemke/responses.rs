@@ -6,15 +6,15 @@
 //! x ← x − c aᵀ x,    column i   c = x / aᵀ x
 //! ```
 //!
-//! An exchange needs one column of them. So c and a are kept, a column is made when it is asked for, and all of them
-//! where there are many exchanges, by products of matrices.
+//! A pivot needs one column of them. So c and a are kept, a column is made when it is asked for, and all of them
+//! where there are many pivots, by products of matrices.
 
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Mat, Par};
 
 use crate::vector::axpy;
 
-/// Exchanges that are kept apart.
+/// Pivots that are kept apart.
 const MOST_APART: usize = 64;
 
 /// A sum of two jumps and forces, by their number.
@@ -22,13 +22,13 @@ pub(super) type Terms = [(usize, f64); 2];
 
 /// The columns.
 pub(super) struct Responses {
-    /// As they were before the exchanges that are kept apart.
+    /// As they were before the pivots that are kept apart.
     columns: Mat<f64>,
-    exchanges: Vec<Exchange>,
+    pivots: Vec<Pivot>,
 }
 
 /// Another quantity that is 0 at a limit.
-struct Exchange {
+struct Pivot {
     limit: usize,
     /// a.
     terms: Terms,
@@ -44,70 +44,70 @@ impl Responses {
     pub(super) fn new(columns: Mat<f64>) -> Self {
         Self {
             columns,
-            exchanges: Vec::new(),
+            pivots: Vec::new(),
         }
     }
 
-    /// What column i is made of: an own one, and the exchanges since.
+    /// What column i is made of: an own one, and the pivots since.
     fn origin(&self, i: usize) -> (&[f64], usize) {
-        match self.exchanges.iter().rposition(|one| one.limit == i) {
-            Some(k) => (&self.exchanges[k].column, k + 1),
+        match self.pivots.iter().rposition(|one| one.limit == i) {
+            Some(k) => (&self.pivots[k].column, k + 1),
             None => (self.columns.col_as_slice(i), 0),
         }
     }
 
     /// Makes another quantity of limit i 0, and returns its column.
-    pub(super) fn exchange(&mut self, i: usize, terms: Terms) -> &[f64] {
-        if self.exchanges.len() == MOST_APART {
+    pub(super) fn pivot(&mut self, i: usize, terms: Terms) -> &[f64] {
+        if self.pivots.len() == MOST_APART {
             self.put_together();
         }
         let (origin, since) = self.origin(i);
         let mut column = origin.to_vec();
-        for exchange in &self.exchanges[since..] {
-            let share = sum(&exchange.terms, &column);
-            axpy(-share, &exchange.column, &mut column);
+        for pivot in &self.pivots[since..] {
+            let share = sum(&pivot.terms, &column);
+            axpy(-share, &pivot.column, &mut column);
         }
         let own = sum(&terms, &column);
         column.iter_mut().for_each(|x| *x /= own);
-        self.exchanges.push(Exchange {
+        self.pivots.push(Pivot {
             limit: i,
             terms,
             column,
         });
-        &self.exchanges[self.exchanges.len() - 1].column
+        &self.pivots[self.pivots.len() - 1].column
     }
 
-    /// Makes all columns: with the shares s of the exchanges in them, s_k = a_kᵀ (x − Σ s_l c_l) for l < k.
+    /// Makes all columns: with the shares s of the pivots in them, s_k = a_kᵀ (x − Σ s_l c_l) for l < k.
     fn put_together(&mut self) {
         let (rows, count, apart) = (
             self.columns.nrows(),
             self.columns.ncols(),
-            self.exchanges.len(),
+            self.pivots.len(),
         );
         let mut shares = Mat::zeros(apart, count);
         let mut origins: Vec<Option<usize>> = vec![None; count];
-        for (k, exchange) in self.exchanges.iter().enumerate() {
-            origins[exchange.limit] = Some(k);
+        for (k, pivot) in self.pivots.iter().enumerate() {
+            origins[pivot.limit] = Some(k);
         }
         for (i, origin) in origins.into_iter().enumerate() {
             if let Some(k) = origin {
-                let own = self.exchanges[k].column.iter();
+                let own = self.pivots[k].column.iter();
                 let column = self.columns.col_as_slice_mut(i).iter_mut();
                 column.zip(own).for_each(|(x, own)| *x = *own);
             }
             let column = self.columns.col_as_slice(i);
             let since = origin.map_or(0, |k| k + 1);
-            for (k, exchange) in self.exchanges.iter().enumerate().skip(since) {
-                shares[(k, i)] = sum(&exchange.terms, column);
+            for (k, pivot) in self.pivots.iter().enumerate().skip(since) {
+                shares[(k, i)] = sum(&pivot.terms, column);
             }
         }
         let of_each = Mat::from_fn(apart, apart, |k, l| {
-            sum(&self.exchanges[k].terms, &self.exchanges[l].column)
+            sum(&self.pivots[k].terms, &self.pivots[l].column)
         });
         solve_unit_lower_triangular_in_place(of_each.as_ref(), shares.as_mut(), Par::Seq);
-        let columns = Mat::from_fn(rows, apart, |i, k| self.exchanges[k].column[i]);
+        let columns = Mat::from_fn(rows, apart, |i, k| self.pivots[k].column[i]);
         self.columns -= &columns * &shares;
-        self.exchanges.clear();
+        self.pivots.clear();
     }
 }
 
@@ -117,11 +117,11 @@ mod tests {
     use crate::contact::friction::points::noise;
 
     #[test]
-    fn columns_in_product_form_are_those_of_one_exchange_after_the_other() {
+    fn columns_in_product_form_are_those_of_one_pivot_after_the_other() {
         let (rows, count) = (24, 12);
         let mut dense = Mat::from_fn(rows, count, |i, j| noise(7 * i + 131 * j));
         let mut responses = Responses::new(dense.clone());
-        let mut exchanges = 0;
+        let mut pivots = 0;
         for k in 0..2000 {
             let (i, j) = ((5 * k + k / 7) % count, (11 * k + k / 3) % rows);
             let terms = [(j, 1.0), ((j + 5) % rows, 0.5)];
@@ -132,17 +132,17 @@ mod tests {
             if share[i].abs() < 0.5 * share.iter().fold(0.0, |m: f64, x| m.max(x.abs())) {
                 continue;
             }
-            exchanges += 1;
+            pivots += 1;
             let column: Vec<f64> = (0..rows).map(|p| dense[(p, i)] / share[i]).collect();
             for q in (0..count).filter(|&q| q != i) {
                 axpy(-share[q], &column, dense.col_as_slice_mut(q));
             }
             dense.col_as_slice_mut(i).copy_from_slice(&column);
             let scale = column.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-            for (a, b) in responses.exchange(i, terms).iter().zip(&column) {
+            for (a, b) in responses.pivot(i, terms).iter().zip(&column) {
                 assert!((a - b).abs() < 1e-9 * scale, "{k}: {a:e} {b:e}");
             }
         }
-        assert!(exchanges > 2 * MOST_APART, "{exchanges}");
+        assert!(pivots > 2 * MOST_APART, "{pivots}");
     }
 }

@@ -10,12 +10,12 @@ use crate::contact::laws::{ContactLaws, Iterate, LawResidual, Statuses};
 use crate::contact::newton::{ContactOperator, NewtonStep, OnGroups, StepAccuracy, TotalResidual};
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::exchange::LOOSE;
-use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::slip_law::SlipLaw;
-use crate::frozen::slip_problem::{Laws, SlipProblem};
-use crate::frozen::solution::FrozenSolution;
 use crate::sweep::{SweepOutcome, SweepRecord};
+use crate::tree::fronts::ActiveSetFronts;
+use crate::tree::slip_law::SlipLaw;
+use crate::tree::slip_problem::{Laws, SlipProblem};
+use crate::tree::solution::ActiveSetSolution;
+use crate::tree::update::LOOSE;
 use crate::vector::between;
 
 /// What is none beside the largest force or displacement.
@@ -28,7 +28,7 @@ const STIFFNESS_SHARE: f64 = 1e-3;
 /// The operator.
 pub(super) struct TreeOperator<'a, 'o> {
     pub context: &'a Context<'a>,
-    pub fronts: &'a mut FrozenFronts,
+    pub fronts: &'a mut ActiveSetFronts,
     pub laws: &'a OnGroups<ContactLaws<'a>>,
     /// The stiffness that the round-off of the force of every limit is relative to (N/m).
     pub stiffest: &'a OnGroups<Vec<f64>>,
@@ -37,7 +37,7 @@ pub(super) struct TreeOperator<'a, 'o> {
     /// Where closed jumps are, by contact group (m).
     pub bounds: &'a BTreeMap<usize, Vec<f64>>,
     /// The last answer.
-    pub solution: FrozenSolution,
+    pub solution: ActiveSetSolution,
     /// Whether there was one.
     pub is_answered: bool,
     /// Whether what slips is held at its slip, without which something moves.
@@ -91,13 +91,13 @@ pub(super) fn go_on(context: &Context<'_>, sweeps: usize) -> Result<(), Failure>
 }
 
 impl TreeOperator<'_, '_> {
-    /// Freezes what these statuses leave open, which it returns; where that needs springs and directions of slip turn with
+    /// Fixes what these statuses leave open, which it returns; where that needs springs and directions of slip turn with
     /// it, what slips is held from then on.
     /// Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.
-    fn freeze(
+    fn fix(
         &mut self,
         statuses: &OnGroups<Statuses>,
     ) -> Result<BTreeMap<usize, Vec<bool>>, Failure> {
@@ -108,19 +108,19 @@ impl TreeOperator<'_, '_> {
                 .collect()
         };
         let free: BTreeMap<usize, Vec<bool>> = open(self.is_held);
-        self.fronts.freeze(context, &free)?;
+        self.fronts.fix(context, &free)?;
         if self.is_held || !self.fronts.has_to_hold(context) {
             return Ok(free);
         }
         self.is_held = true;
         let held = open(true);
-        self.fronts.freeze(context, &held)?;
+        self.fronts.fix(context, &held)?;
         self.fronts.release(context, &held)?;
         Ok(held)
     }
 
     /// The iterate that a solution is.
-    pub fn iterate(solution: &FrozenSolution) -> OnGroups<Iterate> {
+    pub fn iterate(solution: &ActiveSetSolution) -> OnGroups<Iterate> {
         let of_group = |(&g, jumps): (&usize, &Vec<f64>)| {
             let (jumps, forces) = (jumps.clone(), solution.forces[&g].clone());
             (g, Iterate { jumps, forces })
@@ -140,7 +140,7 @@ impl ContactOperator for TreeOperator<'_, '_> {
     ) -> Result<OnGroups<Iterate>, Failure> {
         let context = self.context;
         go_on(context, self.outcome.records.len())?;
-        let open = self.freeze(statuses)?;
+        let open = self.fix(statuses)?;
         let finest = match self.fronts.coarse_dofs() {
             Some(_) => Accuracy::FULL.tolerance,
             None => 0.0,
@@ -174,7 +174,7 @@ impl ContactOperator for TreeOperator<'_, '_> {
         };
         let first = problem.first(self.laws, from);
         // The same on all ranks, of which some have no clusters.
-        let start = self.is_answered.then(|| FrozenSolution {
+        let start = self.is_answered.then(|| ActiveSetSolution {
             iterations: 0,
             ..std::mem::take(&mut self.solution)
         });

@@ -1,4 +1,4 @@
-//! Which conditions are exchanged where the solution says that an active set is wrong.
+//! Which conditions are changed where the solution says that an active set is wrong.
 //!
 //! All that are wrong, as semismooth Newton does. Where these don't become fewer the energy descends: from jumps that
 //! penetrate nowhere the way towards those of a step is gone up to where the first condition closes, and where none does
@@ -14,19 +14,19 @@ pub(super) const LOOSE: f64 = 0.01;
 /// Steps without fewer conditions that say otherwise until the energy descends.
 const PATIENCE: usize = 8;
 
-/// Whether all wrong conditions are exchanged.
+/// Whether all wrong conditions are changed.
 #[derive(Debug)]
-pub(super) struct Exchange {
+pub(super) struct ActiveSetUpdate {
     /// Fewest conditions that were wrong.
     fewest: usize,
     /// Steps that may go by without fewer.
     patience: usize,
-    /// Tolerance of an iterative solver beside what is wrong with the active set before: where conditions are exchanged
+    /// Tolerance of an iterative solver beside what is wrong with the active set before: where conditions are changed
     /// because of errors they don't become fewer.
     pub tolerance: f64,
 }
 
-impl Default for Exchange {
+impl Default for ActiveSetUpdate {
     fn default() -> Self {
         Self {
             fewest: usize::MAX,
@@ -36,8 +36,8 @@ impl Default for Exchange {
     }
 }
 
-impl Exchange {
-    /// Whether all are exchanged where `count` are wrong; if not, the energy is to descend.
+impl ActiveSetUpdate {
+    /// Whether all are changed where `count` are wrong; if not, the energy is to descend.
     pub fn is_of_all(&mut self, count: usize) -> bool {
         let all = count < self.fewest || self.patience > 0;
         if count < self.fewest {
@@ -56,8 +56,8 @@ pub(super) struct Descent(Option<BTreeMap<usize, Vec<f64>>>);
 
 impl Descent {
     /// Goes towards the jumps that a step `found` where those conditions were `open`, of which some are `wrong`, and
-    /// exchanges some; how many. Collective.
-    pub fn exchange(
+    /// changes some; how many. Collective.
+    pub fn update(
         &mut self,
         context: &Context<'_>,
         wrong: &BTreeMap<usize, Vec<usize>>,
@@ -120,7 +120,7 @@ fn go(
 ) -> usize {
     let is_blocked = way.is_finite();
     let closes = |j: usize, jumps: &[f64]| part(jumps, found, bounds, open, &[j]) <= way;
-    let exchanged: Vec<usize> = (wrong.iter().copied())
+    let changed: Vec<usize> = (wrong.iter().copied())
         .filter(|&j| match is_blocked {
             true => open[j] && closes(j, jumps),
             false => !open[j],
@@ -129,11 +129,11 @@ fn go(
     for j in 0..jumps.len() {
         jumps[j] += way.min(1.0) * (found[j] - jumps[j]);
     }
-    for &j in &exchanged {
+    for &j in &changed {
         open[j] = !open[j];
         jumps[j] = bounds[j];
     }
-    exchanged.len()
+    changed.len()
 }
 
 /// Closes what is open and wrong, at its bound; how many.
@@ -157,7 +157,7 @@ mod tests {
     /// Finds which t are 0 in min ½ tᵀ H t − cᵀ t over t ≤ 0; how many steps of descent that took.
     fn open_jumps(h: &Mat<f64>, c: &[f64]) -> usize {
         let n = c.len();
-        let (mut open, mut exchange, mut singles) = (vec![false; n], Exchange::default(), 0);
+        let (mut open, mut update, mut singles) = (vec![false; n], ActiveSetUpdate::default(), 0);
         let mut descent: Option<Vec<f64>> = None;
         let bounds = vec![0.0; n];
         for _ in 0..1000 {
@@ -181,7 +181,7 @@ mod tests {
             if wrong.is_empty() {
                 return singles;
             }
-            if exchange.is_of_all(wrong.len()) {
+            if update.is_of_all(wrong.len()) {
                 descent = None;
                 wrong.iter().for_each(|&j| open[j] = !open[j]);
                 continue;
@@ -203,7 +203,7 @@ mod tests {
         panic!("it goes on for ever");
     }
 
-    /// Exchanges of all that are wrong come back to where they were with 7 of these matrices.
+    /// Changes of all that are wrong come back to where they were with 7 of these matrices.
     #[test]
     fn sets_that_come_back_are_left_by_descent() {
         let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();

@@ -3,7 +3,7 @@
 //!
 //! A jump is known where it is closed or sticks; where it slips its force follows its law. Where Newton's method gets no
 //! further, it begins anew at the solution of the convex problem in which nothing slips. That and the problem without friction
-//! are solved by exchanges of the active set, which take fewer steps than Newton's method with its
+//! are solved by updates of the active set, which take fewer steps than Newton's method with its
 //! line search.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,12 +17,12 @@ use crate::contact::newton::{Found, NewtonSettings, OnGroups, newton};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;
-use crate::frozen::active_set::{Conditions, settle};
-use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::operator::{ROUND_OFF, TreeOperator};
-use crate::frozen::solution::FrozenSolution;
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
+use crate::tree::active_set::{Conditions, settle};
+use crate::tree::fronts::ActiveSetFronts;
+use crate::tree::operator::{ROUND_OFF, TreeOperator};
+use crate::tree::solution::ActiveSetSolution;
 
 /// Most steps.
 const MAX_STEPS: usize = 400;
@@ -34,7 +34,7 @@ const ACCEPTABLE: f64 = 1e-7;
 
 /// What the steps found, on this rank.
 #[derive(Clone, Debug)]
-pub struct FrozenContact {
+pub struct TreeContact {
     /// Forces and closed conditions of every contact group.
     pub conditions: BTreeMap<usize, Vec<(f64, bool)>>,
     /// The unknowns on the boundary of every cluster.
@@ -91,12 +91,12 @@ fn begin(
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
 pub fn solve(
     context: &Context<'_>,
-    fronts: &mut FrozenFronts,
+    fronts: &mut ActiveSetFronts,
     limits: &BTreeMap<usize, Limits>,
     (loads, before): (&BTreeMap<usize, Vec<f64>>, &BTreeMap<usize, Statuses>),
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
-) -> Result<FrozenContact, Failure> {
+) -> Result<TreeContact, Failure> {
     let laws: OnGroups<ContactLaws<'_>> = (limits.iter())
         .map(|(&g, limits)| (g, laws(&context.groups[&g], limits)))
         .collect();
@@ -169,7 +169,7 @@ pub fn solve(
             stiffest: &stiffest,
             loads,
             bounds: &bounds,
-            solution: FrozenSolution::default(),
+            solution: ActiveSetSolution::default(),
             is_answered: false,
             is_held: false,
             is_released: false,
@@ -199,9 +199,9 @@ fn conclude(
     limits: &BTreeMap<usize, Limits>,
     laws: &OnGroups<ContactLaws<'_>>,
     found: Found,
-    mut solution: FrozenSolution,
+    mut solution: ActiveSetSolution,
     mut outcome: SweepOutcome,
-) -> Result<FrozenContact, Failure> {
+) -> Result<TreeContact, Failure> {
     let sweep = outcome.records.len() - 1;
     let is_finite = solution.is_finite(context.comm);
     outcome.status = match found.missed.is_finite() {
@@ -246,7 +246,7 @@ fn conclude(
         SweepStatus::Converged => found.statuses,
         SweepStatus::NotConverged(_) => BTreeMap::new(),
     };
-    Ok(FrozenContact {
+    Ok(TreeContact {
         conditions,
         boundaries: solution.boundaries,
         statuses,

@@ -1,6 +1,6 @@
-//! The active set: which conditions are closed, found by steps that freeze it.
+//! The active set: which conditions are closed, found by steps that fix it.
 //!
-//! λ ≥ 0 where closed, t ≤ g where open. A step that finds conditions that say otherwise exchanges
+//! λ ≥ 0 where closed, t ≤ g where open. A step that finds conditions that say otherwise changes
 //! some of them.
 
 use std::collections::BTreeMap;
@@ -9,11 +9,11 @@ use std::time::Instant;
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::exchange::{Descent, Exchange};
-use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::operator::{ROUND_OFF, go_on};
-use crate::frozen::solution::FrozenSolution;
 use crate::sweep::{SweepOutcome, SweepRecord};
+use crate::tree::fronts::ActiveSetFronts;
+use crate::tree::operator::{ROUND_OFF, go_on};
+use crate::tree::solution::ActiveSetSolution;
+use crate::tree::update::{ActiveSetUpdate, Descent};
 
 /// What is wrong with the active set.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +31,7 @@ struct Faults {
 /// What is open in an active set, and the solution with it.
 pub(super) struct Settled {
     pub open: BTreeMap<usize, Vec<bool>>,
-    pub solution: FrozenSolution,
+    pub solution: ActiveSetSolution,
     /// Whether nothing is wrong.
     pub is_right: bool,
 }
@@ -51,7 +51,7 @@ pub(super) struct Conditions<'a> {
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
 pub(super) fn settle(
     context: &Context<'_>,
-    fronts: &mut FrozenFronts,
+    fronts: &mut ActiveSetFronts,
     of_set: Conditions<'_>,
     (mut open, most): (BTreeMap<usize, Vec<bool>>, usize),
     outcome: &mut SweepOutcome,
@@ -59,7 +59,7 @@ pub(super) fn settle(
 ) -> Result<Settled, Failure> {
     let began = Instant::now();
     let bounds = of_set.bounds;
-    let (mut exchange, mut descent) = (Exchange::default(), Descent::default());
+    let (mut update, mut descent) = (ActiveSetUpdate::default(), Descent::default());
     let (mut changed, mut is_released) = (None, false);
     let (mut last, mut wrong_by) = (None, 1.0_f64);
     let loads = ClusterLoads {
@@ -69,21 +69,22 @@ pub(super) fn settle(
     };
     let first = outcome.records.len();
     loop {
-        fronts.freeze(context, &open)?;
-        let accurate = |fronts: &mut FrozenFronts, tolerance, start: Option<&FrozenSolution>| {
-            let accuracy = Accuracy {
-                tolerance,
-                start: start.map(|start| &start.merge_roots),
+        fronts.fix(context, &open)?;
+        let accurate =
+            |fronts: &mut ActiveSetFronts, tolerance, start: Option<&ActiveSetSolution>| {
+                let accuracy = Accuracy {
+                    tolerance,
+                    start: start.map(|start| &start.merge_roots),
+                };
+                let mut solution = fronts.solve(context, &open, loads, accuracy)?;
+                solution.iterations += start.map_or(0, |start| start.iterations);
+                let least = ROUND_OFF.max(tolerance);
+                let faults = Faults::of(context, &solution, of_set, &open, least);
+                Ok::<_, Failure>((solution, faults))
             };
-            let mut solution = fronts.solve(context, &open, loads, accuracy)?;
-            solution.iterations += start.map_or(0, |start| start.iterations);
-            let least = ROUND_OFF.max(tolerance);
-            let faults = Faults::of(context, &solution, of_set, &open, least);
-            Ok::<_, Failure>((solution, faults))
-        };
         // No more accurate than the active set, until that seems to be right.
         let tolerance = match fronts.coarse_dofs() {
-            Some(_) => (exchange.tolerance * wrong_by.min(1.0)).max(Accuracy::FULL.tolerance),
+            Some(_) => (update.tolerance * wrong_by.min(1.0)).max(Accuracy::FULL.tolerance),
             None => 0.0,
         };
         let (mut solution, mut faults) = accurate(fronts, tolerance, last.as_ref())?;
@@ -120,7 +121,7 @@ pub(super) fn settle(
             });
         }
         go_on(context, sweep)?;
-        changed = Some(match exchange.is_of_all(faults.count) {
+        changed = Some(match update.is_of_all(faults.count) {
             true => {
                 descent = Descent::default();
                 for (g, wrong) in &faults.wrong {
@@ -130,9 +131,9 @@ pub(super) fn settle(
                 }
                 faults.count
             }
-            false => descent.exchange(context, &faults.wrong, bounds, &solution.jumps, &mut open),
+            false => descent.update(context, &faults.wrong, bounds, &solution.jumps, &mut open),
         });
-        last = Some(FrozenSolution {
+        last = Some(ActiveSetSolution {
             iterations: 0,
             ..solution
         });
@@ -143,7 +144,7 @@ impl Faults {
     /// What is wrong, by more than `least`, where the conditions that are `open` led to this solution. Collective.
     fn of(
         context: &Context<'_>,
-        solution: &FrozenSolution,
+        solution: &ActiveSetSolution,
         of_set: Conditions<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
         least: f64,

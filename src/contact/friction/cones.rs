@@ -2,7 +2,7 @@
 //!
 //! Semismooth Newton on the laws ([`newton`](crate::contact::newton)), with a dense linear problem for given statuses
 //! ([`linear`]). Where this gets no further, it starts again from near the solution, where an interior-point method leads
-//! ([`interior`]). After that in the plane Lemke's path leads to a solution ([`lemke`](super::lemke)), and dashpots at all
+//! ([`interior`]). After that in the plane Lemke's path leads to a solution ([`lemke`](super::lemke)), and viscous resistance to all
 //! jumps make the problem easier, the slower things move the less.
 
 mod interior;
@@ -16,8 +16,8 @@ use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::open_factor::scale_of;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
-/// A dense problem whose points have discs.
-struct Discs<'a> {
+/// A dense problem whose points have cones.
+struct FrictionCones<'a> {
     contact: ContactProblem<'a>,
     laws: ContactLaws<'a>,
     /// The norm of energies of the forces that act before anything moves.
@@ -32,7 +32,7 @@ struct Found {
     steps: usize,
 }
 
-/// What dashpots lead to.
+/// Result of the viscous regularization.
 enum Rest {
     Found(Found),
     Slides,
@@ -47,17 +47,17 @@ impl Found {
 
 impl FrictionProblem<'_> {
     /// Whether a point slips in a plane.
-    fn has_discs(&self) -> bool {
+    fn has_cones(&self) -> bool {
         let beside = |tangent: &TangentialLimit| tangent.beside != Beside::Nothing;
         self.tangents.iter().any(beside)
     }
 
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
-    pub(super) fn solve_discs(&self, status: &mut [Status]) -> ContactSolution {
-        let discs = Discs::new(self);
-        let (found, fell_back, slides) = discs.solve(self, status);
-        discs.tell(&found.state, status);
-        let (jumps, forces) = discs.exact(&found);
+    pub(super) fn solve_cones(&self, status: &mut [Status]) -> ContactSolution {
+        let cones = FrictionCones::new(self);
+        let (found, fell_back, slides) = cones.solve(self, status);
+        cones.tell(&found.state, status);
+        let (jumps, forces) = cones.exact(&found);
         ContactSolution {
             jumps,
             forces,
@@ -69,7 +69,7 @@ impl FrictionProblem<'_> {
     }
 
     /// The change of jumps and forces where limits keep these statuses and slips turn, as [`Self::change`] says.
-    pub(super) fn change_discs(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    pub(super) fn change_cones(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let share = |i: Option<usize>| i.map_or(0.0, |i| status[i].sign() * self.contact.bounds[i]);
         let slips = |i: usize| status[i].sign() != 0.0;
         let mut bounds = self.contact.bounds.to_vec();
@@ -91,7 +91,7 @@ impl FrictionProblem<'_> {
             tangents: &tangents,
             last_patch: self.last_patch,
         };
-        let discs = Discs::new(&changes);
+        let cones = FrictionCones::new(&changes);
         let act = |point: &PointLaw| match point.first {
             i if slips(i) => PointStatus::Slips {
                 direction: point.tangents.map(share),
@@ -106,10 +106,10 @@ impl FrictionProblem<'_> {
         };
         let state = Statuses {
             closed: status.iter().map(|status| status.is_closed()).collect(),
-            points: discs.laws.points.iter().map(act).collect(),
+            points: cones.laws.points.iter().map(act).collect(),
             opened: Vec::new(),
         };
-        let Iterate { jumps, mut forces } = discs.step(&discs.start(), &state);
+        let Iterate { jumps, mut forces } = cones.step(&cones.start(), &state);
         for (force, status) in forces.iter_mut().zip(status) {
             if *status == Status::Open {
                 *force = 0.0;
@@ -120,18 +120,18 @@ impl FrictionProblem<'_> {
 
     /// The limits whose law isn't fulfilled one step after they had these statuses.
     pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
-        let discs = Discs::new(self);
-        let start = discs.start();
-        let place = discs.step(&start, &discs.laws.begin(status, &start));
-        let right = discs.laws.residual(&place, None, 0.0).statuses;
-        let missed = discs.laws.missed(&place, &right);
+        let cones = FrictionCones::new(self);
+        let start = cones.start();
+        let place = cones.step(&start, &cones.laws.begin(status, &start));
+        let right = cones.laws.residual(&place, None, 0.0).statuses;
+        let missed = cones.laws.missed(&place, &right);
         let is_wrong =
-            |&i: &usize| missed[i].abs() > FORCE_TOLERANCE * discs.force_scale(i, &place);
+            |&i: &usize| missed[i].abs() > FORCE_TOLERANCE * cones.force_scale(i, &place);
         (0..missed.len()).filter(is_wrong).collect()
     }
 }
 
-impl<'a> Discs<'a> {
+impl<'a> FrictionCones<'a> {
     fn new(problem: &FrictionProblem<'a>) -> Self {
         let contact = problem.contact;
         let m = contact.c.len();

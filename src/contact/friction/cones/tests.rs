@@ -49,11 +49,11 @@ fn the_interior_path_ends_at_solutions() {
             points.c.iter_mut().for_each(|c| *c -= load);
         }
         points.with(|problem| {
-            let discs = Discs::new(problem);
-            let Some(found) = discs.along_path() else {
+            let cones = FrictionCones::new(problem);
+            let Some(found) = cones.along_path() else {
                 return;
             };
-            let (jumps, forces) = discs.exact(&found);
+            let (jumps, forces) = cones.exact(&found);
             let violation = points.violation(&ContactSolution {
                 jumps,
                 forces,

@@ -1,8 +1,8 @@
-//! Semismooth Newton on discs, and dashpots where it gets no further.
+//! Semismooth Newton on friction cones, with viscous regularization where it gets no further.
 
 use std::convert::Infallible;
 
-use super::{Discs, Found, Rest};
+use super::{Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
 use crate::contact::law::PointStatus;
@@ -14,7 +14,7 @@ use crate::vector::{between, dot, largest};
 
 /// Most steps of Newton's method.
 const STEPS: usize = 40;
-/// The same between two changes of dashpots.
+/// The same between two changes of the viscosity.
 const DAMPED_STEPS: usize = 15;
 /// What may be missed of the law, relative to what acts.
 const LAW: f64 = 1e-9;
@@ -22,8 +22,8 @@ const LAW: f64 = 1e-9;
 const ROUND_OFF: f64 = 1e-15;
 /// Force, relative to its terms, up to which a limit keeps its status.
 const STAYS: f64 = 1e-15;
-/// Dashpots, relative to stiffness and time: the first, the weakest and the strongest ones.
-const DASHPOTS: [f64; 3] = [0.1, 1e-4, 10.0];
+/// Viscosity of all jumps relative to stiffness and time: the first, the least and the largest.
+const VISCOSITIES: [f64; 3] = [0.1, 1e-4, 10.0];
 /// Part of the way before that isn't less, and how often that may be.
 const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
@@ -33,10 +33,10 @@ const NO_RESISTANCE: f64 = 1e-10;
 const SURPLUS: f64 = 1e-9;
 /// Part of the fastest of jumps by which others change that stay as they are.
 const STAYS_OPEN: f64 = 1e-6;
-/// Most changes of dashpots.
+/// Most changes of the viscosity.
 const CHANGES: usize = 24;
 
-impl Discs<'_> {
+impl FrictionCones<'_> {
     /// The solution, found from where these statuses are right, whether that took more than Newton's method, and whether
     /// things slide on and on.
     pub(super) fn solve(
@@ -54,12 +54,12 @@ impl Discs<'_> {
             return (found, true, false);
         }
         let mut steps = at_once.steps;
-        if !problem.has_discs()
+        if !problem.has_cones()
             && let Some(found) = self.along_lemke_s_path(problem, &mut steps)
         {
             return (Found { steps, ..found }, true, false);
         }
-        match self.with_dashpots(&start, &state, &mut steps) {
+        match self.regularized(&start, &state, &mut steps) {
             Rest::Found(found) => (Found { steps, ..found }, true, false),
             Rest::Slides => (Found { steps, ..at_once }, true, true),
             Rest::Unknown => (Found { steps, ..at_once }, true, false),
@@ -73,8 +73,8 @@ impl Discs<'_> {
         steps: &mut usize,
     ) -> Option<Found> {
         for attempt in 0..ATTEMPTS {
-            let (end, exchanges) = problem.follow(attempt);
-            *steps += exchanges;
+            let (end, pivots) = problem.follow(attempt);
+            *steps += pivots;
             let Some(end) = end else { continue };
             // Where nothing resists, what slips both ways is between both there, and not just anywhere.
             let start = self.place(end.jumps, vec![0.0; self.contact.rows.len()]);
@@ -102,26 +102,26 @@ impl Discs<'_> {
         self.place(self.contact.center.to_vec(), vec![0.0; rows])
     }
 
-    /// Goes from one position to the next of a problem with dashpots, which weaken as long as that is found; to no end
+    /// Goes from one position to the next of a regularized problem, whose viscosity falls as long as that is found; to no end
     /// where things slide on and on.
-    fn with_dashpots(&self, start: &Iterate, state: &Statuses, steps: &mut usize) -> Rest {
-        let [mut dashpots, weakest, strongest] = DASHPOTS;
+    fn regularized(&self, start: &Iterate, state: &Statuses, steps: &mut usize) -> Rest {
+        let [mut viscosity, weakest, strongest] = VISCOSITIES;
         let (mut place, mut state) = (start.clone(), state.clone());
         let (mut last, mut sliding) = (f64::INFINITY, 0);
         for _ in 0..CHANGES {
-            let found = self.damped(dashpots, &place, &state);
+            let found = self.damped(viscosity, &place, &state);
             *steps += found.steps;
             if !found.converged() {
-                if dashpots >= strongest {
+                if viscosity >= strongest {
                     break;
                 }
-                dashpots = (4.0 * dashpots).min(strongest);
+                viscosity = (4.0 * viscosity).min(strongest);
                 continue;
             }
             let ways = found.place.jumps.iter().zip(&place.jumps);
             let ways: Vec<f64> = ways.map(|(to, from)| to - from).collect();
             let way = largest(&ways);
-            if dashpots <= weakest && way > SLOWER * last {
+            if viscosity <= weakest && way > SLOWER * last {
                 sliding += 1;
                 if sliding >= PATIENCE && self.slides_on(&found, &ways) {
                     return Rest::Slides;
@@ -129,7 +129,7 @@ impl Discs<'_> {
             }
             let slows = way < last;
             last = way;
-            dashpots = (0.25 * dashpots).max(weakest);
+            viscosity = (0.25 * viscosity).max(weakest);
             let of_rows = found.place.forces[self.contact.c.len()..].to_vec();
             place = self.place(found.place.jumps, of_rows);
             state = found.state;
@@ -184,18 +184,18 @@ impl Discs<'_> {
         -dot(ways, &forces) / springs.sum::<f64>()
     }
 
-    /// The solution where every jump is held by a dashpot at where it is.
-    fn damped(&self, dashpots: f64, place: &Iterate, state: &Statuses) -> Found {
+    /// The solution where every jump is held viscously at where it is.
+    fn damped(&self, viscosity: f64, place: &Iterate, state: &Statuses) -> Found {
         let contact = &self.contact;
         let mut h = contact.h.to_owned();
         let (mut c, mut c_scale) = (contact.c.to_vec(), contact.c_scale.to_vec());
         for (i, t) in place.jumps.iter().enumerate() {
-            let own = dashpots * self.laws.stiffness[i];
+            let own = viscosity * self.laws.stiffness[i];
             h[(i, i)] += own;
             c[i] += own * t;
             c_scale[i] += (own * t).abs();
         }
-        let damped = Discs {
+        let damped = FrictionCones {
             contact: ContactProblem {
                 h: h.as_ref(),
                 c: &c,
@@ -240,7 +240,7 @@ impl Discs<'_> {
 }
 
 /// A dense problem as the one group of an operator.
-struct Dense<'d, 'a>(&'d Discs<'a>);
+struct Dense<'d, 'a>(&'d FrictionCones<'a>);
 
 /// The number of its group.
 const ONLY: usize = 0;

@@ -1,4 +1,4 @@
-//! The fronts above all contact, for an active set that is frozen.
+//! The fronts above all contact, for a fixed active set.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ const NO_PIVOT: f64 = 1e-12;
 
 /// A front whose own normal jumps are open or closed.
 #[derive(Debug)]
-pub(super) struct FrozenFront {
+pub(super) struct ActiveSetFront {
     pub(super) merge: Merge,
     /// S of the closed ones against them and what is kept, a column each from the diagonal on.
     pub(super) held: Mat<f64>,
@@ -32,10 +32,10 @@ pub(super) struct FrozenFront {
 
 /// The fronts of this rank above all contact, and what they are merged from.
 #[derive(Debug)]
-pub struct FrozenFronts {
+pub struct ActiveSetFronts {
     /// The nodes of the hierarchy above all clusters, children before parents, on all ranks the same.
     pub(super) nodes: Vec<usize>,
-    pub(super) fronts: BTreeMap<usize, FrozenFront>,
+    pub(super) fronts: BTreeMap<usize, ActiveSetFront>,
     /// S of clusters and fronts, at the owner of the node that they are merged into.
     merged: BTreeMap<usize, Condensed>,
     /// S of those that nothing here is above.
@@ -51,7 +51,7 @@ pub struct FrozenFronts {
     pub(super) bddc: Option<Bddc>,
 }
 
-impl FrozenFronts {
+impl ActiveSetFronts {
     /// Fronts over the `clusters` of this rank, by their place among all; none is factorized yet. Collective.
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl FrozenFronts {
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
-    pub fn freeze(
+    pub fn fix(
         &mut self,
         context: &Context<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
@@ -232,15 +232,15 @@ impl FrozenFronts {
         let renewed = renewed || !is_known;
         // What was made before, with another preconditioner, can't move, nor can what springs hold.
         let is_sound = self.spring > 0.0 || !touched.contains(&true) && !bddc.is_stale();
-        let mut frozen = bddc.freeze(
+        let mut fixed = bddc.fix(
             context,
             &self.merge_roots,
             &touched,
             open,
             (self.spring, renewed),
         );
-        while frozen.is_err() && (bddc.is_judged() || is_sound) && bddc.look_deeper() {
-            frozen = bddc.freeze(
+        while fixed.is_err() && (bddc.is_judged() || is_sound) && bddc.look_deeper() {
+            fixed = bddc.fix(
                 context,
                 &self.merge_roots,
                 &touched,
@@ -248,7 +248,7 @@ impl FrozenFronts {
                 (self.spring, true),
             );
         }
-        frozen?;
+        fixed?;
         let pivot = bddc.coarse_pivot();
         self.bddc = Some(bddc);
         self.smallest_pivot = self.smallest_pivot.min(pivot);
@@ -370,7 +370,7 @@ impl FrozenFronts {
             smallest_pivot: whole.smallest_pivot,
         };
         self.smallest_pivot = self.smallest_pivot.min(whole.smallest_pivot);
-        self.fronts.insert(v, FrozenFront { merge, held, open });
+        self.fronts.insert(v, ActiveSetFront { merge, held, open });
         Ok(Some(condensed))
     }
 }

@@ -10,7 +10,7 @@
 
 use faer::Mat;
 
-use super::Discs;
+use super::FrictionCones;
 use crate::contact::active_set::FORCE_TOLERANCE;
 use crate::contact::friction::system::{SPRING, System, YIELD};
 use crate::contact::law::{PointLaw, PointStatus};
@@ -28,7 +28,7 @@ struct Equation {
     spring: f64,
 }
 
-impl Discs<'_> {
+impl FrictionCones<'_> {
     /// Where the linear problem of a `state` is solved, from a place nearby.
     pub(super) fn step(&self, place: &Iterate, state: &Statuses) -> Iterate {
         let m = place.jumps.len();

@@ -1,6 +1,6 @@
-//! The linear problem of points that slip while the active set is frozen: forces and slips that follow their laws.
+//! The linear problem of points that slip while the active set is fixed: forces and slips that follow their laws.
 //!
-//! GMRES solves it (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986): a product is a solution of the frozen fronts
+//! GMRES solves it (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986): a product is a solution of the fronts of the active set
 //! for forces at the slipping points and nothing else. Where friction alone keeps bodies from moving on, these forces would
 //! move them without end: there what slips is held at its slip, as what sticks is held where it is, and slips are the
 //! unknowns; that takes more products.
@@ -15,9 +15,9 @@ use crate::contact::laws::{ContactLaws, Iterate};
 use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::error::Failure;
-use crate::frozen::fronts::FrozenFronts;
-use crate::frozen::slip_law::SlipLaw;
-use crate::frozen::solution::FrozenSolution;
+use crate::tree::fronts::ActiveSetFronts;
+use crate::tree::slip_law::SlipLaw;
+use crate::tree::solution::ActiveSetSolution;
 use crate::vector::{axpy, dot};
 
 /// Most rounds.
@@ -40,7 +40,7 @@ pub type OnJumps = BTreeMap<usize, Vec<f64>>;
 /// The laws of the slipping points of every contact group of this rank.
 pub type Laws = BTreeMap<usize, Vec<SlipLaw>>;
 
-/// What a frozen active set is solved for with.
+/// What a fixed active set is solved for with.
 #[derive(Clone, Copy)]
 pub struct SlipProblem<'a> {
     /// What the run works on.
@@ -65,11 +65,11 @@ impl SlipProblem<'_> {
     /// Some part of the scene moves freely.
     fn respond(
         &self,
-        fronts: &mut FrozenFronts,
+        fronts: &mut ActiveSetFronts,
         (clusters, prescribed): (&BTreeMap<usize, Vec<f64>>, &OnJumps),
         forces: &OnJumps,
         accuracy: Accuracy<'_>,
-    ) -> Result<FrozenSolution, Failure> {
+    ) -> Result<ActiveSetSolution, Failure> {
         let mut loads = ClusterLoads {
             clusters,
             prescribed,
@@ -109,13 +109,13 @@ impl SlipProblem<'_> {
     /// Some part of the scene moves freely.
     pub fn solve(
         &self,
-        fronts: &mut FrozenFronts,
+        fronts: &mut ActiveSetFronts,
         mut forces: OnJumps,
-        (tolerance, start): (f64, Option<&FrozenSolution>),
+        (tolerance, start): (f64, Option<&ActiveSetSolution>),
         accuracy: f64,
-    ) -> Result<FrozenSolution, Failure> {
+    ) -> Result<ActiveSetSolution, Failure> {
         let respond =
-            |fronts: &mut FrozenFronts, forces: &OnJumps, start: Option<&FrozenSolution>| {
+            |fronts: &mut ActiveSetFronts, forces: &OnJumps, start: Option<&ActiveSetSolution>| {
                 let known = start.map(|start| &start.merge_roots);
                 let accuracy = Accuracy {
                     tolerance,
@@ -154,7 +154,7 @@ impl SlipProblem<'_> {
     /// What the forces of a solution miss of the laws, where `slip` tells the slip of a jump of a group.
     fn missed(
         &self,
-        solution: &FrozenSolution,
+        solution: &ActiveSetSolution,
         slip: impl Fn(usize, usize) -> f64,
         is_change: bool,
     ) -> OnJumps {
@@ -175,7 +175,7 @@ impl SlipProblem<'_> {
     /// Some part of the scene moves freely.
     fn gmres(
         &self,
-        fronts: &mut FrozenFronts,
+        fronts: &mut ActiveSetFronts,
         missed: &OnJumps,
         reduction: f64,
     ) -> Result<(OnJumps, usize), Failure> {
@@ -238,7 +238,7 @@ impl SlipProblem<'_> {
     /// How what slipping points miss of their law changes with these forces. Collective.
     fn product(
         &self,
-        fronts: &mut FrozenFronts,
+        fronts: &mut ActiveSetFronts,
         forces: &OnJumps,
         tolerance: f64,
     ) -> Result<(OnJumps, usize), Failure> {

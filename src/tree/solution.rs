@@ -1,8 +1,8 @@
-//! What a load does where the active set is frozen.
+//! What a load does where the active set is fixed.
 
 use std::collections::BTreeMap;
 
-use super::fronts::{FrozenFront, FrozenFronts};
+use super::fronts::{ActiveSetFront, ActiveSetFronts};
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::comm::Comm;
 use crate::context::Context;
@@ -11,9 +11,9 @@ use crate::error::Failure;
 use crate::schur::local::CondensedLoad;
 use crate::vector::{axpy, dot};
 
-/// What a load does where the active set is frozen, on this rank.
+/// What a load does where the active set is fixed, on this rank.
 #[derive(Clone, Debug, Default)]
-pub struct FrozenSolution {
+pub struct ActiveSetSolution {
     /// The normal jumps of every contact group (m).
     pub jumps: BTreeMap<usize, Vec<f64>>,
     /// The forces on them, 0 where open (N/m).
@@ -28,7 +28,7 @@ pub struct FrozenSolution {
     pub is_too_far: bool,
 }
 
-impl FrozenSolution {
+impl ActiveSetSolution {
     /// Whether it consists of finite numbers, on all ranks. Collective.
     pub fn is_finite(&self, comm: &Comm) -> bool {
         let all = [&self.jumps, &self.forces, &self.boundaries];
@@ -46,8 +46,8 @@ impl FrozenSolution {
     }
 }
 
-impl FrozenFronts {
-    /// Solves for `loads` where those normal jumps are `open` that are frozen as such; an iterative solver goes as far
+impl ActiveSetFronts {
+    /// Solves for `loads` where those normal jumps are `open` that are fixed as such; an iterative solver goes as far
     /// as `accuracy` says. Collective.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl FrozenFronts {
         open: &BTreeMap<usize, Vec<bool>>,
         loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
-    ) -> Result<FrozenSolution, Failure> {
+    ) -> Result<ActiveSetSolution, Failure> {
         self.solves += 1;
         let mut solution = self.solve_as_it_is(context, loads, accuracy);
         // One made again of the classes known to need it, then one that all classes were looked into for.
@@ -83,7 +83,7 @@ impl FrozenFronts {
         context: &Context<'_>,
         loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
-    ) -> FrozenSolution {
+    ) -> ActiveSetSolution {
         let plan = context.plan;
         let mut condensed: BTreeMap<usize, (CondensedLoad, Vec<f64>)> = BTreeMap::new();
         // What arrives at the owner of the node above.
@@ -126,7 +126,7 @@ impl FrozenFronts {
                 Direction::Up,
             );
         }
-        let mut solution = FrozenSolution::default();
+        let mut solution = ActiveSetSolution::default();
         let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         match &self.bddc {
             // Roots keep nothing.
@@ -185,7 +185,7 @@ fn forces_on(loads: &ClusterLoads<'_>, g: usize, open: &[bool]) -> Vec<f64> {
     all.filter(|(_, open)| **open).map(|(f, _)| *f).collect()
 }
 
-impl FrozenFront {
+impl ActiveSetFront {
     /// The values of its closed normal jumps, of those that all of its own would have.
     fn closed_values(&self, prescribed: Option<&[f64]>) -> Vec<f64> {
         let all = prescribed.unwrap_or_default().iter().zip(&self.open);

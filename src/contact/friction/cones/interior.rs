@@ -1,4 +1,4 @@
-//! The interior-point method on discs, which gets near to a solution where Newton's method doesn't.
+//! The interior-point method on cones, which gets near to a solution where Newton's method doesn't.
 //!
 //! With y the gap that is left, λ_t = b ρ and s the slip, for ε from large to small
 //!
@@ -14,7 +14,7 @@ use faer::Mat;
 use faer::linalg::solvers::SolveCore;
 use faer::{Conj, MatMut};
 
-use super::{Discs, Found};
+use super::{Found, FrictionCones};
 use crate::contact::law::PointLaw;
 use crate::contact::laws;
 
@@ -61,7 +61,7 @@ struct Local {
 
 /// The problem in the scale of energies.
 struct Scaled<'a> {
-    discs: &'a Discs<'a>,
+    cones: &'a FrictionCones<'a>,
     root: Vec<f64>,
     h: Mat<f64>,
     c: Vec<f64>,
@@ -70,7 +70,7 @@ struct Scaled<'a> {
     is_normal: Vec<bool>,
 }
 
-impl Discs<'_> {
+impl FrictionCones<'_> {
     /// The solution found from somewhere along the path.
     pub(super) fn along_path(&self) -> Option<Found> {
         let scaled = Scaled::new(self);
@@ -103,23 +103,23 @@ impl Discs<'_> {
 }
 
 impl<'a> Scaled<'a> {
-    fn new(discs: &'a Discs<'a>) -> Self {
-        let contact = &discs.contact;
+    fn new(cones: &'a FrictionCones<'a>) -> Self {
+        let contact = &cones.contact;
         let m = contact.c.len();
-        let root: Vec<f64> = discs.laws.stiffness.iter().map(|r| r.sqrt()).collect();
+        let root: Vec<f64> = cones.laws.stiffness.iter().map(|r| r.sqrt()).collect();
         let bounds: Vec<f64> = contact
             .bounds
             .iter()
             .zip(&root)
             .map(|(g, r)| g * r)
             .collect();
-        let is_normal = (bounds.iter().zip(&discs.laws.is_tangential))
+        let is_normal = (bounds.iter().zip(&cones.laws.is_tangential))
             .map(|(bound, tangential)| bound.is_finite() && !tangential)
             .collect();
         Self {
             h: Mat::from_fn(m, m, |i, j| contact.h[(i, j)] / (root[i] * root[j])),
             c: contact.c.iter().zip(&root).map(|(c, r)| c / r).collect(),
-            discs,
+            cones,
             root,
             bounds,
             is_normal,
@@ -131,7 +131,7 @@ impl<'a> Scaled<'a> {
         let m = self.c.len();
         match i.checked_sub(m) {
             None => vec![(i, 1.0)],
-            Some(row) => (self.discs.contact.rows.row(row).iter())
+            Some(row) => (self.cones.contact.rows.row(row).iter())
                 .map(|&(j, c)| (j, c * self.root[i] / self.root[j]))
                 .collect(),
         }
@@ -156,9 +156,9 @@ impl<'a> Scaled<'a> {
             let of = |is_normal: &bool| if *is_normal { value } else { 0.0 };
             self.is_normal.iter().map(of).collect()
         };
-        let points = self.discs.laws.points.len();
+        let points = self.cones.laws.points.len();
         Central {
-            jumps: (self.discs.contact.center.iter().zip(&self.root))
+            jumps: (self.cones.contact.center.iter().zip(&self.root))
                 .map(|(t, r)| t * r)
                 .collect(),
             forces: normal(size),
@@ -197,7 +197,7 @@ impl<'a> Scaled<'a> {
             .zip(&at.gaps)
             .map(|(force, gap)| force * gap);
         let points = self
-            .discs
+            .cones
             .laws
             .points
             .iter()
@@ -210,14 +210,14 @@ impl<'a> Scaled<'a> {
             .iter()
             .filter(|is_normal| **is_normal)
             .count();
-        let count = count + self.discs.laws.points.len();
+        let count = count + self.cones.laws.points.len();
         (normal.sum::<f64>() + points.sum::<f64>()) / count.max(1) as f64
     }
 
     /// All forces, those of points b ρ.
     fn forces(&self, at: &Central) -> Vec<f64> {
         let mut forces = at.forces.clone();
-        for (point, rho) in self.discs.laws.points.iter().zip(&at.rho) {
+        for (point, rho) in self.cones.laws.points.iter().zip(&at.rho) {
             let [bound, ..] = self.bound(point, at);
             for (i, rho) in point.tangents.into_iter().zip(rho) {
                 if let Some(i) = i {
@@ -233,7 +233,7 @@ impl<'a> Scaled<'a> {
         let jumps = at.jumps.iter().zip(&self.root).map(|(t, r)| t / r);
         let of_rows = self.forces(at).into_iter().zip(&self.root).skip(m);
         let of_rows = of_rows.map(|(force, r)| force * r).collect();
-        self.discs.place(jumps.collect(), of_rows)
+        self.cones.place(jumps.collect(), of_rows)
     }
 
     /// A step towards the point of the path that has `epsilon`; the part of it that could be gone.
@@ -257,7 +257,7 @@ impl<'a> Scaled<'a> {
             factors.push((i, i, force / gap));
             changes[i] = (epsilon - force * gap + force * missed[i]) / gap;
         }
-        let points = || self.discs.laws.points.iter().zip(&at.rho).zip(&at.gamma);
+        let points = || self.cones.laws.points.iter().zip(&at.rho).zip(&at.gamma);
         let mut locals = Vec::new();
         for ((point, rho), gamma) in points() {
             let [bound, by_force, by_gap] = self.bound(point, at);
