@@ -25,7 +25,7 @@ use crate::error::InputError;
 use crate::mesh::foreign;
 use crate::solver::SolverSettings;
 use crate::source;
-use condition::{Bilateral, Body, Displacement, Names, Pressure, Traction};
+use condition::{Bilateral, Body, Displacement, Force, Names, Pressure, Traction};
 use contact::Declaration;
 use material::{Elasticity, PlaneState};
 use step::LoadStep;
@@ -65,6 +65,9 @@ pub struct Scene {
     /// Γ_τ, pressures.
     #[serde(default, deserialize_with = "place::list")]
     pub pressure: Vec<Pressure>,
+    /// Forces on nodes.
+    #[serde(default, deserialize_with = "place::list")]
+    pub force: Vec<Force>,
     /// Γ_c: contacts, and bodies between which they are to be found.
     #[serde(default, deserialize_with = "place::list")]
     pub contact: Vec<Declaration>,

@@ -56,6 +56,7 @@ class Step(TypedDict, total=False):
     displacement: list[dict[str, Any]]
     traction: list[dict[str, Any]]
     pressure: list[dict[str, Any]]
+    force: list[dict[str, Any]]
     body_force: dict[str, Vector]
     temperature: dict[str, Number]
 
@@ -125,16 +126,23 @@ class Model:
 
     def load(
         self, on: Groups, *, pressure: Number | None = None, traction: Vector | None = None,
-        body_force: Vector | None = None,
+        force: Vector | None = None, force_on_each: Vector | None = None, body_force: Vector | None = None,
     ) -> None:
-        """Adds loads: a pressure, positive into the body; a traction, a force per area in any direction; or the
-        body force of bodies, a force per volume."""
-        if pressure is None and traction is None and body_force is None:
-            raise InputError(f"load on {on!r}: expected a pressure, a traction or a body force")
+        """Adds loads: a pressure, positive into the body; a traction, a force per area in any direction; the total
+        force on a side or on points, or the force on each of their nodes; or the body force of bodies, a force per
+        volume."""
+        loads = (pressure, traction, force, force_on_each, body_force)
+        if all(given is None for given in loads):
+            raise InputError(f"load on {on!r}: expected a pressure, a traction, a force or a body force")
         if pressure is not None:
             self._calls.add(self._add("pressure", on=on, value=pressure), call("load", on, pressure=pressure))
         if traction is not None:
             self._calls.add(self._add("traction", on=on, value=traction), call("load", on, traction=traction))
+        if force is not None:
+            self._calls.add(self._add("force", on=on, total=force), call("load", on, force=force))
+        if force_on_each is not None:
+            entry = self._add("force", on=on, each=force_on_each)
+            self._calls.add(entry, call("load", on, force_on_each=force_on_each))
         if body_force is not None:
             for name in [on] if isinstance(on, str) else on:
                 if name not in self.scene.get("bodies", {}):

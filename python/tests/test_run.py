@@ -122,7 +122,7 @@ def test_what_a_model_lacks_is_said():
     assert list(model.scene["materials"]) == ["material 1"]
     with pytest.raises(InputError, match="there is no body 'brick'"):
         model.load("brick", body_force=[0, -1])
-    with pytest.raises(InputError, match="expected a pressure, a traction or a body force"):
+    with pytest.raises(InputError, match="expected a pressure, a traction, a force or a body force"):
         model.load("block")
     model.load("block", body_force=[0, -1])
     model.fix("block")

@@ -15,6 +15,7 @@ mod convergence;
 mod elements;
 mod exact;
 mod floating;
+mod forces;
 mod friction;
 mod groups;
 mod initial_stress;

@@ -272,6 +272,7 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
         (loading.displacement.iter().map(|c| &c.on))
             .chain(loading.traction.iter().map(|c| &c.on))
             .chain(loading.pressure.iter().map(|c| &c.on))
+            .chain(loading.force.iter().map(|c| &c.on))
     });
     let explicit = scene.contact.iter().filter_map(Declaration::contact);
     (loaded.chain(scene.bilateral.iter().map(|c| &c.on)))

@@ -12,6 +12,7 @@ use crate::scene::suggest::hint;
 enum Members {
     Cells,
     Facets,
+    FacetsOrPoints,
     Any,
 }
 
@@ -20,6 +21,7 @@ impl Members {
         match self {
             Self::Cells => group.dim == mesh.dim,
             Self::Facets => group.dim + 1 == mesh.dim,
+            Self::FacetsOrPoints => group.dim < mesh.dim,
             Self::Any => true,
         }
     }
@@ -28,6 +30,7 @@ impl Members {
         match self {
             Self::Cells => "cells",
             Self::Facets => "facets",
+            Self::FacetsOrPoints => "facets or points",
             Self::Any => "cells, facets or points",
         }
     }
@@ -42,11 +45,35 @@ pub(super) fn facets(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>,
     Ok(facets.into_iter().collect())
 }
 
+/// Whether all groups `names` that the mesh has consist of facets.
+pub(super) fn are_of_facets(mesh: &Mesh, names: &Names) -> bool {
+    let groups = names.iter().filter_map(|name| mesh.groups.get(name));
+    groups.fold(true, |all, group| all && Members::Facets.fit(group, mesh))
+}
+
 /// The nodes of the groups `names`, of whatever they consist, ascending.
 pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
+    nodes_of(mesh, names, Members::Any, what)
+}
+
+/// The nodes of the groups `names` of facets or points, ascending.
+pub(super) fn boundary_nodes(
+    mesh: &Mesh,
+    names: &Names,
+    what: &str,
+) -> Result<Vec<u32>, InputError> {
+    nodes_of(mesh, names, Members::FacetsOrPoints, what)
+}
+
+fn nodes_of(
+    mesh: &Mesh,
+    names: &Names,
+    members: Members,
+    what: &str,
+) -> Result<Vec<u32>, InputError> {
     let mut nodes = BTreeSet::new();
     for name in names.iter() {
-        let group = find(mesh, name, Members::Any, what)?;
+        let group = find(mesh, name, members, what)?;
         for member in &group.members {
             nodes.extend(match mesh.dim.checked_sub(group.dim) {
                 Some(0) => mesh.cells.nodes_of(*member as usize),

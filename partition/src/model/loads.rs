@@ -10,8 +10,10 @@ use super::{Material, groups};
 use crate::element::geometry::{advance, length};
 use crate::error::InputError;
 use crate::magnitude;
+use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
+use crate::scene::condition::{Force, ForceAmount};
 use crate::scene::loading::Loading;
 use crate::scene::material::PlaneState;
 use crate::scene::number::Vector;
@@ -63,6 +65,19 @@ pub(super) fn forces(
         })
         .map_err(InputError::about(&what))?;
     }
+    for (index, force) in loading.force.iter().enumerate() {
+        let what = loading.force_label(index, &force.on);
+        let surface = match groups::are_of_facets(mesh, &force.on) {
+            true => {
+                let facets = groups::facets(mesh, &force.on, &what)?;
+                Some(Surface::new(mesh, topology, scene.plane, &facets, &what)?)
+            }
+            false => None,
+        };
+        let nodes = groups::boundary_nodes(mesh, &force.on, &what)?;
+        nodal_forces(mesh, force, scale.force, (nodes, surface), &mut forces)
+            .map_err(InputError::about(&what))?;
+    }
     let initial = InitialStress::new(scene, loading, bodies, materials, &mut forces)?;
     for (force, tag) in forces.iter().zip(&mesh.node_tags) {
         for &component in force {
@@ -108,6 +123,40 @@ fn body_force(
                 *sum = advance(*sum, weight * value, load);
             }
         }
+    }
+    Ok(())
+}
+
+/// Adds a `factor` of a force on `nodes`, which share a total like a uniform traction of their `surface`, in equal parts
+/// without one.
+fn nodal_forces(
+    mesh: &Mesh,
+    force: &Force,
+    factor: f64,
+    (nodes, surface): (Vec<u32>, Option<Surface>),
+    forces: &mut [[f64; 3]],
+) -> Result<(), String> {
+    let total = match &force.amount {
+        ForceAmount::Each(each) => {
+            for node in nodes.into_iter().map(|node| node as usize) {
+                forces[node] = advance(forces[node], factor, each.at(mesh.points[node])?);
+            }
+            return Ok(());
+        }
+        ForceAmount::Total(total) => total.value,
+    };
+    let mut shares = vec![[0.0; 3]; forces.len()];
+    match &surface {
+        Some(surface) => {
+            surface_load(surface, &mut shares, |_, area| Ok([length(area), 0.0, 0.0]))?
+        }
+        None => nodes
+            .iter()
+            .for_each(|&node| shares[node as usize][0] = 1.0),
+    }
+    let sum: f64 = nodes.iter().map(|&node| shares[node as usize][0]).sum();
+    for node in nodes.into_iter().map(|node| node as usize) {
+        forces[node] = advance(forces[node], factor * shares[node][0] / sum, total);
     }
     Ok(())
 }

@@ -150,6 +150,66 @@ pub struct Pressure {
     pub value: Number,
 }
 
+/// Forces on nodes.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "ForceKeys")]
+pub struct Force {
+    /// The groups of facets or points on whose nodes it acts.
+    pub on: Names,
+    /// Its size, and how the nodes share it.
+    pub amount: ForceAmount,
+}
+
+/// A force on several nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ForceAmount {
+    /// The sum of all nodal forces (N), shared like a uniform traction on facets, in equal parts on points.
+    Total(ConstantVector),
+    /// The force on every node (N).
+    Each(Vector),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of on, and total or each")]
+struct ForceKeys {
+    on: Names,
+    total: Option<ConstantVector>,
+    each: Option<Vector>,
+}
+
+impl TryFrom<ForceKeys> for Force {
+    type Error = &'static str;
+
+    fn try_from(keys: ForceKeys) -> Result<Self, Self::Error> {
+        let amount = match (keys.total, keys.each) {
+            (Some(total), None) => ForceAmount::Total(total),
+            (None, Some(each)) => ForceAmount::Each(each),
+            _ => {
+                return Err(
+                    "expected 'total', the sum of forces, or 'each', the force on every node",
+                );
+            }
+        };
+        Ok(Self {
+            on: keys.on,
+            amount,
+        })
+    }
+}
+
+impl ForceAmount {
+    /// The key that gives it, and why it is none in space of `dim` dimensions.
+    pub(super) fn fault(&self, dim: usize) -> (&'static str, Option<String>) {
+        match self {
+            Self::Total(total) => (
+                "total",
+                (total.dim != dim).then(|| expected_components(dim)),
+            ),
+            Self::Each(each) => ("each", each.fault(dim)),
+        }
+    }
+}
+
 /// A rigid obstacle.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "ObstacleKeys")]

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::condition::{Displacement, Pressure, Traction};
+use super::condition::{Displacement, Force, Pressure, Traction};
 use super::contact::{Contact, Declaration, Partner};
 use super::material::{Elasticity, PlaneState};
 use super::number::OR_IN_SPACE;
@@ -128,14 +128,13 @@ impl Scene {
             let fault = thermal.and_then(|thermal| thermal.temperature.fault(dim));
             check(at(["bodies", name, "thermal", "temperature"]), fault);
         }
-        wrong_loads(
-            dim,
-            &[],
-            &self.displacement,
-            &self.traction,
-            &self.pressure,
-            &mut check,
-        );
+        let of_scene = OnGroups {
+            displacement: &self.displacement,
+            traction: &self.traction,
+            pressure: &self.pressure,
+            force: &self.force,
+        };
+        of_scene.check(dim, &[], &mut check);
         for (index, step) in self.step.iter().enumerate() {
             let within: Vec<Step> = vec!["step".into(), index.into()];
             for (name, force) in &step.body_force {
@@ -148,10 +147,13 @@ impl Scene {
                 let path = [within.clone(), at(["temperature", name])].concat();
                 check(path, temperature.fault(dim));
             }
-            let displacement = step.displacement.as_deref().unwrap_or_default();
-            let traction = step.traction.as_deref().unwrap_or_default();
-            let pressure = step.pressure.as_deref().unwrap_or_default();
-            wrong_loads(dim, &within, displacement, traction, pressure, &mut check);
+            let of_step = OnGroups {
+                displacement: step.displacement.as_deref().unwrap_or_default(),
+                traction: step.traction.as_deref().unwrap_or_default(),
+                pressure: step.pressure.as_deref().unwrap_or_default(),
+                force: step.force.as_deref().unwrap_or_default(),
+            };
+            of_step.check(dim, &within, &mut check);
         }
         self.wrong_contacts(dim, &mut check);
         found.into_iter().next()
@@ -249,29 +251,42 @@ impl Scene {
     }
 }
 
-/// Checks the loads of the scene, or of a step that the keys `within` lead to.
-fn wrong_loads(
-    dim: usize,
-    within: &[Step],
-    displacement: &[Displacement],
-    traction: &[Traction],
-    pressure: &[Pressure],
-    check: &mut impl FnMut(Vec<Step>, Option<String>),
-) {
-    let path = |list: &str, index: usize, key: &str| [within, &entry(list, index, key)].concat();
-    for (index, displacement) in displacement.iter().enumerate() {
-        for (component, key) in displacement.components.iter().zip(["x", "y", "z"]) {
-            let fault = component.as_ref().and_then(|number| match key {
-                "z" if dim == 2 => Some(format!("a plane scene has no 'z'{OR_IN_SPACE}")),
-                _ => number.fault(dim),
-            });
-            check(path("displacement", index, key), fault);
+/// What a scene, or a step, prescribes on groups of its mesh.
+struct OnGroups<'a> {
+    displacement: &'a [Displacement],
+    traction: &'a [Traction],
+    pressure: &'a [Pressure],
+    force: &'a [Force],
+}
+
+impl OnGroups<'_> {
+    /// Checks all of it, below the keys `within`.
+    fn check(
+        &self,
+        dim: usize,
+        within: &[Step],
+        check: &mut impl FnMut(Vec<Step>, Option<String>),
+    ) {
+        let path =
+            |list: &str, index: usize, key: &str| [within, &entry(list, index, key)].concat();
+        for (index, displacement) in self.displacement.iter().enumerate() {
+            for (component, key) in displacement.components.iter().zip(["x", "y", "z"]) {
+                let fault = component.as_ref().and_then(|number| match key {
+                    "z" if dim == 2 => Some(format!("a plane scene has no 'z'{OR_IN_SPACE}")),
+                    _ => number.fault(dim),
+                });
+                check(path("displacement", index, key), fault);
+            }
         }
-    }
-    for (index, traction) in traction.iter().enumerate() {
-        check(path("traction", index, "value"), traction.value.fault(dim));
-    }
-    for (index, pressure) in pressure.iter().enumerate() {
-        check(path("pressure", index, "value"), pressure.value.fault(dim));
+        for (index, traction) in self.traction.iter().enumerate() {
+            check(path("traction", index, "value"), traction.value.fault(dim));
+        }
+        for (index, pressure) in self.pressure.iter().enumerate() {
+            check(path("pressure", index, "value"), pressure.value.fault(dim));
+        }
+        for (index, force) in self.force.iter().enumerate() {
+            let (key, fault) = force.amount.fault(dim);
+            check(path("force", index, key), fault);
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What acts on a scene in a load step: what the step says, else what the scene does.
 
 use super::Scene;
-use super::condition::{Displacement, Names, Pressure, Traction};
+use super::condition::{Displacement, Force, Names, Pressure, Traction};
 use super::number::{Number, Vector};
 use super::step::{LoadStep, Scale};
 
@@ -18,6 +18,8 @@ pub struct Loading<'a> {
     pub traction: &'a [Traction],
     /// Pressures.
     pub pressure: &'a [Pressure],
+    /// Forces on nodes.
+    pub force: &'a [Force],
     /// Displacements.
     pub displacement: &'a [Displacement],
     /// The factors of all loads.
@@ -45,6 +47,7 @@ impl Scene {
         let temperature = temperature.map(|name| own.and_then(|step| step.temperature.get(name)));
         let traction = own.and_then(|step| step.traction.as_deref());
         let pressure = own.and_then(|step| step.pressure.as_deref());
+        let force = own.and_then(|step| step.force.as_deref());
         let displacement = own.and_then(|step| step.displacement.as_deref());
         Loading {
             step,
@@ -52,6 +55,7 @@ impl Scene {
             temperature: temperature.collect(),
             traction: traction.unwrap_or(&self.traction),
             pressure: pressure.unwrap_or(&self.pressure),
+            force: force.unwrap_or(&self.force),
             displacement: displacement.unwrap_or(&self.displacement),
             scale: own.map_or_else(Scale::default, |step| step.scale),
         }
@@ -77,6 +81,11 @@ impl Loading<'_> {
     /// What entry `index` of its pressures is called in messages.
     pub fn pressure_label(&self, index: usize, on: &Names) -> String {
         self.label("pressure", |step| step.pressure.is_some(), index, on)
+    }
+
+    /// The name of entry `index` of its forces on nodes in messages.
+    pub fn force_label(&self, index: usize, on: &Names) -> String {
+        self.label("force", |step| step.force.is_some(), index, on)
     }
 
     /// What entry `index` of its displacements is called in messages.

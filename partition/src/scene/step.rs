@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
 
-use super::condition::{Displacement, Names, Pressure, Traction};
+use super::condition::{Displacement, Force, Names, Pressure, Traction};
 use super::number::{Constant, Number, Vector};
 use super::place;
 
@@ -15,7 +15,7 @@ use super::place;
 #[serde(
     deny_unknown_fields,
     default,
-    expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure and displacement"
+    expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure, force and displacement"
 )]
 pub struct LoadStep {
     /// Name; its number without.
@@ -39,6 +39,9 @@ pub struct LoadStep {
     /// In place of all its pressures.
     #[serde(deserialize_with = "list")]
     pub pressure: Option<Vec<Pressure>>,
+    /// In place of all its forces on nodes.
+    #[serde(deserialize_with = "list")]
+    pub force: Option<Vec<Force>>,
     /// In place of all its displacements: others at the same nodes along the same axes.
     #[serde(deserialize_with = "list")]
     pub displacement: Option<Vec<Displacement>>,
@@ -57,6 +60,9 @@ pub struct Scale {
     /// Of pressures.
     #[serde(deserialize_with = "number")]
     pub pressure: f64,
+    /// Of forces on nodes.
+    #[serde(deserialize_with = "number")]
+    pub force: f64,
     /// Of prescribed displacements.
     #[serde(deserialize_with = "number")]
     pub displacement: f64,
@@ -74,6 +80,7 @@ impl Scale {
             body_force: factor,
             traction: factor,
             pressure: factor,
+            force: factor,
             displacement: factor,
             initial_stress: factor,
             thermal: factor,
@@ -95,8 +102,8 @@ impl<'de> Deserialize<'de> for Scale {
 
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
                 f.write_str(
-                    "a number, or a table of body_force, traction, pressure, displacement, initial_stress \
-                     and thermal",
+                    "a number, or a table of body_force, traction, pressure, force, displacement, \
+                     initial_stress and thermal",
                 )
             }
 

@@ -43,9 +43,9 @@ const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
         "stress before loading is a body's 'initial_stress'",
     ),
     (
-        "load loads force forces cload dload neumann",
-        Some("body_force"),
-        "loads are 'pressure', 'traction' and a body's 'body_force'",
+        "load loads forces cload dload neumann point_load point_force",
+        Some("force"),
+        "loads are 'pressure', 'traction', 'force' on nodes and a body's 'body_force'",
     ),
     (
         "support supports fixed fix boundary constraint constraints bc spc dirichlet encastre",

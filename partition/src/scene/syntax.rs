@@ -4,11 +4,12 @@
 use toml::de::Error;
 
 /// The lists of a scene, `[[contact]]`, once for each.
-const LISTS: [&str; 6] = [
+const LISTS: [&str; 7] = [
     "displacement",
     "bilateral",
     "traction",
     "pressure",
+    "force",
     "contact",
     "step",
 ];

@@ -216,6 +216,7 @@ fn every_key_of_a_step_is_read() {
         body_force,
         traction,
         pressure,
+        force,
         displacement,
         initial_stress,
         thermal,
@@ -224,7 +225,7 @@ fn every_key_of_a_step_is_read() {
         [body_force, traction, pressure, displacement],
         [1.0, 1.0, 0.25, 0.125]
     );
-    assert_eq!([initial_stress, thermal], [1.0, 1.0]);
+    assert_eq!([force, initial_stress, thermal], [1.0; 3]);
     assert_eq!(second.scale.traction, 2.0);
     assert_eq!(
         first.body_force["left block"].at([3.0, 0.0, 0.0]),
