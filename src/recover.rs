@@ -19,8 +19,10 @@ use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
 use crate::condense::substitute::Factors;
+use crate::contact::law::{PointLaw, PointState};
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, Loads};
+use crate::fem::contact_group::ContactGroup;
 use crate::step::StepProblem;
 
 /// The solution on a block.
@@ -41,6 +43,25 @@ pub struct GroupSolution {
     pub closed: Vec<bool>,
     /// The gap that is left at every condition, g − B u; the way back to where the sides stuck (m).
     pub gaps: Vec<f64>,
+}
+
+impl GroupSolution {
+    /// A point with friction.
+    pub fn point(&self, law: &PointLaw) -> PointState {
+        law.at(|j| -self.gaps[j], &self.forces, &self.closed)
+    }
+
+    /// Takes their friction away from points that have opened.
+    fn release_opened(&mut self, group: &ContactGroup) {
+        for point in group.point_laws() {
+            if point.has_opened(&self.closed) {
+                for j in point.limits() {
+                    self.closed[j] = false;
+                    self.forces[j] = 0.0;
+                }
+            }
+        }
+    }
 }
 
 /// What friction leaves at the tangential conditions of the contact groups of this rank, by their number.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::most::Most;
 use super::shared::SharedCheck;
-use crate::contact::friction::TangentialCondition;
+use crate::contact::law::PointState;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
@@ -154,26 +154,19 @@ impl Most {
             most.contact_force = larger(most.contact_force, force);
             most.complementarity = larger(most.complementarity, gap * force);
         }
-        let friction = group.friction();
-        for of_point in friction.chunk_by(|a, b| a.normal == b.normal) {
-            let TangentialCondition { normal, bound, .. } = of_point[0];
-            let both = |value: &dyn Fn(usize) -> f64| {
-                let second = of_point.get(1).map_or(0.0, |second| value(second.number));
-                [value(of_point[0].number), second]
+        for point in group.point_laws() {
+            let moved = |sticks: bool| {
+                let slip = |j: usize| if closed[j] == sticks { -gaps[j] } else { 0.0 };
+                point.at(slip, forces, closed)
             };
-            let (force, stuck) = (
-                both(&|j| forces[j]),
-                both(&|j| if closed[j] { gaps[j] } else { 0.0 }),
-            );
-            let slip = both(&|j| if closed[j] { 0.0 } else { -gaps[j] });
-            let [size, way] = [force, slip].map(|[a, b]: [f64; 2]| a.hypot(b));
-            let is_parting = bound.only_closed && forces[normal] <= no_force;
-            let bound = bound.at(forces[normal], closed[normal]);
+            let (slipped, astray) = (moved(false), moved(true).way());
+            let PointState { slip, force, bound } = slipped;
+            let (size, way, work) = (slipped.size(), slipped.way(), slipped.work());
+            let pressure = point.normal.map_or(0.0, |n| forces[n]);
             most.contact_force = larger(most.contact_force, size);
             most.beyond_bound = larger(most.beyond_bound, (size - bound).max(0.0));
-            most.astray = larger(most.astray, stuck[0].hypot(stuck[1]));
-            let work = force[0] * slip[0] + force[1] * slip[1];
-            let missing = match is_parting {
+            most.astray = larger(most.astray, astray);
+            let missing = match point.bound.only_closed && pressure <= no_force {
                 true => 0.5 * (size * way - work),
                 false => bound * way - work,
             };

@@ -14,8 +14,10 @@ mod patch;
 mod points;
 mod system;
 
-use super::active_set::{ContactProblem, ContactSolution};
+use super::active_set::{ContactProblem, ContactSolution, Trial};
+use super::laws::Iterate;
 use super::patch::LastPatch;
+use super::status::FixedStatus;
 pub use super::status::Status;
 use super::tangent::TangentialLimit;
 pub use super::tangent::{ForceBound, TangentialCondition};
@@ -53,22 +55,20 @@ impl FrictionProblem<'_> {
         self.solve_cones(status)
     }
 
-    /// The change of jumps and forces where limits keep these statuses; `bounds` are what the closed ones lack, and the
-    /// share of the bound of their point that those have that slip: the change of that force follows from that of the
-    /// normal one, in the direction that the force has, which `turns` by κ times the slip across it.
-    pub fn change(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let on_patch = self.change_on_patch(status, turns);
-        on_patch.unwrap_or_else(|| self.change_whole(status, turns))
+    /// The change of jumps and forces where limits keep these statuses; `bounds` are what the closed ones lack.
+    pub fn change(&self, fixed: &[FixedStatus]) -> Iterate {
+        let on_patch = self.change_on_patch(fixed);
+        on_patch.unwrap_or_else(|| self.change_whole(fixed))
     }
 
-    fn change_whole(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let slips = |status: &Status| status.sign() != 0.0 || *status == Status::Parting;
-        if !status.iter().any(slips) {
-            let open: Vec<bool> = status.iter().map(|status| !status.is_closed()).collect();
-            let trial = self.contact.linear(&open);
-            return (trial.jumps, trial.forces);
+    fn change_whole(&self, fixed: &[FixedStatus]) -> Iterate {
+        let slips = |status: &FixedStatus| !status.is_closed() && *status != FixedStatus::Open;
+        if !fixed.iter().any(slips) {
+            let open: Vec<bool> = fixed.iter().map(|status| !status.is_closed()).collect();
+            let Trial { jumps, forces, .. } = self.contact.linear(&open);
+            return Iterate { jumps, forces };
         }
-        self.change_cones(status, turns)
+        self.change_cones(fixed)
     }
 }
 

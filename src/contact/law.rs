@@ -37,6 +37,40 @@ pub enum PointStatus {
     },
 }
 
+/// A point with friction at an iterate.
+#[derive(Clone, Copy, Debug)]
+pub struct PointState {
+    /// s (m).
+    pub slip: [f64; 2],
+    /// λ_t (N/m).
+    pub force: [f64; 2],
+    /// b (N/m).
+    pub bound: f64,
+}
+
+impl PointState {
+    /// |λ_t| (N/m).
+    pub fn size(&self) -> f64 {
+        self.force[0].hypot(self.force[1])
+    }
+
+    /// |s| (m).
+    pub fn way(&self) -> f64 {
+        self.slip[0].hypot(self.slip[1])
+    }
+
+    /// λ_t · s (J/m).
+    pub fn work(&self) -> f64 {
+        self.force[0] * self.slip[0] + self.force[1] * self.slip[1]
+    }
+}
+
+/// The part across a direction of a force that is at its bound and has so much `along` it (N/m).
+pub(super) fn rest_of_bound(bound: f64, along: f64) -> f64 {
+    let along = along.abs().min(bound);
+    ((bound - along) * (bound + along)).sqrt()
+}
+
 /// A point with friction: its limits, and what bounds its force.
 #[derive(Clone, Copy, Debug)]
 pub struct PointLaw {
@@ -73,20 +107,49 @@ impl PointLaw {
         self.tangents[1].is_none() && self.prescribed == 0.0
     }
 
-    /// ξ_t of this slip (m) and force (N/m) under the bound b (N/m). Along a prescribed slip the force is what the bound
-    /// leaves.
-    pub fn reach(&self, slip: [f64; 2], mut force: [f64; 2], bound: f64) -> [f64; 2] {
-        if self.prescribed != 0.0 {
-            let along = force[0].abs().min(bound);
-            force[1] = ((bound - along) * (bound + along))
-                .sqrt()
-                .copysign(self.prescribed);
-        }
-        [0, 1].map(|k| force[k] + self.stiffness * slip[k])
+    /// The limits of its tangential jumps.
+    pub fn limits(&self) -> impl Iterator<Item = usize> {
+        self.tangents.into_iter().flatten()
     }
 
-    /// The status under ξ_t and the bound b (N/m): sticking up to b + `slack`.
-    pub fn status(&self, xi: [f64; 2], bound: f64, slack: f64) -> PointStatus {
+    /// The point where limits are so far `beyond` their bounds, under these `forces` and as these are `closed`.
+    pub fn at(&self, beyond: impl Fn(usize) -> f64, forces: &[f64], closed: &[bool]) -> PointState {
+        let [first, second] = self.tangents;
+        let is_closed = self.is_closed(closed);
+        let pressing = self.normal.filter(|_| is_closed);
+        PointState {
+            slip: [
+                first.map_or(0.0, &beyond),
+                second.map_or(self.prescribed, &beyond),
+            ],
+            force: self.tangents.map(|t| t.map_or(0.0, |t| forces[t])),
+            bound: (self.bound).at(pressing.map_or(0.0, |n| forces[n]), is_closed),
+        }
+    }
+
+    /// Whether its contact is closed.
+    pub fn is_closed(&self, closed: &[bool]) -> bool {
+        self.normal.is_some_and(|n| closed[n])
+    }
+
+    /// Whether it has no force in an open contact, and this one is.
+    pub fn has_opened(&self, closed: &[bool]) -> bool {
+        self.bound.only_closed && !self.is_closed(closed)
+    }
+
+    /// ξ_t. Along a prescribed slip the force is what the bound leaves.
+    pub fn reach(&self, at: &PointState) -> [f64; 2] {
+        let [along, mut across] = at.force;
+        if self.prescribed != 0.0 {
+            across = rest_of_bound(at.bound, along).copysign(self.prescribed);
+        }
+        let r = self.stiffness;
+        [along + r * at.slip[0], across + r * at.slip[1]]
+    }
+
+    /// The status there: sticking up to b + `slack`.
+    pub fn status(&self, at: &PointState, slack: f64) -> PointStatus {
+        let (xi, bound) = (self.reach(at), at.bound);
         let size = xi[0].hypot(xi[1]);
         if size <= bound + slack && self.prescribed == 0.0 {
             return PointStatus::Sticks;

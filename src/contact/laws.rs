@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
 use super::friction::Status;
-use super::law::{PointLaw, PointStatus};
+use super::law::{PointLaw, PointState, PointStatus};
 use super::limits::TangentialLimit;
 
 /// The laws of all limits.
@@ -101,32 +101,9 @@ impl<'a> ContactLaws<'a> {
         value - self.bounds[i]
     }
 
-    /// Slip (m) and force (N/m) of a point.
-    pub fn tangential(&self, point: &PointLaw, at: &Iterate) -> [[f64; 2]; 2] {
-        let slip = |i: usize| self.beyond(i, at);
-        [
-            [
-                point.tangents[0].map_or(0.0, slip),
-                point.tangents[1].map_or(point.prescribed, slip),
-            ],
-            point
-                .tangents
-                .map(|tangent| tangent.map_or(0.0, |i| at.forces[i])),
-        ]
-    }
-
-    /// The bound of a point's force (N/m).
-    pub fn bound(&self, point: &PointLaw, at: &Iterate, closed: &[bool]) -> f64 {
-        let is_closed = point.normal.is_some_and(|n| closed[n]);
-        let pressed = point.normal.filter(|_| is_closed);
-        point
-            .bound
-            .at(pressed.map_or(0.0, |n| at.forces[n]), is_closed)
-    }
-
-    fn reach(&self, point: &PointLaw, at: &Iterate, bound: f64) -> [f64; 2] {
-        let [slip, force] = self.tangential(point, at);
-        point.reach(slip, force, bound)
+    /// A point at an iterate where these limits are `closed`.
+    pub fn point(&self, point: &PointLaw, at: &Iterate, closed: &[bool]) -> PointState {
+        point.at(|i| self.beyond(i, at), &at.forces, closed)
     }
 
     /// The status of point k whose cohesion vanishes as it opens, where it parted `before` or would open once more; `None`
@@ -144,8 +121,9 @@ impl<'a> ContactLaws<'a> {
         if !bound.only_closed || bound.cohesion == 0.0 || point.prescribed != 0.0 {
             return None;
         }
-        let [slip, force] = self.tangential(point, at);
-        let [way, size] = [slip, force].map(|v| v[0].hypot(v[1]));
+        let here = self.point(point, at, &before.closed);
+        let (slip, force) = (here.slip, here.force);
+        let (way, size) = (here.way(), here.size());
         let parts = || match way > 0.0 {
             true => PointStatus::Parts {
                 direction: slip.map(|s| s / way),
@@ -169,10 +147,7 @@ impl<'a> ContactLaws<'a> {
             PointStatus::Parts { direction, .. } if along(slip, direction) < 0.0 => {
                 Some(PointStatus::Sticks)
             }
-            PointStatus::Parts { .. } if size > bound.cohesion => {
-                let whole = bound.at(at.forces[n], true);
-                Some(point.status(self.reach(point, at, whole), whole, 0.0))
-            }
+            PointStatus::Parts { .. } if size > bound.cohesion => Some(point.status(&here, 0.0)),
             PointStatus::Parts { .. } => Some(parts()),
             _ => None,
         }
@@ -184,17 +159,13 @@ impl<'a> ContactLaws<'a> {
         let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
         let of_point = |point: &PointLaw| {
             let own = status[point.first];
-            let is_closed = point.normal.is_some_and(|n| closed[n]);
-            if !is_closed && point.bound.only_closed {
+            if point.has_opened(&closed) {
                 return PointStatus::Open;
             }
-            let [slip, _] = self.tangential(point, at);
-            let size = slip[0].hypot(slip[1]);
-            let (direction, turning) = match size > 0.0 {
-                true => {
-                    let bound = self.bound(point, at, &closed);
-                    (slip.map(|s| s / size), point.turning(bound / size))
-                }
+            let here = self.point(point, at, &closed);
+            let way = here.way();
+            let (direction, turning) = match way > 0.0 {
+                true => (here.slip.map(|s| s / way), point.turning(here.bound / way)),
                 false => ([own.sign(), 0.0], 0.0),
             };
             match own.is_closed() && point.prescribed == 0.0 || direction == [0.0; 2] {
@@ -247,14 +218,12 @@ impl<'a> ContactLaws<'a> {
             })
             .collect();
         let of_point = |(k, point): (usize, &PointLaw)| {
-            let is_closed = point.normal.is_some_and(|n| closed[n]);
-            if !is_closed && point.bound.only_closed {
+            if point.has_opened(&closed) {
                 return PointStatus::Open;
             }
             let stuck = before.map(|(before, _)| before.points[k] == PointStatus::Sticks);
-            let bound = self.bound(point, at, &closed);
-            let xi = self.reach(point, at, bound);
-            point.status(xi, bound, slack(point.first, stuck))
+            let here = self.point(point, at, &closed);
+            point.status(&here, slack(point.first, stuck))
         };
         let mut statuses = Statuses {
             points: self.points.iter().enumerate().map(of_point).collect(),
@@ -310,15 +279,14 @@ impl<'a> ContactLaws<'a> {
         };
         let mut missed: Vec<f64> = (0..at.forces.len()).map(normal).collect();
         for (point, status) in self.points.iter().zip(&statuses.points) {
-            let bound = self.bound(point, at, &statuses.closed);
-            let xi = self.reach(point, at, bound);
-            let [_, force] = self.tangential(point, at);
+            let here = self.point(point, at, &statuses.closed);
+            let (xi, force) = (point.reach(&here), here.force);
             for (k, i) in point.tangents.into_iter().enumerate() {
                 let Some(i) = i else { continue };
                 let right = match status {
                     PointStatus::Open => 0.0,
                     PointStatus::Sticks => xi[k],
-                    PointStatus::Slips { direction: e, .. } => bound * e[k],
+                    PointStatus::Slips { direction: e, .. } => here.bound * e[k],
                     PointStatus::Parts { direction: e, .. } => {
                         e[k] * (e[0] * force[0] + e[1] * force[1])
                     }

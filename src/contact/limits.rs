@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
 use super::jumps::{JumpOf, defining_conditions};
-use super::status::Status;
+use super::law::rest_of_bound;
+use super::status::FixedStatus;
 pub use super::tangent::{Beside, TangentialLimit};
 use super::tangent::{ForceBound, TangentialCondition};
 
@@ -34,10 +35,7 @@ impl PrescribedSlip {
         let normal = forces[self.normal];
         let bound = self.bound.at(normal, normal > 0.0);
         let size = match self.other {
-            Some(other) => {
-                let along = forces[other].abs().min(bound);
-                ((bound - along) * (bound + along)).sqrt()
-            }
+            Some(other) => rest_of_bound(bound, forces[other]),
             None if self.beside == 0.0 => bound,
             None => bound * (self.slip.abs() / self.slip.hypot(self.beside)),
         };
@@ -243,6 +241,13 @@ impl Limits {
         all
     }
 
+    /// Forces of the limits for those of all conditions.
+    pub fn of_limits(&self, forces: &[f64]) -> Vec<f64> {
+        let tightest = self.tightest.iter();
+        let of_limit = tightest.map(|&(condition, factor)| factor * forces[condition]);
+        of_limit.collect()
+    }
+
     /// Forces of all conditions for those of the limits.
     pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.conditions];
@@ -267,14 +272,15 @@ impl Limits {
         closed
     }
 
-    /// The statuses of limits where these are those of `conditions`, and what every closed one lacks of its bound
-    /// when the conditions lack that much; share of its point's bound and κ for one that slips.
-    pub fn fixed(&self, conditions: &[(Status, [f64; 2])]) -> (Vec<Status>, Vec<[f64; 2]>) {
+    /// The limits in the linear problem that has these `conditions`.
+    pub fn fixed(&self, conditions: &[FixedStatus]) -> Vec<FixedStatus> {
         let of_condition = |&(condition, factor): &(usize, f64)| match conditions[condition] {
-            (Status::Closed, [missing, _]) => (Status::Closed, [missing / factor, 0.0]),
+            FixedStatus::Closed { lacks } => FixedStatus::Closed {
+                lacks: lacks / factor,
+            },
             other => other,
         };
-        self.tightest.iter().map(of_condition).unzip()
+        self.tightest.iter().map(of_condition).collect()
     }
 }
 

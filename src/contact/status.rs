@@ -1,4 +1,4 @@
-//! The statuses of limits.
+//! The statuses of limits and conditions.
 
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,58 @@ impl Status {
             Self::Forward => 1.0,
             Self::Backward => -1.0,
             Self::Open | Self::Closed | Self::Slipping | Self::Parting => 0.0,
+        }
+    }
+}
+
+/// A limit or a condition in the linear problem of a change where all keep their statuses.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum FixedStatus {
+    /// Nothing acts.
+    Open,
+    /// Its jump changes by what it lacks of its bound.
+    Closed {
+        /// That (m).
+        lacks: f64,
+    },
+    /// Its force changes with the bound of its point, and turns with the slip.
+    Slips {
+        /// Part of the bound.
+        share: f64,
+        /// κ (N/m), which makes a force of the slip across that direction.
+        turning: f64,
+    },
+    /// Slipping along a line while its contact is about to open, without pressure.
+    Parts,
+}
+
+impl FixedStatus {
+    /// Open, or closed without a change of its jump.
+    pub fn new(open: bool) -> Self {
+        match open {
+            true => Self::Open,
+            false => Self::Closed { lacks: 0.0 },
+        }
+    }
+
+    /// Whether its jump is known.
+    pub fn is_closed(&self) -> bool {
+        matches!(self, Self::Closed { .. })
+    }
+
+    /// What it lacks of its bound where it is closed (m).
+    pub fn lacks(&self) -> f64 {
+        match *self {
+            Self::Closed { lacks } => lacks,
+            _ => 0.0,
+        }
+    }
+
+    /// Its part of the bound of its point, and κ (N/m), where it slips.
+    pub fn slip(&self) -> Option<[f64; 2]> {
+        match *self {
+            Self::Slips { share, turning } => Some([share, turning]),
+            _ => None,
         }
     }
 }

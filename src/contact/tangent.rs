@@ -21,6 +21,14 @@ impl ForceBound {
             false => self.cohesion + self.coefficient * normal.max(0.0),
         }
     }
+
+    /// The bound as a line over the normal force: its value without one (N/m), and its slope.
+    pub fn line(&self, is_closed: bool) -> [f64; 2] {
+        match is_closed {
+            true => [self.cohesion, self.coefficient],
+            false => [self.at(0.0, false), 0.0],
+        }
+    }
 }
 
 /// A tangential condition, its number and that of its point's normal one, and what bounds its force.

@@ -12,6 +12,7 @@ use super::frame::{Frame, support_frames};
 use super::jump_row::{NO_ROW, less, only_direction, product};
 use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
+use crate::contact::law::PointLaw;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 
@@ -186,6 +187,21 @@ impl ContactGroup {
         };
         let conditions = self.conditions().enumerate();
         conditions.filter_map(of_condition).collect()
+    }
+
+    /// The laws of the points with friction, with conditions in the place of limits.
+    pub fn point_laws(&self) -> Vec<PointLaw> {
+        let friction = self.friction();
+        let law = |of_point: &[TangentialCondition]| PointLaw {
+            normal: Some(of_point[0].normal),
+            first: of_point[0].number,
+            tangents: [0, 1].map(|k| of_point.get(k).map(|one| one.number)),
+            prescribed: 0.0,
+            bound: of_point[0].bound,
+            stiffness: self.stiffness_at(of_point[0].normal),
+        };
+        let points = friction.chunk_by(|a, b| a.normal == b.normal);
+        points.map(law).collect()
     }
 
     /// How stiff the bodies are against a jump at a point, about (N/m).

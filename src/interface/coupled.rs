@@ -16,11 +16,13 @@ use faer::MatRef;
 use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
 use super::rigid_modes::RigidBasis;
-use crate::contact::active_set::ContactProblem;
+use crate::contact::active_set::{ContactProblem, ContactSolution};
 use crate::contact::dependent::DependentConstraints;
-use crate::contact::friction::{FrictionProblem, Status};
+use crate::contact::friction::FrictionProblem;
+use crate::contact::laws::Iterate;
 use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::pair::{CondensedContact, PairResponse};
+use crate::contact::status::FixedStatus;
 use crate::interface::s_con::{ConState, Expected};
 use crate::schur::local::multiply_add;
 
@@ -45,35 +47,17 @@ pub struct CoupledContact<'a> {
     scale: f64,
 }
 
-/// A change of U and of the normal jumps, pair by pair.
+/// A change of U and of the normal jumps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledStep {
     /// δ.
     pub u: Vec<f64>,
-    /// τ.
-    pub jumps: Vec<Vec<f64>>,
-    /// λ, then the forces of linearly dependent constraints.
-    pub forces: Vec<Vec<f64>>,
-    /// The statuses of both then.
-    pub statuses: Vec<Vec<Status>>,
-    /// Linear systems solved.
-    pub steps: usize,
-    /// Whether more than Newton's method was needed.
-    pub fell_back: bool,
-    /// Whether the contact problem converged.
-    pub converged: bool,
-    /// Whether something was seen to slide on and on.
-    pub slides: bool,
+    /// The statuses of every pair then, and τ.
+    pub expected: Vec<Expected>,
+    /// The solution of the contact problem of all pairs.
+    pub contact: ContactSolution,
     /// The conditions of every pair whose status is wrong, where friction kept it from converging.
     pub unsettled: Vec<Vec<usize>>,
-}
-
-impl CoupledStep {
-    /// Statuses and jumps that the pairs start from.
-    pub fn expected(&self) -> Vec<Expected> {
-        let both = self.statuses.iter().cloned();
-        both.zip(self.jumps.iter().cloned()).collect()
-    }
 }
 
 /// The right-hand side after δ is eliminated.
@@ -121,9 +105,9 @@ impl<'a> CoupledContact<'a> {
             tangents: &self.tangents,
             last_patch: &self.interface.last_patch,
         };
-        let solution = problem.solve(&mut status);
-        let mut step = self.step(r, &condensed, &solution.jumps, solution.forces, &status);
-        if !solution.converged && self.has_friction() {
+        let contact = problem.solve(&mut status);
+        let mut unsettled = Vec::new();
+        if !contact.converged && self.has_friction() {
             let mut wrong = vec![false; status.len()];
             problem
                 .unsettled(&status)
@@ -137,7 +121,7 @@ impl<'a> CoupledContact<'a> {
                     .collect()
             };
             let by_pair = self.by_pair(&wrong);
-            step.unsettled = self
+            unsettled = self
                 .interface
                 .laws
                 .iter()
@@ -145,11 +129,13 @@ impl<'a> CoupledContact<'a> {
                 .map(of_pair)
                 .collect();
         }
-        step.steps = solution.steps;
-        step.fell_back = solution.fell_back;
-        step.converged = solution.converged;
-        step.slides = solution.slides;
-        step
+        let statuses = self.by_pair(&status).into_iter();
+        CoupledStep {
+            u: self.change_of_u(r, &condensed, &contact.jumps),
+            expected: statuses.zip(self.by_pair(&contact.jumps)).collect(),
+            contact,
+            unsettled,
+        }
     }
 
     /// How far another solution with friction is from U, the largest difference of a jump (m). U is a solution, at which
@@ -174,22 +160,20 @@ impl<'a> CoupledContact<'a> {
         problem.other_solution(&vec![0.0; jumps.len()], largest(&jumps).max(largest(u)))
     }
 
-    /// The change that balances `r` on Γ and `loads` on the normal jumps of every pair where limits keep their
-    /// `statuses` and the closed ones still have to close by the first of what is `missing`; where a slipping one turns,
-    /// that is its share of its point's bound and κ. What nothing resists stays where it is unless it `moves`.
+    /// The change of U, and of jumps and forces of every pair, that balances `r` on Γ and `loads` on the normal jumps of every pair where limits keep their
+    /// statuses. What nothing resists stays where it is unless it `moves`.
     pub fn solve_fixed(
         &self,
         r: &[f64],
         loads: &[Vec<f64>],
-        missing: &[Vec<[f64; 2]>],
-        (statuses, moves): (&[Vec<Status>], bool),
-    ) -> CoupledStep {
+        statuses: &[Vec<FixedStatus>],
+        moves: bool,
+    ) -> (Vec<f64>, Vec<Iterate>) {
         let loads = loads.concat();
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
-        let status = self.side_by_side(statuses.iter().map(Vec::as_slice));
-        let missing = self.side_by_side(missing.iter().map(Vec::as_slice));
-        let (bounds, turns): (Vec<f64>, Vec<f64>) = missing.into_iter().map(<_>::into).unzip();
+        let fixed = self.side_by_side(statuses.iter().map(Vec::as_slice));
+        let bounds: Vec<f64> = fixed.iter().map(FixedStatus::lacks).collect();
         let problem = FrictionProblem {
             contact: ContactProblem {
                 scale: match moves {
@@ -202,8 +186,14 @@ impl<'a> CoupledContact<'a> {
             tangents: &self.tangents,
             last_patch: &self.interface.last_patch,
         };
-        let (jumps, forces) = problem.change(&status, &turns);
-        self.step(r, &condensed, &jumps, forces, &status)
+        let change = problem.change(&fixed);
+        let pairs = (self.by_pair(&change.jumps).into_iter()).zip(self.by_pair(&change.forces));
+        (
+            self.change_of_u(r, &condensed, &change.jumps),
+            pairs
+                .map(|(jumps, forces)| Iterate { jumps, forces })
+                .collect(),
+        )
     }
 
     fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {
@@ -242,14 +232,7 @@ impl<'a> CoupledContact<'a> {
     }
 
     /// δ = A⁻¹ (r − C τ).
-    fn step(
-        &self,
-        r: &[f64],
-        condensed: &Condensed,
-        jumps: &[f64],
-        forces: Vec<f64>,
-        status: &[Status],
-    ) -> CoupledStep {
+    fn change_of_u(&self, r: &[f64], condensed: &Condensed, jumps: &[f64]) -> Vec<f64> {
         let mut u = condensed.z.clone();
         if jumps.iter().any(|&t| t != 0.0) {
             u.copy_from_slice(r);
@@ -265,17 +248,7 @@ impl<'a> CoupledContact<'a> {
             }
             self.interface.solver.solve(&mut u);
         }
-        CoupledStep {
-            u,
-            jumps: self.by_pair(jumps),
-            forces: self.by_pair(&forces),
-            statuses: self.by_pair(status),
-            steps: 1,
-            fell_back: false,
-            converged: true,
-            slides: false,
-            unsettled: Vec::new(),
-        }
+        u
     }
 
     /// Whether a pair has friction.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::contact::friction::Status;
+use crate::contact::status::FixedStatus;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
@@ -32,12 +32,7 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     let loads: BTreeMap<usize, Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
     let held = solution.groups.iter().map(|(&g, of_group)| {
         let closed = of_group.closed.iter();
-        (
-            g,
-            closed
-                .map(|closed| (Status::new(!closed), [0.0; 2]))
-                .collect(),
-        )
+        (g, closed.map(|closed| FixedStatus::new(!closed)).collect())
     });
     let answer = fixed.solve(loads.clone(), held.collect(), &BTreeMap::new(), ACCURACY);
     let answer = answer.blocks;

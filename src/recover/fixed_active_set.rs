@@ -9,8 +9,9 @@ use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
-use crate::contact::friction::Status;
+use crate::contact::laws::Iterate;
 use crate::contact::limits::Limits;
+use crate::contact::status::FixedStatus;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::balance::Balance;
@@ -66,12 +67,8 @@ pub struct FixedActiveSetRoot<'a> {
     pub moves: bool,
 }
 
-/// The statuses of the limits of a cluster, and what the closed ones still have to close (m), or slipping ones have of
-/// their point's bound, and how much force a slip across turns (N/m).
-type FixedLimits = (Vec<Status>, Vec<[f64; 2]>);
-
-/// The same of the conditions of contact groups, by their number.
-pub type FixedConditions = BTreeMap<usize, Vec<(Status, [f64; 2])>>;
+/// The conditions of contact groups, or the limits of clusters, by their number.
+pub type FixedStatuses = BTreeMap<usize, Vec<FixedStatus>>;
 
 impl FixedActiveSetRoot<'_> {
     /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
@@ -147,7 +144,7 @@ impl<'a> FixedActiveSet<'a> {
     pub fn solve(
         &self,
         loads: BTreeMap<usize, Vec<f64>>,
-        conditions: FixedConditions,
+        conditions: FixedStatuses,
         forces: &BTreeMap<usize, Vec<f64>>,
         tolerance: f64,
     ) -> Change {
@@ -169,7 +166,7 @@ impl<'a> FixedActiveSet<'a> {
         &self,
         (fronts, limits): ActiveSetOfStep<'_>,
         loads: BTreeMap<usize, Vec<f64>>,
-        conditions: FixedConditions,
+        conditions: FixedStatuses,
         forces: &BTreeMap<usize, Vec<f64>>,
         tolerance: f64,
     ) -> Change {
@@ -177,17 +174,14 @@ impl<'a> FixedActiveSet<'a> {
         let (mut open, mut missing): (BTreeMap<usize, Vec<bool>>, OnJumps) = Default::default();
         let mut laws = Laws::new();
         for (g, of_group) in conditions {
-            let (statuses, lacking) = limits[&g].fixed(&of_group);
+            let fixed = limits[&g].fixed(&of_group);
             if let Some(forces) = forces.get(&g) {
                 let group = &self.context.groups[&g];
-                let laws_of_group =
-                    SlipLaw::of_slipping(group, &limits[&g], (&statuses, &lacking), forces);
-                laws.insert(g, laws_of_group);
+                let of_slipping = SlipLaw::of_slipping(group, &limits[&g], &fixed, forces);
+                laws.insert(g, of_slipping);
             }
-            let lacking = lacking.into_iter().zip(&statuses);
-            let lacking = lacking.map(|([way, _], s)| if s.is_closed() { way } else { 0.0 });
-            missing.insert(g, lacking.collect());
-            open.insert(g, statuses.iter().map(|s| !s.is_closed()).collect());
+            missing.insert(g, fixed.iter().map(FixedStatus::lacks).collect());
+            open.insert(g, fixed.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();
         let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws) else {
@@ -218,8 +212,8 @@ impl<'a> FixedActiveSet<'a> {
         }
     }
 
-    /// For every cluster in contact of this rank, the statuses of its limits and what the closed ones lack.
-    fn limits(&self, conditions: FixedConditions) -> BTreeMap<usize, FixedLimits> {
+    /// The limits of every cluster in contact of this rank.
+    fn limits(&self, conditions: FixedStatuses) -> FixedStatuses {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
             if let Some(pair) = self.step.pairs.get(&p) {
@@ -233,7 +227,7 @@ impl<'a> FixedActiveSet<'a> {
     /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node. Collective.
     fn solve_interface(
         &self,
-        limits: &BTreeMap<usize, FixedLimits>,
+        limits: &FixedStatuses,
         condensed: &BTreeMap<usize, CondensedLoad>,
     ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
         let plan = self.context.plan;
@@ -316,7 +310,7 @@ fn follow(
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct ClusterQuestion {
     /// Its limits, where it is in contact.
-    limits: Option<FixedLimits>,
+    limits: Option<Vec<FixedStatus>>,
     /// Its load, on normal jumps and traces.
     #[serde(with = "crate::bytes")]
     load: Vec<f64>,
@@ -332,15 +326,12 @@ impl FixedActiveSetRoot<'_> {
             return Vec::new();
         };
         let mut r = vec![0.0; problem.interface.len];
-        let mut loads = Vec::new();
-        let mut missing = Vec::new();
-        let mut statuses: Vec<Vec<Status>> = Vec::new();
+        let (mut loads, mut fixed) = (Vec::new(), Vec::new());
         for (question, interface_dofs) in gathered.into_iter().zip(&numbering.interface_dofs) {
             let mut on_jumps = question.load;
             let on_traces = on_jumps.split_off(on_jumps.len() - interface_dofs.len());
-            if let Some((of_cluster, lacking)) = question.limits {
-                statuses.push(of_cluster);
-                missing.push(lacking);
+            if let Some(of_cluster) = question.limits {
+                fixed.push(of_cluster);
                 loads.push(on_jumps);
             }
             for (&i, part) in interface_dofs.iter().zip(on_traces) {
@@ -350,16 +341,19 @@ impl FixedActiveSetRoot<'_> {
         let Some(coupled) = CoupledContact::new(problem) else {
             return vec![ClusterAnswer::default(); numbering.interface_dofs.len()];
         };
-        let step = coupled.solve_fixed(&r, &loads, &missing, (&statuses, self.moves));
-        let mut pairs = step.forces.into_iter().zip(step.jumps);
+        let (u, pairs) = coupled.solve_fixed(&r, &loads, &fixed, self.moves);
+        let mut pairs = pairs.into_iter();
         let answer = |c: usize| {
             let of_pair = match plan.contact_place(c) {
                 Some(_) => pairs.next(),
                 None => None,
             };
-            let (forces, mut x) = of_pair.unwrap_or_default();
+            let Iterate {
+                jumps: mut x,
+                forces,
+            } = of_pair.unwrap_or_default();
             let interface_dofs = numbering.interface_dofs[c].iter();
-            x.extend(interface_dofs.map(|&i| step.u[i as usize]));
+            x.extend(interface_dofs.map(|&i| u[i as usize]));
             (Reals(forces), Reals(x))
         };
         (0..numbering.interface_dofs.len()).map(answer).collect()

@@ -221,12 +221,7 @@ fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -
             opened += usize::from(!is_tangential);
         }
     }
-    for tangential in group.friction() {
-        if tangential.bound.only_closed && !solution.closed[tangential.normal] {
-            solution.closed[tangential.number] = false;
-            solution.forces[tangential.number] = 0.0;
-        }
-    }
+    solution.release_opened(group);
     opened
 }
 

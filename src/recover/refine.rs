@@ -7,12 +7,11 @@ use crate::certificate::check::BlockCheck;
 use crate::certificate::most::Most;
 use crate::certificate::shared::at_shared_nodes;
 use crate::certificate::{Certificate, certificate};
-use crate::contact::friction::TangentialCondition;
 use crate::contact::jumps::JumpOf;
 use crate::context::Context;
 use crate::context::hierarchy::jumps;
 use crate::fem::contact_group::ContactGroup;
-use crate::recover::fixed_active_set::{FixedActiveSet, FixedConditions};
+use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::fixed_conditions::{change_forces, conditions};
 use crate::recover::motions::Field;
 use crate::recover::{DiscreteSolution, GroupSolution};
@@ -123,40 +122,28 @@ fn open_or_close(group: &ContactGroup, solution: &mut GroupSolution) -> bool {
         solution.closed[j] ^= is_wrong;
         changed |= is_wrong;
     }
-    for one in group.friction() {
-        if !solution.closed[one.normal] {
-            solution.closed[one.number] = false;
-            solution.forces[one.number] = 0.0;
-        }
-    }
+    solution.release_opened(group);
     changed
 }
 
 /// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it. What slips without
 /// a force, which it lost with its pressure, gets the one that it has by the law.
 fn stick_or_slip(group: &ContactGroup, solution: &mut GroupSolution) {
-    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
-        let TangentialCondition { normal, bound, .. } = of_point[0];
-        let bound = bound.at(solution.forces[normal], solution.closed[normal]);
-        let sum =
-            |of: &dyn Fn(usize) -> f64| of_point.iter().map(|one| of(one.number)).sum::<f64>();
-        let size = sum(&|j| solution.forces[j].powi(2)).sqrt();
-        let work = sum(&|j| -solution.gaps[j] * solution.forces[j]);
-        let sticks = of_point.iter().all(|one| solution.closed[one.number]);
-        let changes = match sticks {
-            true => size > bound,
-            false => work < 0.0,
-        };
-        let way = sum(&|j| solution.gaps[j].powi(2)).sqrt();
-        if !sticks && size == 0.0 && bound * way > 0.0 {
-            for one in of_point {
-                solution.forces[one.number] = -bound / way * solution.gaps[one.number];
-            }
-        }
-        for one in of_point.iter().filter(|_| changes) {
-            solution.closed[one.number] = !sticks;
-            if sticks {
-                solution.forces[one.number] *= bound / size;
+    for point in group.point_laws() {
+        let here = solution.point(&point);
+        let (size, way) = (here.size(), here.way());
+        let sticks = point.limits().all(|j| solution.closed[j]);
+        for (slip, j) in here.slip.into_iter().zip(point.limits()) {
+            match sticks {
+                true if size > here.bound => {
+                    solution.closed[j] = false;
+                    solution.forces[j] *= here.bound / size;
+                }
+                false if here.work() < 0.0 => solution.closed[j] = true,
+                false if size == 0.0 && here.bound * way > 0.0 => {
+                    solution.forces[j] = here.bound / way * slip;
+                }
+                _ => {}
             }
         }
     }
@@ -260,7 +247,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let prescribed: BTreeMap<usize, Vec<bool>> = (solution.groups.keys())
         .map(|&g| (g, prescribed(context, g)))
         .collect();
-    let conditions: FixedConditions = (solution.groups.iter_mut())
+    let conditions: FixedStatuses = (solution.groups.iter_mut())
         .map(|(&g, of_group)| {
             let of_group = conditions(&context.groups[&g], of_group, &prescribed[&g]);
             (g, of_group)

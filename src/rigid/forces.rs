@@ -90,7 +90,7 @@ impl Forces {
             });
         };
         let along = directions(tangents);
-        let slope = friction.map_or(0.0, |friction| friction.bound.coefficient);
+        let [bound, slope] = friction.map_or([0.0; 2], |friction| friction.bound.line(closed));
         if closed && slope == 0.0 {
             add(Some(normal), Vec::new(), f64::INFINITY);
         } else if closed {
@@ -106,7 +106,6 @@ impl Forces {
                 self.cones.push((normal, [first, second], slope));
             }
         }
-        let bound = friction.map_or(0.0, |friction| friction.bound.at(0.0, closed));
         if bound > 0.0 {
             // In space the segments sum to a polygon around the circle.
             let largest = match tangents {

@@ -36,21 +36,21 @@ impl Sweeps<'_, '_> {
                 return self.fall_back(residual, &why);
             }
             let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
-            self.outcome.active_set_iterations += step.steps;
-            if step.fell_back {
+            self.outcome.active_set_iterations += step.contact.steps;
+            if step.contact.fell_back {
                 (self.outcome).fell_back("newton: another method found the contacts' statuses");
             }
-            if !step.converged && coupled.has_friction() {
+            if !step.contact.converged && coupled.has_friction() {
                 self.outcome.unsettled = step.unsettled;
-                self.outcome.slides = step.slides;
+                self.outcome.slides = step.contact.slides;
                 return Ok(self.gave_up(&residual, "statuses of contacts with friction cycle"));
             }
-            if !step.converged {
+            if !step.contact.converged {
                 return self.fall_back(residual, "newton's contact problem didn't converge");
             }
             axpy(1.0, &step.u, &mut self.outcome.u);
             let before = residual.relative;
-            residual = self.evaluate(Some(&step.expected()));
+            residual = self.evaluate(Some(&step.expected));
             let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before;
             stalls = if stalled { stalls + 1 } else { 0 };
             if stalls == PATIENCE && !self.is_converged(&residual) {
@@ -99,11 +99,11 @@ impl Sweeps<'_, '_> {
                 return;
             };
             let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
-            self.outcome.active_set_iterations += step.steps;
+            self.outcome.active_set_iterations += step.contact.steps;
             let coarse = self.outcome.u.clone();
             axpy(1.0, &step.u, &mut self.outcome.u);
-            let after = self.residual(Some(&step.expected()));
-            if !step.converged
+            let after = self.residual(Some(&step.expected));
+            if !step.contact.converged
                 || after.totals.failed_pairs > 0
                 || after.relative > 0.5 * residual.relative
             {

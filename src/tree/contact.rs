@@ -231,7 +231,7 @@ fn conclude(
             .collect();
         let mut closed = statuses.closed.clone();
         for (point, status) in laws.points.iter().zip(&statuses.points) {
-            for t in point.tangents.into_iter().flatten() {
+            for t in point.limits() {
                 closed[t] = *status == PointStatus::Sticks;
             }
         }

@@ -57,7 +57,7 @@ pub(super) struct TreeOperator<'a, 'o> {
 fn open(laws: &ContactLaws<'_>, statuses: &Statuses, is_held: bool) -> Vec<bool> {
     let mut open: Vec<bool> = statuses.closed.iter().map(|closed| !closed).collect();
     for (point, status) in laws.points.iter().zip(&statuses.points) {
-        for t in point.tangents.into_iter().flatten() {
+        for t in point.limits() {
             open[t] = match is_held {
                 true => *status == PointStatus::Open,
                 false => *status != PointStatus::Sticks,
@@ -71,8 +71,7 @@ fn open(laws: &ContactLaws<'_>, statuses: &Statuses, is_held: bool) -> Vec<bool>
 fn slip_laws(laws: &ContactLaws<'_>, statuses: &Statuses) -> Vec<SlipLaw> {
     let points = laws.points.iter().zip(&statuses.points);
     let law = |(point, status): (&PointLaw, &PointStatus)| {
-        let is_closed = point.normal.is_some_and(|n| statuses.closed[n]);
-        SlipLaw::new(point, status, is_closed)
+        SlipLaw::new(point, status, point.is_closed(&statuses.closed))
     };
     points.filter_map(law).collect()
 }

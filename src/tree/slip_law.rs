@@ -8,9 +8,9 @@
 //!
 //! and e λ in the place of the first part where the contact is about to open. w keeps R as large as forces are.
 
-use crate::contact::friction::Status;
-use crate::contact::law::{PointLaw, PointStatus};
+use crate::contact::law::{PointLaw, PointState, PointStatus};
 use crate::contact::limits::{Limits, TangentialLimit};
+use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
 
 /// Part of its bound below which a force that slips isn't at it: the contact is about to open.
@@ -47,14 +47,13 @@ impl SlipLaw {
             PointStatus::Parts { direction, turning } => (direction, turning, true),
             PointStatus::Open | PointStatus::Sticks => return None,
         };
-        let normal = point.normal.filter(|_| is_closed);
-        let coheres = normal.is_some() || !point.bound.only_closed;
+        let [constant, slope] = point.bound.line(is_closed);
         Some(Self {
             tangents: point.tangents,
-            normal,
+            normal: point.normal.filter(|_| is_closed),
             direction,
-            constant: if coheres { point.bound.cohesion } else { 0.0 },
-            slope: normal.map_or(0.0, |_| point.bound.coefficient),
+            constant,
+            slope,
             weight: point.stiffness / (point.stiffness + turning),
             stiffness: point.stiffness,
             turning,
@@ -64,46 +63,38 @@ impl SlipLaw {
     }
 
     /// The laws of the points of a `group` within `limits` that slip as these statuses of limits say, under these `forces`
-    /// of their conditions, whose directions turn with the slip by the second of `shares`; the constant part of the bound
-    /// is what these lack of it, and where they lack more than round-off the contact is about to open.
+    /// of their conditions; the constant part of the bound is what these lack of it, and where they lack more than round-off
+    /// the contact is about to open.
     pub fn of_slipping(
         group: &ContactGroup,
         limits: &Limits,
-        (statuses, shares): (&[Status], &[[f64; 2]]),
+        fixed: &[FixedStatus],
         forces: &[f64],
     ) -> Vec<Self> {
         let of_limits = limits.conditions_of_limits();
+        let forces = limits.of_limits(forces);
+        let closed: Vec<bool> = fixed.iter().map(FixedStatus::is_closed).collect();
         let points: Vec<usize> = group.conditions().map(|one| one.point).collect();
         let law = |tangent: &TangentialLimit| {
-            let (tangents, prescribed) = tangent.of_point()?;
-            let mut direction = [0.0; 2];
-            for (e, t) in direction.iter_mut().zip(tangents.into_iter().flatten()) {
-                *e = forces[of_limits[t]];
-            }
-            let presses = tangent.normal.filter(|&n| statuses[n].is_closed());
-            let normal = presses.map_or(0.0, |n| forces[of_limits[n]]);
-            let bound = tangent.bound.at(normal, presses.is_some());
-            let size = match prescribed == 0.0 {
-                true => direction[0].hypot(direction[1]),
+            let stiffness = group.stiffness_at(points[of_limits[tangent.limit]]);
+            let mut point = PointLaw::new(tangent, stiffness)?;
+            let PointState { force, bound, .. } = point.at(|_| 0.0, &forces, &closed);
+            let size = match point.prescribed == 0.0 {
+                true => force[0].hypot(force[1]),
                 false => bound,
             };
-            let mut all = tangents.into_iter().flatten();
-            let slips = all.all(|t| !statuses[t].is_closed());
-            let parts = presses.is_some() && size < AT_BOUND * bound;
-            let [_, turning] = shares[tangent.limit];
-            let stiffness = group.stiffness_at(points[of_limits[tangent.limit]]);
-            (slips && size > 0.0).then(|| Self {
-                direction: direction.map(|e| e / size),
-                tangents,
-                normal: presses,
-                constant: bound - size,
-                slope: presses.map_or(0.0, |_| tangent.bound.coefficient),
-                weight: stiffness / (stiffness + turning),
-                stiffness,
-                turning,
-                prescribed: 0.0,
-                parts,
-            })
+            let is_closed = point.is_closed(&closed);
+            let direction = force.map(|e| e / size);
+            let [_, turning] = fixed[point.first].slip().unwrap_or_default();
+            let status = match is_closed && size < AT_BOUND * bound {
+                true => PointStatus::Parts { direction, turning },
+                false => PointStatus::Slips { direction, turning },
+            };
+            point.prescribed = 0.0;
+            point.bound.only_closed = false;
+            point.bound.cohesion = bound - size;
+            let slips = size > 0.0 && point.limits().all(|t| !closed[t]);
+            Self::new(&point, &status, is_closed).filter(|_| slips)
         };
         limits.tangents.iter().filter_map(law).collect()
     }
@@ -202,20 +193,23 @@ mod tests {
         stiffness: 3.0,
     };
 
+    fn at(forces: [f64; 3], slips: [f64; 2]) -> PointState {
+        POINT.at(|t| slips[t - 1], &forces, &[true; 3])
+    }
+
     /// λ_t − b ξ/|ξ|, what the law itself misses.
     fn natural_map(forces: [f64; 3], slips: [f64; 2]) -> [f64; 2] {
-        let bound = POINT.bound.at(forces[0], true);
-        let xi = POINT.reach(slips, [forces[1], forces[2]], bound);
+        let here = at(forces, slips);
+        let xi = POINT.reach(&here);
         let size = xi[0].hypot(xi[1]);
-        [0, 1].map(|k| forces[k + 1] - bound * xi[k] / size)
+        [0, 1].map(|k| forces[k + 1] - here.bound * xi[k] / size)
     }
 
     #[test]
     fn what_the_linear_law_misses_changes_as_what_the_law_misses() {
         let (forces, slips, step) = ([2.0, 0.5, -0.9], [0.3, -0.7], 1e-6);
-        let bound = POINT.bound.at(forces[0], true);
-        let xi = POINT.reach(slips, [forces[1], forces[2]], bound);
-        let law = SlipLaw::new(&POINT, &POINT.status(xi, bound, 0.0), true).unwrap();
+        let status = POINT.status(&at(forces, slips), 0.0);
+        let law = SlipLaw::new(&POINT, &status, true).unwrap();
         for direction in 0..5 {
             let mut unit = [0.0; 5];
             unit[direction] = 1.0;

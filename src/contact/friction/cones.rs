@@ -14,6 +14,7 @@ use crate::contact::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANC
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::open_factor::scale_of;
+use crate::contact::status::FixedStatus;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
 /// A dense problem whose points have cones.
@@ -68,54 +69,44 @@ impl FrictionProblem<'_> {
         }
     }
 
-    /// The change of jumps and forces where limits keep these statuses and slips turn, as [`Self::change`] says.
-    pub(super) fn change_cones(&self, status: &[Status], turns: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let share = |i: Option<usize>| i.map_or(0.0, |i| status[i].sign() * self.contact.bounds[i]);
-        let slips = |i: usize| status[i].sign() != 0.0;
-        let mut bounds = self.contact.bounds.to_vec();
+    /// The change of jumps and forces where limits keep these statuses, as [`Self::change`] says.
+    pub(super) fn change_cones(&self, fixed: &[FixedStatus]) -> Iterate {
         let mut tangents = self.tangents.to_vec();
         for tangent in &mut tangents {
             tangent.bound.cohesion = 0.0;
-            if slips(tangent.limit) {
-                bounds[tangent.limit] = 0.0;
-            }
             if matches!(tangent.beside, Beside::Prescribed(_)) {
                 tangent.beside = Beside::Nothing;
             }
         }
-        let changes = FrictionProblem {
-            contact: ContactProblem {
-                bounds: &bounds,
-                ..self.contact
-            },
+        let cones = FrictionCones::new(&FrictionProblem {
             tangents: &tangents,
-            last_patch: self.last_patch,
-        };
-        let cones = FrictionCones::new(&changes);
-        let act = |point: &PointLaw| match point.first {
-            i if slips(i) => PointStatus::Slips {
+            ..*self
+        });
+        let share = |i: Option<usize>| i.and_then(|i| fixed[i].slip()).map_or(0.0, |[e, _]| e);
+        let act = |point: &PointLaw| match fixed[point.first] {
+            FixedStatus::Open => PointStatus::Open,
+            FixedStatus::Closed { .. } => PointStatus::Sticks,
+            FixedStatus::Slips { turning, .. } => PointStatus::Slips {
                 direction: point.tangents.map(share),
-                turning: turns[i],
+                turning,
             },
-            i if status[i].is_closed() => PointStatus::Sticks,
-            i if status[i] == Status::Parting => PointStatus::Parts {
+            FixedStatus::Parts => PointStatus::Parts {
                 direction: [1.0, 0.0],
                 turning: 0.0,
             },
-            _ => PointStatus::Open,
         };
         let state = Statuses {
-            closed: status.iter().map(|status| status.is_closed()).collect(),
+            closed: fixed.iter().map(FixedStatus::is_closed).collect(),
             points: cones.laws.points.iter().map(act).collect(),
             opened: Vec::new(),
         };
-        let Iterate { jumps, mut forces } = cones.step(&cones.start(), &state);
-        for (force, status) in forces.iter_mut().zip(status) {
-            if *status == Status::Open {
+        let mut change = cones.step(&cones.start(), &state);
+        for (force, fixed) in change.forces.iter_mut().zip(fixed) {
+            if *fixed == FixedStatus::Open {
                 *force = 0.0;
             }
         }
-        (jumps, forces)
+        change
     }
 
     /// The limits whose law isn't fulfilled one step after they had these statuses.
@@ -164,7 +155,7 @@ impl<'a> FrictionCones<'a> {
             *status = Status::new(!closed);
         }
         for (point, act) in self.laws.points.iter().zip(&state.points) {
-            for i in point.tangents.into_iter().flatten() {
+            for i in point.limits() {
                 status[i] = match act {
                     PointStatus::Open => Status::Open,
                     PointStatus::Sticks => Status::Closed,
@@ -219,17 +210,18 @@ impl<'a> FrictionCones<'a> {
                 forces[n] = 0.0;
                 continue;
             }
-            let bound = self.laws.bound(point, &cut, &state.closed);
             // Small slips know their direction less well than what balances the bodies.
-            let [_, [first, second]] = self.laws.tangential(point, place);
-            let size = first.hypot(second);
+            let here = self.laws.point(point, &cut, &state.closed);
+            let size = here.size();
             let part = match act {
                 PointStatus::Sticks | PointStatus::Parts { .. } => continue,
-                PointStatus::Slips { .. } if size > 0.0 && point.prescribed == 0.0 => bound / size,
+                PointStatus::Slips { .. } if size > 0.0 && point.prescribed == 0.0 => {
+                    here.bound / size
+                }
                 PointStatus::Slips { .. } => 1.0,
                 PointStatus::Open => 0.0,
             };
-            for i in point.tangents.into_iter().flatten() {
+            for i in point.limits() {
                 forces[i] = part * place.forces[i];
             }
         }

@@ -17,7 +17,9 @@ use faer::{Conj, MatMut};
 use super::{FrictionProblem, Status};
 use crate::contact::active_set::{ContactProblem, ContactSolution, GAP_TOLERANCE};
 use crate::contact::dependent::DependentConstraints;
+use crate::contact::laws::Iterate;
 use crate::contact::patch::{CondensedPatch, LARGE, LastPatch};
+use crate::contact::status::FixedStatus;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
 /// Jumps up to which the whole problem is solved at once: that costs less than to condense it.
@@ -70,22 +72,18 @@ impl FrictionProblem<'_> {
 
     /// The change of jumps and forces where limits keep these statuses, as [`Self::change`] says, by way of the patch that
     /// these close.
-    pub(super) fn change_on_patch(
-        &self,
-        status: &[Status],
-        turns: &[f64],
-    ) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub(super) fn change_on_patch(&self, fixed: &[FixedStatus]) -> Option<Iterate> {
         if self.contact.c.len() <= FEW {
             return None;
         }
         let normal_of = self.normals();
-        let is_in = self.held(&normal_of, status);
+        let is_in = held(&normal_of, fixed, FixedStatus::Open);
         let patch = Patch::new(self, |&i| normal_of[i].is_none_or(|n| is_in[n]))?;
-        let limits = patch.limits();
-        let turns: Vec<f64> = limits.iter().map(|&i| turns[i]).collect();
-        let ((jumps, forces), _) =
-            patch.ask(status, |problem, status| problem.change(status, &turns));
-        Some((patch.all_jumps(&jumps), patch.all_forces(&forces)))
+        let (change, _) = patch.ask(fixed, |problem, fixed| problem.change(fixed));
+        Some(Iterate {
+            jumps: patch.all_jumps(&change.jumps),
+            forces: patch.all_forces(&change.forces),
+        })
     }
 
     /// The normal jump with which every jump opens, itself where it is one; `None` where it doesn't open for certain.
@@ -117,7 +115,7 @@ impl FrictionProblem<'_> {
     /// The normal jumps of points that aren't open; where these are most, those that press where all of them are closed.
     fn pressed(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
         let contact = &self.contact;
-        let mut held = self.held(normal_of, status);
+        let mut held = held(normal_of, status, Status::Open);
         let jumps = normal_of.iter().flatten().filter(|n| held[**n]).count();
         if jumps as f64 <= LARGE * held.len() as f64 {
             return held;
@@ -134,17 +132,17 @@ impl FrictionProblem<'_> {
             .for_each(|(held, force)| *held &= force > 0.0);
         held
     }
+}
 
-    /// The normal jumps of points that aren't open.
-    fn held(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
-        let mut held = vec![false; normal_of.len()];
-        for (normal, status) in normal_of.iter().zip(status) {
-            if let (Some(n), true) = (normal, *status != Status::Open) {
-                held[*n] = true;
-            }
+/// The normal jumps of points that aren't `open`.
+fn held<S: PartialEq>(normal_of: &[Option<usize>], statuses: &[S], open: S) -> Vec<bool> {
+    let mut held = vec![false; normal_of.len()];
+    for (normal, status) in normal_of.iter().zip(statuses) {
+        if let (Some(n), true) = (normal, *status != open) {
+            held[*n] = true;
         }
-        held
     }
+    held
 }
 
 impl<'a> Patch<'a> {
@@ -164,11 +162,11 @@ impl<'a> Patch<'a> {
 
     /// The answer to a question about the problem on the patch, whose statuses are `now` in the whole problem, and the
     /// statuses that it leaves.
-    fn ask<T>(
+    fn ask<S: Copy, T>(
         &self,
-        now: &[Status],
-        ask: impl FnOnce(&FrictionProblem<'_>, &mut [Status]) -> T,
-    ) -> (T, Vec<Status>) {
+        now: &[S],
+        ask: impl FnOnce(&FrictionProblem<'_>, &mut [S]) -> T,
+    ) -> (T, Vec<S>) {
         let whole = &self.problem.contact;
         let CondensedPatch { jumps, open, h, .. } = &*self.condensed;
         let of_patch = |all: &[f64]| -> Vec<f64> { jumps.iter().map(|&i| all[i]).collect() };
@@ -197,7 +195,7 @@ impl<'a> Patch<'a> {
             .collect();
         let limits = self.limits();
         let bounds: Vec<f64> = limits.iter().map(|&i| whole.bounds[i]).collect();
-        let mut status: Vec<Status> = limits.iter().map(|&i| now[i]).collect();
+        let mut status: Vec<S> = limits.iter().map(|&i| now[i]).collect();
         let problem = FrictionProblem {
             contact: ContactProblem {
                 h: h.as_ref(),

@@ -236,11 +236,22 @@ fn a_patch_has_the_solution_of_the_whole() {
                     "{what}: {found} {expected}"
                 );
             }
-            let turns = vec![0.5; points.bounds.len()];
-            let change = points.with(|problem| problem.change_on_patch(&status, &turns));
-            let (jumps, forces) = change.expect(&what);
-            let of_whole = points.with(|problem| problem.change_whole(&status, &turns));
-            let (changes, expected) = ([jumps, forces].concat(), [of_whole.0, of_whole.1].concat());
+            let fixed = |(i, status): (usize, &Status)| match status {
+                Status::Open => FixedStatus::Open,
+                Status::Closed => FixedStatus::Closed {
+                    lacks: points.bounds[i],
+                },
+                _ => FixedStatus::Slips {
+                    share: [0.6, 0.8][i % 2],
+                    turning: 0.5,
+                },
+            };
+            let fixed: Vec<FixedStatus> = status.iter().enumerate().map(fixed).collect();
+            let change = points.with(|problem| problem.change_on_patch(&fixed));
+            let change = change.expect(&what);
+            let of_whole = points.with(|problem| problem.change_whole(&fixed));
+            let changes = [change.jumps, change.forces].concat();
+            let expected = [of_whole.jumps, of_whole.forces].concat();
             for (change, expected) in changes.iter().zip(&expected) {
                 assert!(
                     (change - expected).abs() < 1e-10,

@@ -165,13 +165,10 @@ impl FrictionCones<'_> {
             equation.ways.push((other, of_way));
         }
         let share = e[k] * if alone { weight } else { 1.0 };
-        let bound = &point.bound;
-        let pressed = point.normal.filter(|&n| closed[n]);
-        if pressed.is_some() || !bound.only_closed {
-            equation.constant += share * bound.cohesion;
-        }
-        if let Some(n) = pressed {
-            equation.forces.push((n, -share * bound.coefficient));
+        let [constant, slope] = point.bound.line(point.is_closed(closed));
+        equation.constant += share * constant;
+        if let Some(n) = point.normal.filter(|&n| closed[n]) {
+            equation.forces.push((n, -share * slope));
         }
         Some(equation)
     }

@@ -165,7 +165,7 @@ impl FrictionCones<'_> {
         }
         for point in &self.laws.points {
             let [along, across] = point.tangents.map(|i| i.map_or(0.0, |i| all[i]));
-            taken += self.laws.bound(point, place, &state.closed) * along.hypot(across);
+            taken += self.laws.point(point, place, &state.closed).bound * along.hypot(across);
         }
         let work = dot(self.contact.c, ways);
         let terms = self.contact.c.iter().zip(ways);
