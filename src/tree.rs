@@ -8,6 +8,7 @@ mod active_set;
 pub mod contact;
 pub mod fronts;
 mod operator;
+mod problem;
 pub mod slip_law;
 pub mod slip_problem;
 pub mod solution;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::jumps::NoUnknown;
+use crate::contact::laws::Iterate;
 use crate::context::Context;
 use crate::context::hierarchy::jumps;
 use crate::error::Failure;
@@ -90,13 +91,12 @@ impl GroupBetween {
         loads.collect()
     }
 
-    /// The normal jumps, and the forces on them, 0 where open, for displacements and unbalanced forces at its
-    /// unknowns.
+    /// Its jumps and forces, 0 where open, for displacements and unbalanced forces at its unknowns.
     pub fn answer(
         &self,
         x: &BTreeMap<InterfaceDof, f64>,
         unbalanced: &BTreeMap<InterfaceDof, f64>,
-    ) -> (Vec<f64>, Vec<f64>) {
+    ) -> Iterate {
         let jump = |terms: &Vec<(InterfaceDof, f64)>| {
             let terms = terms.iter().map(|(dof, c)| c * x[dof]);
             terms.sum()
@@ -107,7 +107,10 @@ impl GroupBetween {
                 forces[t] += c * unbalanced[&replaced.dof];
             }
         }
-        (self.terms.iter().map(jump).collect(), forces)
+        Iterate {
+            jumps: self.terms.iter().map(jump).collect(),
+            forces,
+        }
     }
 }
 

@@ -8,6 +8,8 @@ use crate::bddc::conjugate_gradients::ConjugateGradients;
 use crate::bddc::local::Vectors;
 use crate::bytes::Reals;
 use crate::comm::Comm;
+use crate::contact::laws::Iterate;
+use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
@@ -45,8 +47,8 @@ impl Accuracy<'_> {
 pub struct BddcSolution {
     /// The unknowns of every cluster, by its node.
     pub clusters: BTreeMap<usize, Vec<f64>>,
-    /// The normal jumps of every contact group between clusters (m), and the forces on them, 0 where open (N/m).
-    pub groups: BTreeMap<usize, (Vec<f64>, Vec<f64>)>,
+    /// The jumps and forces of every contact group between clusters; no force where open.
+    pub groups: OnGroups<Iterate>,
     /// Iterations that it took.
     pub iterations: usize,
     /// Whether they sufficed.
@@ -233,12 +235,7 @@ impl Bddc {
 
     /// Jumps and forces of the contact groups of this rank, for the unknowns of clusters and what is `unbalanced` there.
     /// Collective.
-    fn answers(
-        &self,
-        comm: &Comm,
-        clusters: &Vectors,
-        unbalanced: &Vectors,
-    ) -> BTreeMap<usize, (Vec<f64>, Vec<f64>)> {
+    fn answers(&self, comm: &Comm, clusters: &Vectors, unbalanced: &Vectors) -> OnGroups<Iterate> {
         let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();

@@ -203,10 +203,10 @@ impl<'a> FixedActiveSet<'a> {
         let Ok(solution) = follow(&mut fronts, &problem, tolerance) else {
             return Change::default();
         };
-        let forces = solution.forces.iter();
+        let forces = solution.at.iter();
         Change {
             forces: forces
-                .map(|(&g, of_limits)| (g, limits[&g].forces(of_limits)))
+                .map(|(&g, at)| (g, limits[&g].forces(&at.forces)))
                 .collect(),
             blocks: factors.recover(&condensed, solution.boundaries),
         }

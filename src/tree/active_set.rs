@@ -4,14 +4,14 @@
 //! some of them.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use crate::bddc::solution::{Accuracy, ClusterLoads};
-use crate::context::Context;
+use crate::comm::Comm;
+use crate::contact::laws::Iterate;
 use crate::error::Failure;
-use crate::sweep::{SweepOutcome, SweepRecord};
 use crate::tree::fronts::ActiveSetFronts;
-use crate::tree::operator::{ROUND_OFF, go_on};
+use crate::tree::operator::ROUND_OFF;
+use crate::tree::problem::{Steps, TreeProblem};
 use crate::tree::solution::ActiveSetSolution;
 use crate::tree::update::{ActiveSetUpdate, Descent};
 
@@ -28,99 +28,52 @@ struct Faults {
     largest: f64,
 }
 
-/// What is open in an active set, and the solution with it.
+/// Open conditions, and the solution with them.
 pub(super) struct Settled {
     pub open: BTreeMap<usize, Vec<bool>>,
     pub solution: ActiveSetSolution,
     /// Whether nothing is wrong.
     pub is_right: bool,
+    /// Limits that are, on this rank.
+    pub wrong: BTreeMap<usize, Vec<usize>>,
 }
 
-/// What an active set is found for: `loads` on the boundaries of the clusters, the jumps at which conditions are closed,
-/// and which conditions stay closed whatever their forces, of every contact group of this rank.
-#[derive(Clone, Copy)]
-pub(super) struct Conditions<'a> {
-    pub loads: &'a BTreeMap<usize, Vec<f64>>,
-    pub bounds: &'a BTreeMap<usize, Vec<f64>>,
-    pub stay: &'a BTreeMap<usize, Vec<bool>>,
-}
-
-/// Finds the active set of these conditions, from one that is `open` at first, or the one after `most` steps. Collective.
+/// Finds the active set of a `problem` in which all tangential conditions stick, from one that is `open` at first, or the one
+/// after `most` steps. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
 pub(super) fn settle(
-    context: &Context<'_>,
+    problem: &TreeProblem<'_>,
     fronts: &mut ActiveSetFronts,
-    of_set: Conditions<'_>,
+    steps: &mut Steps<'_>,
     (mut open, most): (BTreeMap<usize, Vec<bool>>, usize),
-    outcome: &mut SweepOutcome,
-    observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<Settled, Failure> {
-    let began = Instant::now();
-    let bounds = of_set.bounds;
+    let context = problem.context;
     let (mut update, mut descent) = (ActiveSetUpdate::default(), Descent::default());
-    let (mut changed, mut is_released) = (None, false);
-    let (mut last, mut wrong_by) = (None, 1.0_f64);
-    let loads = ClusterLoads {
-        clusters: of_set.loads,
-        prescribed: bounds,
-        forces: &BTreeMap::new(),
+    let mut changed = None;
+    let mut search = Search {
+        problem,
+        fronts,
+        last: None,
+        wrong_by: 1.0,
+        is_released: false,
     };
-    let first = outcome.records.len();
+    let first = steps.count();
     loop {
-        fronts.fix(context, &open)?;
-        let accurate =
-            |fronts: &mut ActiveSetFronts, tolerance, start: Option<&ActiveSetSolution>| {
-                let accuracy = Accuracy {
-                    tolerance,
-                    start: start.map(|start| &start.merge_roots),
-                };
-                let mut solution = fronts.solve(context, &open, loads, accuracy)?;
-                solution.iterations += start.map_or(0, |start| start.iterations);
-                let least = ROUND_OFF.max(tolerance);
-                let faults = Faults::of(context, &solution, of_set, &open, least);
-                Ok::<_, Failure>((solution, faults))
-            };
-        // No more accurate than the active set, until that seems to be right.
-        let tolerance = match fronts.coarse_dofs() {
-            Some(_) => (update.tolerance * wrong_by.min(1.0)).max(Accuracy::FULL.tolerance),
-            None => 0.0,
-        };
-        let (mut solution, mut faults) = accurate(fronts, tolerance, last.as_ref())?;
-        if faults.count == 0 && tolerance > Accuracy::FULL.tolerance {
-            fronts.renew(context, &open)?;
-            (solution, faults) = accurate(fronts, Accuracy::FULL.tolerance, Some(&solution))?;
-        }
-        if faults.count == 0 && !is_released && fronts.release(context, &open)? {
-            is_released = true;
-            (solution, faults) = accurate(fronts, Accuracy::FULL.tolerance, Some(&solution))?;
-        }
-        wrong_by = faults.largest;
-        let sweep = outcome.records.len();
-        let record = SweepRecord {
-            sweep,
-            residual: faults.largest,
-            active: faults.active,
-            changed,
-            seconds: began.elapsed().as_secs_f64(),
-        };
-        outcome.records.push(record);
-        if let Some(coarse_dofs) = fronts.coarse_dofs() {
-            let solves = outcome.iterative.get_or_insert_default();
-            solves.iterations.push(solution.iterations);
-            solves.coarse_dofs = coarse_dofs;
-        }
-        observer(&record);
-        let gave_up = sweep - first >= most || !solution.is_finite(context.comm);
-        if faults.count == 0 || gave_up {
+        let (solution, faults) = search.step(&open, update.tolerance)?;
+        let made = steps.count() - first;
+        let residual = (faults.largest, faults.active, changed);
+        steps.record(residual, search.fronts, solution.iterations);
+        if faults.count == 0 || made >= most || !solution.is_finite(context.comm) {
             return Ok(Settled {
                 open,
                 solution,
                 is_right: faults.count == 0,
+                wrong: faults.wrong,
             });
         }
-        go_on(context, sweep)?;
+        steps.go_on(context)?;
         changed = Some(match update.is_of_all(faults.count) {
             true => {
                 descent = Descent::default();
@@ -131,49 +84,123 @@ pub(super) fn settle(
                 }
                 faults.count
             }
-            false => descent.update(context, &faults.wrong, bounds, &solution.jumps, &mut open),
+            false => {
+                let bounds = &problem.bounds;
+                descent.update(context, &faults.wrong, bounds, &solution.at, &mut open)
+            }
         });
-        last = Some(ActiveSetSolution {
+        search.last = Some(ActiveSetSolution {
             iterations: 0,
             ..solution
         });
     }
 }
 
+/// The search for an active set.
+struct Search<'a> {
+    problem: &'a TreeProblem<'a>,
+    fronts: &'a mut ActiveSetFronts,
+    /// The solution of the last step.
+    last: Option<ActiveSetSolution>,
+    /// The largest tension or penetration in it.
+    wrong_by: f64,
+    /// Whether springs of earlier active sets were taken away.
+    is_released: bool,
+}
+
+impl Search<'_> {
+    /// The solution where these conditions are `open`, and what it says of them; of an iterative solver no more accurate, by
+    /// this `share`, than the active set is right, until that seems to be. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    fn step(
+        &mut self,
+        open: &BTreeMap<usize, Vec<bool>>,
+        share: f64,
+    ) -> Result<(ActiveSetSolution, Faults), Failure> {
+        let context = self.problem.context;
+        let finest = Accuracy::FULL.tolerance;
+        self.fronts.fix(context, open)?;
+        let tolerance = match self.fronts.coarse_dofs() {
+            Some(_) => (share * self.wrong_by.min(1.0)).max(finest),
+            None => 0.0,
+        };
+        let last = self.last.take();
+        let (mut solution, mut faults) = self.solve(open, tolerance, last.as_ref())?;
+        if faults.count == 0 && tolerance > finest {
+            self.fronts.renew(context, open)?;
+            (solution, faults) = self.solve(open, finest, Some(&solution))?;
+        }
+        if faults.count == 0 && !self.is_released && self.fronts.release(context, open)? {
+            self.is_released = true;
+            (solution, faults) = self.solve(open, finest, Some(&solution))?;
+        }
+        self.wrong_by = faults.largest;
+        Ok((solution, faults))
+    }
+
+    /// The same with this `tolerance` of an iterative solver, from an earlier solution. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    fn solve(
+        &mut self,
+        open: &BTreeMap<usize, Vec<bool>>,
+        tolerance: f64,
+        start: Option<&ActiveSetSolution>,
+    ) -> Result<(ActiveSetSolution, Faults), Failure> {
+        let loads = ClusterLoads {
+            clusters: self.problem.loads,
+            prescribed: &self.problem.bounds,
+            forces: &BTreeMap::new(),
+        };
+        let accuracy = Accuracy {
+            tolerance,
+            start: start.map(|start| &start.merge_roots),
+        };
+        let context = self.problem.context;
+        let mut solution = self.fronts.solve(context, open, loads, accuracy)?;
+        solution.iterations += start.map_or(0, |start| start.iterations);
+        let faults = Faults::of(self.problem, &solution, open, ROUND_OFF.max(tolerance));
+        Ok((solution, faults))
+    }
+}
+
+/// The largest force and jump of a solution, or bound, on all ranks. Collective.
+fn scales(
+    comm: &Comm,
+    solution: &ActiveSetSolution,
+    bounds: &BTreeMap<usize, Vec<f64>>,
+) -> [f64; 2] {
+    let is_finite = |x: &&f64| x.is_finite();
+    let forces = solution.at.values().flat_map(|at| &at.forces);
+    let jumps = solution.at.values().flat_map(|at| &at.jumps);
+    let ways = jumps.chain(bounds.values().flatten());
+    [
+        comm.largest(forces.filter(is_finite)),
+        comm.largest(ways.filter(is_finite)),
+    ]
+}
+
 impl Faults {
     /// What is wrong, by more than `least`, where the conditions that are `open` led to this solution. Collective.
     fn of(
-        context: &Context<'_>,
+        problem: &TreeProblem<'_>,
         solution: &ActiveSetSolution,
-        of_set: Conditions<'_>,
         open: &BTreeMap<usize, Vec<bool>>,
         least: f64,
     ) -> Self {
-        let Context { comm, plan, .. } = *context;
-        let Conditions { bounds, stay, .. } = of_set;
-        let largest = |all: &BTreeMap<usize, Vec<f64>>| {
-            let all = all.values().flatten().filter(|x| x.is_finite());
-            all.fold(0.0, |m: f64, x| m.max(x.abs()))
-        };
-        let own = [
-            largest(&solution.forces),
-            largest(&solution.jumps).max(largest(bounds)),
-        ];
-        let mut scales = [0.0_f64; 2];
-        for of_rank in comm.collect(&own) {
-            scales = [0, 1].map(|k| f64::max(scales[k], of_rank[k]));
-        }
-        comm.broadcast(&mut scales);
-        let mut faults = Self::default();
+        let (comm, plan) = (problem.context.comm, problem.context.plan);
+        let scales = scales(comm, solution, &problem.bounds).map(|x| x.max(f64::MIN_POSITIVE));
         let of_group = |g: usize| {
             let (mut wrong, mut largest, mut active) = (Vec::new(), 0.0_f64, 0);
-            let stays = |j: usize| stay.get(&g).is_some_and(|stay| stay[j]);
-            for (j, &is_open) in open[&g].iter().enumerate().filter(|&(j, _)| !stays(j)) {
+            let sticks = &problem.laws[&g].is_tangential;
+            for (j, &is_open) in open[&g].iter().enumerate().filter(|&(j, _)| !sticks[j]) {
+                let Iterate { jumps, forces } = &solution.at[&g];
                 let excess = match is_open {
-                    true => {
-                        (solution.jumps[&g][j] - bounds[&g][j]) / scales[1].max(f64::MIN_POSITIVE)
-                    }
-                    false => -solution.forces[&g][j] / scales[0].max(f64::MIN_POSITIVE),
+                    true => (jumps[j] - problem.bounds[&g][j]) / scales[1],
+                    false => -forces[j] / scales[0],
                 };
                 active += usize::from(!is_open);
                 largest = largest.max(excess);
@@ -183,7 +210,7 @@ impl Faults {
             }
             (wrong, largest, active)
         };
-        let mut wrong = BTreeMap::new();
+        let (mut faults, mut wrong) = (Self::default(), BTreeMap::new());
         comm.gather(
             &plan.group_owners(),
             |g| {

@@ -7,7 +7,6 @@
 //! line search.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::Instant;
 
 use crate::contact::friction::Status;
 use crate::contact::law::PointStatus;
@@ -16,12 +15,12 @@ use crate::contact::limits::Limits;
 use crate::contact::newton::{Found, NewtonSettings, OnGroups, newton};
 use crate::context::Context;
 use crate::error::Failure;
-use crate::fem::contact_group::ContactGroup;
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
-use crate::tree::active_set::{Conditions, settle};
+use crate::tree::active_set::settle;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::operator::{ROUND_OFF, TreeOperator};
+use crate::tree::problem::{Steps, TreeProblem, points_of_limits};
 use crate::tree::solution::ActiveSetSolution;
 
 /// Most steps.
@@ -45,47 +44,26 @@ pub struct TreeContact {
     pub outcome: SweepOutcome,
 }
 
-/// The number of the point of every limit of a group.
-fn points_of_limits(group: &ContactGroup, limits: &Limits) -> Vec<usize> {
-    let conditions: Vec<usize> = group.conditions().map(|one| one.point).collect();
-    let of_limits = limits.conditions_of_limits().into_iter();
-    of_limits.map(|j| conditions[j]).collect()
-}
-
-/// The laws of the limits of a group.
-fn laws<'a>(group: &ContactGroup, limits: &'a Limits) -> ContactLaws<'a> {
-    let points = points_of_limits(group, limits).into_iter();
-    let stiffness = points.map(|point| group.stiffness_at(point)).collect();
-    ContactLaws::new(&limits.bounds, &limits.rows, &limits.tangents, stiffness)
-}
-
 /// Where all is at rest, with these normal jumps open and all else closed and sticking.
 fn begin(
     laws: &OnGroups<ContactLaws<'_>>,
-    open: impl Fn(usize) -> Vec<bool>,
+    open: &OnGroups<Vec<bool>>,
 ) -> (OnGroups<Iterate>, OnGroups<Statuses>) {
-    let of_group = |(&g, laws): (&usize, &ContactLaws<'_>)| {
+    let (mut start, mut statuses) = (OnGroups::new(), OnGroups::new());
+    for (&g, laws) in laws {
         let at = Iterate {
             jumps: laws.bounds.to_vec(),
             forces: vec![0.0; laws.bounds.len()],
         };
-        let status: Vec<Status> = open(g).into_iter().map(Status::new).collect();
-        (g, (laws.begin(&status, &at), at))
-    };
-    let both = laws.iter().map(of_group);
-    let (mut start, mut statuses) = (OnGroups::new(), OnGroups::new());
-    for (g, (of_group, at)) in both {
-        statuses.insert(g, of_group);
+        let status: Vec<Status> = open[&g].iter().map(|&open| Status::new(open)).collect();
+        statuses.insert(g, laws.begin(&status, &at));
         start.insert(g, at);
     }
     (start, statuses)
 }
 
 /// Finds what every contact point does under `loads` on the boundaries of the clusters, within the `limits` of every
-/// contact group of this rank, from the statuses of the load step `before`, else from where all are closed and stick. Where
-/// Newton's method gets no further, it begins anew where those are closed that press while everything sticks along tangents,
-/// open or closed: a convex problem, in which no body is without a hold because contacts open that are far from each other.
-/// Collective.
+/// contact group of this rank, from the statuses of the load step `before`, else from where all are closed and stick. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -97,64 +75,67 @@ pub fn solve(
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<TreeContact, Failure> {
-    let laws: OnGroups<ContactLaws<'_>> = (limits.iter())
-        .map(|(&g, limits)| (g, laws(&context.groups[&g], limits)))
-        .collect();
-    let stiffest = limits.iter().map(|(&g, limits)| {
-        let group = &context.groups[&g];
-        let points = points_of_limits(group, limits).into_iter();
-        (
-            g,
-            points
-                .map(|point| group.largest_stiffness_at(point))
-                .collect(),
-        )
-    });
-    let stiffest: OnGroups<Vec<f64>> = stiffest.collect();
-    let bounds: BTreeMap<usize, Vec<f64>> = (limits.iter())
-        .map(|(&g, limits)| (g, limits.bounds.clone()))
-        .collect();
-    let mut outcome = SweepOutcome::before(Vec::new());
-    let all_closed: BTreeMap<usize, Vec<bool>> = (bounds.iter())
-        .map(|(&g, bounds)| (g, vec![false; bounds.len()]))
-        .collect();
-    let sticking = Conditions {
-        loads,
-        bounds: &bounds,
-        stay: &(laws.iter())
-            .map(|(&g, laws)| (g, laws.is_tangential.clone()))
-            .collect(),
+    let problem = TreeProblem::new(context, limits, loads);
+    let mut steps = Steps::new(observer);
+    let most = max_steps.unwrap_or(MAX_STEPS);
+    let (found, solution) = match context.catalog.has_friction() {
+        true => with_friction(&problem, fronts, &mut steps, before, most)?,
+        false => without_friction(&problem, fronts, &mut steps, before, most)?,
     };
-    if !context.catalog.has_friction() {
-        let mut open = all_closed;
-        for (g, own) in &mut open {
-            let known = before.get(g).filter(|b| b.closed.len() == own.len());
-            let closed = known.into_iter().flat_map(|known| &known.closed);
-            own.iter_mut()
-                .zip(closed)
-                .for_each(|(open, closed)| *open = !closed);
+    conclude(&problem, found, solution, steps.outcome)
+}
+
+/// The solution without friction, by updates of the active set. Collective.
+///
+/// # Errors
+/// Some part of the scene moves freely, or a signal has asked the run to stop.
+fn without_friction(
+    problem: &TreeProblem<'_>,
+    fronts: &mut ActiveSetFronts,
+    steps: &mut Steps<'_>,
+    before: &OnGroups<Statuses>,
+    most: usize,
+) -> Result<(Found, ActiveSetSolution), Failure> {
+    let mut open = problem.all_closed();
+    for (g, open) in &mut open {
+        if let Some(known) = before.get(g).filter(|b| b.closed.len() == open.len()) {
+            *open = known.closed.iter().map(|closed| !closed).collect();
         }
-        let first = (open, max_steps.unwrap_or(MAX_STEPS));
-        let settled = settle(context, fronts, sticking, first, &mut outcome, observer)?;
-        let found = Found {
-            at: TreeOperator::iterate(&settled.solution),
-            statuses: begin(&laws, |g| settled.open[&g].clone()).1,
-            wrong: OnGroups::new(),
-            missed: if settled.is_right { 0.0 } else { f64::INFINITY },
-            steps: outcome.records.len(),
-        };
-        return conclude(context, limits, &laws, found, settled.solution, outcome);
     }
-    let began = Instant::now();
+    let settled = settle(problem, fronts, steps, (open, most))?;
+    let found = Found {
+        at: settled.solution.at.clone(),
+        statuses: begin(&problem.laws, &settled.open).1,
+        wrong: settled.wrong,
+        missed: if settled.is_right { 0.0 } else { f64::INFINITY },
+        steps: steps.count(),
+    };
+    Ok((found, settled.solution))
+}
+
+/// The solution with friction, by Newton's method. Where that gets no further, it begins anew where those are closed that
+/// press while everything sticks along tangents, open or closed: a convex problem, in which no body is without a hold because
+/// contacts open that are far from each other. Collective.
+///
+/// # Errors
+/// Some part of the scene moves freely, or a signal has asked the run to stop.
+fn with_friction(
+    problem: &TreeProblem<'_>,
+    fronts: &mut ActiveSetFronts,
+    steps: &mut Steps<'_>,
+    before: &OnGroups<Statuses>,
+    most: usize,
+) -> Result<(Found, ActiveSetSolution), Failure> {
     let mut settings = NewtonSettings {
-        most: max_steps.unwrap_or(MAX_STEPS) + 1,
+        most: most + 1,
         patience: PATIENCE,
         tolerance: ROUND_OFF,
         acceptable: ACCEPTABLE,
         round_off: ROUND_OFF,
         law: 1.0,
     };
-    let (mut start, mut statuses) = begin(&laws, |g| all_closed[&g].clone());
+    let laws = &problem.laws;
+    let (mut start, mut statuses) = begin(laws, &problem.all_closed());
     for (g, own) in &mut statuses {
         if let Some(known) = before.get(g) {
             laws[g].take_over(known, own);
@@ -162,48 +143,29 @@ pub fn solve(
     }
     let mut is_anew = false;
     loop {
-        let mut operator = TreeOperator {
-            context,
-            fronts,
-            laws: &laws,
-            stiffest: &stiffest,
-            loads,
-            bounds: &bounds,
-            solution: ActiveSetSolution::default(),
-            is_answered: false,
-            is_held: false,
-            is_released: false,
-            outcome: &mut outcome,
-            began,
-            observer,
-            accuracy: ROUND_OFF,
-            turns: false,
-        };
-        let found = newton(&mut operator, &laws, &start, &statuses, settings)?;
-        let solution = std::mem::take(&mut operator.solution);
-        let sweep = outcome.records.len() - 1;
-        settings.most = settings.most.saturating_sub(sweep);
+        let mut operator = TreeOperator::new(problem, fronts, steps);
+        let found = newton(&mut operator, laws, &start, &statuses, settings)?;
+        let solution = operator.solution.unwrap_or_default();
+        settings.most = settings.most.saturating_sub(steps.count() - 1);
         if found.missed.is_finite() || is_anew || settings.most == 0 {
-            return conclude(context, limits, &laws, found, solution, outcome);
+            return Ok((found, solution));
         }
         is_anew = true;
-        let first = (all_closed.clone(), settings.most);
-        let settled = settle(context, fronts, sticking, first, &mut outcome, observer)?;
-        (start, statuses) = begin(&laws, |g| settled.open[&g].clone());
+        let first = (problem.all_closed(), settings.most);
+        let settled = settle(problem, fronts, steps, first)?;
+        (start, statuses) = begin(laws, &settled.open);
     }
 }
 
 /// What was found: forces at the conditions, unknowns at the clusters, and how that went. Collective.
 fn conclude(
-    context: &Context<'_>,
-    limits: &BTreeMap<usize, Limits>,
-    laws: &OnGroups<ContactLaws<'_>>,
+    problem: &TreeProblem<'_>,
     found: Found,
     mut solution: ActiveSetSolution,
     mut outcome: SweepOutcome,
 ) -> Result<TreeContact, Failure> {
     let sweep = outcome.records.len() - 1;
-    let is_finite = solution.is_finite(context.comm);
+    let is_finite = solution.is_finite(problem.context.comm);
     outcome.status = match found.missed.is_finite() {
         _ if !is_finite => not_finite(sweep),
         true => SweepStatus::Converged,
@@ -215,33 +177,11 @@ fn conclude(
     end(&mut outcome);
     solution.cut();
     if outcome.status != SweepStatus::Converged {
-        outcome.name_unsettled(&names(context, limits, &found.wrong));
+        outcome.name_unsettled(&names(problem, &found.wrong));
     }
-    let conditions = limits.iter().map(|(&g, limits)| {
-        let (laws, at, statuses) = (&laws[&g], &found.at[&g], &found.statuses[&g]);
-        let forces = at.forces.iter().zip(&laws.is_tangential);
-        let forces: Vec<f64> = (forces)
-            .map(
-                |(force, is_tangential)| match (force.is_finite(), is_tangential) {
-                    (false, _) => 0.0,
-                    (true, true) => *force,
-                    (true, false) => force.max(0.0),
-                },
-            )
-            .collect();
-        let mut closed = statuses.closed.clone();
-        for (point, status) in laws.points.iter().zip(&statuses.points) {
-            for t in point.limits() {
-                closed[t] = *status == PointStatus::Sticks;
-            }
-        }
-        let both = limits
-            .forces(&forces)
-            .into_iter()
-            .zip(limits.closed(closed));
-        (g, both.collect())
-    });
-    let conditions = conditions.collect();
+    let conditions = (problem.limits.iter())
+        .map(|(&g, limits)| (g, conditions(limits, &problem.laws[&g], &found, g)))
+        .collect();
     let statuses = match outcome.status {
         SweepStatus::Converged => found.statuses,
         SweepStatus::NotConverged(_) => BTreeMap::new(),
@@ -252,6 +192,32 @@ fn conclude(
         statuses,
         outcome,
     })
+}
+
+/// The force of every condition of group g, and whether it is closed or sticks.
+fn conditions(
+    limits: &Limits,
+    laws: &ContactLaws<'_>,
+    found: &Found,
+    g: usize,
+) -> Vec<(f64, bool)> {
+    let of_limit = |(force, is_tangential): (&f64, &bool)| match (force.is_finite(), is_tangential)
+    {
+        (false, _) => 0.0,
+        (true, true) => *force,
+        (true, false) => force.max(0.0),
+    };
+    let forces = found.at[&g].forces.iter().zip(&laws.is_tangential);
+    let forces: Vec<f64> = forces.map(of_limit).collect();
+    let statuses = &found.statuses[&g];
+    let mut closed = statuses.closed.clone();
+    for (point, status) in laws.points.iter().zip(&statuses.points) {
+        for t in point.limits() {
+            closed[t] = *status == PointStatus::Sticks;
+        }
+    }
+    let forces = limits.forces(&forces).into_iter();
+    forces.zip(limits.closed(closed)).collect()
 }
 
 /// What is said where a linear problem has no finite solution.
@@ -278,18 +244,14 @@ fn end(outcome: &mut SweepOutcome) {
 }
 
 /// The points of wrong limits, by contact and node; on the root. Collective.
-fn names(
-    context: &Context<'_>,
-    limits: &BTreeMap<usize, Limits>,
-    wrong: &OnGroups<Vec<usize>>,
-) -> Vec<String> {
+fn names(problem: &TreeProblem<'_>, wrong: &OnGroups<Vec<usize>>) -> Vec<String> {
     let Context {
         comm,
         plan,
         catalog,
         groups,
         ..
-    } = *context;
+    } = *problem.context;
     let name = |g: usize, point: usize| {
         let point = &groups[&g].points[point];
         let contact = &catalog.contacts[point.contact as usize].name;
@@ -299,8 +261,10 @@ fn names(
     comm.gather(
         &plan.group_owners(),
         |g| {
-            let points = points_of_limits(&groups[&g], &limits[&g]);
-            let wrong: BTreeSet<usize> = wrong[&g].iter().map(|&i| points[i]).collect();
+            let points = points_of_limits(&groups[&g], &problem.limits[&g]);
+            let wrong: BTreeSet<usize> = (wrong.get(&g).into_iter().flatten())
+                .map(|&i| points[i])
+                .collect();
             wrong.into_iter().map(|point| name(g, point)).collect()
         },
         |_, of_group: Vec<String>| names.extend(of_group),

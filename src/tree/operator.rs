@@ -2,7 +2,6 @@
 //! what is above those that changed, and for slip forces by GMRES over its answers.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use crate::bddc::solution::Accuracy;
 use crate::contact::law::{PointLaw, PointStatus};
@@ -10,8 +9,8 @@ use crate::contact::laws::{ContactLaws, Iterate, LawResidual, Statuses};
 use crate::contact::newton::{ContactOperator, NewtonStep, OnGroups, StepAccuracy, TotalResidual};
 use crate::context::Context;
 use crate::error::Failure;
-use crate::sweep::{SweepOutcome, SweepRecord};
 use crate::tree::fronts::ActiveSetFronts;
+use crate::tree::problem::{Steps, TreeProblem};
 use crate::tree::slip_law::SlipLaw;
 use crate::tree::slip_problem::{Laws, SlipProblem};
 use crate::tree::solution::ActiveSetSolution;
@@ -26,31 +25,20 @@ const NEARLY: f64 = 1e-5;
 const STIFFNESS_SHARE: f64 = 1e-3;
 
 /// The operator.
-pub(super) struct TreeOperator<'a, 'o> {
-    pub context: &'a Context<'a>,
-    pub fronts: &'a mut ActiveSetFronts,
-    pub laws: &'a OnGroups<ContactLaws<'a>>,
-    /// The stiffness that the round-off of the force of every limit is relative to (N/m).
-    pub stiffest: &'a OnGroups<Vec<f64>>,
-    /// Loads on the boundaries of clusters, by node.
-    pub loads: &'a BTreeMap<usize, Vec<f64>>,
-    /// Where closed jumps are, by contact group (m).
-    pub bounds: &'a BTreeMap<usize, Vec<f64>>,
-    /// The last answer.
-    pub solution: ActiveSetSolution,
-    /// Whether there was one.
-    pub is_answered: bool,
+pub(super) struct TreeOperator<'a, 's, 'o> {
+    problem: &'a TreeProblem<'a>,
+    fronts: &'a mut ActiveSetFronts,
+    steps: &'s mut Steps<'o>,
+    /// The last answer; the same on all ranks whether there was one, of which some have no clusters.
+    pub solution: Option<ActiveSetSolution>,
     /// Whether what slips is held at its slip, without which something moves.
-    pub is_held: bool,
+    is_held: bool,
     /// Whether springs of earlier statuses were taken away.
-    pub is_released: bool,
-    pub outcome: &'a mut SweepOutcome,
-    pub began: Instant,
-    pub observer: &'o mut dyn FnMut(&SweepRecord),
+    is_released: bool,
     /// Whether directions of slip turn with it.
-    pub turns: bool,
+    turns: bool,
     /// Round-off of the last answer, relative to the largest force.
-    pub accuracy: f64,
+    accuracy: f64,
 }
 
 /// Which jumps are open, or slip unless that is held, where a group has these statuses.
@@ -76,20 +64,25 @@ fn slip_laws(laws: &ContactLaws<'_>, statuses: &Statuses) -> Vec<SlipLaw> {
     points.filter_map(law).collect()
 }
 
-/// Goes on unless a signal has asked the run to stop. Collective.
-///
-/// # Errors
-/// A signal did.
-pub(super) fn go_on(context: &Context<'_>, sweeps: usize) -> Result<(), Failure> {
-    match context.comm.is_any_asked_to_stop() {
-        false => Ok(()),
-        true => Err(Failure::interrupted(format!(
-            "interrupted after {sweeps} sweeps"
-        ))),
+impl<'a, 's, 'o> TreeOperator<'a, 's, 'o> {
+    /// That of a `problem`, which counts its `steps`.
+    pub fn new(
+        problem: &'a TreeProblem<'a>,
+        fronts: &'a mut ActiveSetFronts,
+        steps: &'s mut Steps<'o>,
+    ) -> Self {
+        Self {
+            problem,
+            fronts,
+            steps,
+            solution: None,
+            is_held: false,
+            is_released: false,
+            turns: false,
+            accuracy: ROUND_OFF,
+        }
     }
-}
 
-impl TreeOperator<'_, '_> {
     /// Fixes what these statuses leave open, which it returns; where that needs springs and directions of slip turn with
     /// it, what slips is held from then on.
     /// Collective.
@@ -100,7 +93,7 @@ impl TreeOperator<'_, '_> {
         &mut self,
         statuses: &OnGroups<Statuses>,
     ) -> Result<BTreeMap<usize, Vec<bool>>, Failure> {
-        let (context, laws) = (self.context, self.laws);
+        let (context, laws) = (self.problem.context, &self.problem.laws);
         let open = |is_held: bool| {
             let all = statuses.iter();
             all.map(|(&g, statuses)| (g, open(&laws[&g], statuses, is_held)))
@@ -117,18 +110,9 @@ impl TreeOperator<'_, '_> {
         self.fronts.release(context, &held)?;
         Ok(held)
     }
-
-    /// The iterate that a solution is.
-    pub fn iterate(solution: &ActiveSetSolution) -> OnGroups<Iterate> {
-        let of_group = |(&g, jumps): (&usize, &Vec<f64>)| {
-            let (jumps, forces) = (jumps.clone(), solution.forces[&g].clone());
-            (g, Iterate { jumps, forces })
-        };
-        solution.jumps.iter().map(of_group).collect()
-    }
 }
 
-impl ContactOperator for TreeOperator<'_, '_> {
+impl ContactOperator for TreeOperator<'_, '_, '_> {
     type Error = Failure;
 
     fn step(
@@ -137,8 +121,8 @@ impl ContactOperator for TreeOperator<'_, '_> {
         statuses: &OnGroups<Statuses>,
         accuracy: StepAccuracy,
     ) -> Result<OnGroups<Iterate>, Failure> {
-        let context = self.context;
-        go_on(context, self.outcome.records.len())?;
+        let (context, all_laws) = (self.problem.context, &self.problem.laws);
+        self.steps.go_on(context)?;
         let open = self.fix(statuses)?;
         let finest = match self.fronts.coarse_dofs() {
             Some(_) => Accuracy::FULL.tolerance,
@@ -159,29 +143,26 @@ impl ContactOperator for TreeOperator<'_, '_> {
             }
         };
         let laws: Laws = (statuses.iter())
-            .map(|(&g, statuses)| (g, slip_laws(&self.laws[&g], statuses)))
+            .map(|(&g, statuses)| (g, slip_laws(&all_laws[&g], statuses)))
             .collect();
         let turn: Vec<f64> = laws.values().flatten().map(SlipLaw::turning).collect();
         self.turns = context.comm.largest(&turn) > 0.0;
         let problem = SlipProblem {
             context,
             open: &open,
-            clusters: self.loads,
-            prescribed: self.bounds,
+            clusters: self.problem.loads,
+            prescribed: &self.problem.bounds,
             laws: &laws,
             is_held: self.is_held,
         };
-        let first = problem.first(self.laws, from);
-        // The same on all ranks, of which some have no clusters.
-        let start = self.is_answered.then(|| ActiveSetSolution {
+        let first = problem.first(all_laws, from);
+        let start = self.solution.take().map(|start| ActiveSetSolution {
             iterations: 0,
-            ..std::mem::take(&mut self.solution)
+            ..start
         });
         let from = (tolerance, start.as_ref());
         let solution = problem.solve(self.fronts, first, from, self.accuracy)?;
-        let at = Self::iterate(&solution);
-        (self.solution, self.is_answered) = (solution, true);
-        Ok(at)
+        Ok(self.solution.insert(solution).at.clone())
     }
 
     fn between(
@@ -199,21 +180,25 @@ impl ContactOperator for TreeOperator<'_, '_> {
     }
 
     fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>> {
-        let comm = self.context.comm;
+        let comm = self.problem.context.comm;
         let largest = comm.largest(at.values().flat_map(|at| &at.forces));
         let scale = largest.max(f64::MIN_POSITIVE);
-        let displaced = comm.largest(self.solution.boundaries.values().flatten());
+        let boundaries = self
+            .solution
+            .iter()
+            .flat_map(|last| last.boundaries.values());
+        let displaced = comm.largest(boundaries.flatten());
         // Of a rough answer no more than of an exact one.
         let share = STIFFNESS_SHARE * (ROUND_OFF / self.accuracy) * displaced;
         let of_group = |&g: &usize| {
-            let own = self.stiffest[&g].iter();
+            let own = self.problem.stiffest[&g].iter();
             (g, own.map(|k| scale + share * k).collect())
         };
-        self.laws.keys().map(of_group).collect()
+        self.problem.laws.keys().map(of_group).collect()
     }
 
     fn total(&self, residuals: &OnGroups<LawResidual>) -> TotalResidual {
-        let Context { comm, plan, .. } = *self.context;
+        let Context { comm, plan, .. } = *self.problem.context;
         let mut total = TotalResidual::default();
         comm.gather(
             &plan.group_owners(),
@@ -245,21 +230,9 @@ impl ContactOperator for TreeOperator<'_, '_> {
     }
 
     fn record(&mut self, step: NewtonStep) -> Result<(), Failure> {
-        let sweep = self.outcome.records.len();
-        let record = SweepRecord {
-            sweep,
-            residual: step.total.missed,
-            active: step.total.active,
-            changed: step.changed,
-            seconds: self.began.elapsed().as_secs_f64(),
-        };
-        self.outcome.records.push(record);
-        if let Some(coarse_dofs) = self.fronts.coarse_dofs() {
-            let solves = self.outcome.iterative.get_or_insert_default();
-            solves.iterations.push(self.solution.iterations);
-            solves.coarse_dofs = coarse_dofs;
-        }
-        (self.observer)(&record);
+        let TotalResidual { missed, active, .. } = step.total;
+        let iterations = self.solution.as_ref().map_or(0, |last| last.iterations);
+        (self.steps).record((missed, active, step.changed), self.fronts, iterations);
         Ok(())
     }
 }

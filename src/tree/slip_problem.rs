@@ -81,8 +81,10 @@ impl SlipProblem<'_> {
             (loads.prescribed, loads.forces) = (&held, &none);
         }
         let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
-        if !self.is_held {
-            add(&mut solution.forces, forces);
+        for (g, at) in solution.at.iter_mut().filter(|_| !self.is_held) {
+            if let Some(forces) = forces.get(g) {
+                axpy(1.0, forces, &mut at.forces);
+            }
         }
         Ok(solution)
     }
@@ -129,10 +131,11 @@ impl SlipProblem<'_> {
         let mut solution = respond(fronts, &forces, start)?;
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let slip = |g: usize, i: usize| solution.jumps[&g][i] - self.prescribed[&g][i];
+            let slip = |g: usize, i: usize| solution.at[&g].jumps[i] - self.prescribed[&g][i];
             let missed = self.missed(&solution, slip, false);
-            let size = self.largest(&missed);
-            let enough = accuracy * self.largest(&solution.forces);
+            let size = self.context.comm.largest(missed.values().flatten());
+            let all = solution.at.values().flat_map(|at| &at.forces);
+            let enough = accuracy * self.context.comm.largest(all);
             if size <= enough || size.is_nan() || size > STALLS * last {
                 break;
             }
@@ -146,11 +149,6 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// The largest of all numbers on all ranks. Collective.
-    pub fn largest(&self, of_jumps: &OnJumps) -> f64 {
-        self.context.comm.largest(of_jumps.values().flatten())
-    }
-
     /// What the forces of a solution miss of the laws, where `slip` tells the slip of a jump of a group.
     fn missed(
         &self,
@@ -158,14 +156,14 @@ impl SlipProblem<'_> {
         slip: impl Fn(usize, usize) -> f64,
         is_change: bool,
     ) -> OnJumps {
-        let of_group = |(&g, forces): (&usize, &Vec<f64>)| {
-            let mut missed = vec![0.0; forces.len()];
+        let of_group = |(&g, at): (&usize, &Iterate)| {
+            let mut missed = vec![0.0; at.forces.len()];
             for law in self.laws.get(&g).into_iter().flatten() {
-                law.add_missed(forces, |i| slip(g, i), is_change, &mut missed);
+                law.add_missed(&at.forces, |i| slip(g, i), is_change, &mut missed);
             }
             (g, missed)
         };
-        solution.forces.iter().map(of_group).collect()
+        solution.at.iter().map(of_group).collect()
     }
 
     /// The change of forces that takes back what is `missed` of the laws, but for a part `reduction`, and the iterations
@@ -250,7 +248,7 @@ impl SlipProblem<'_> {
             start: None,
         };
         let response = self.respond(fronts, (&clusters, &prescribed), forces, accuracy)?;
-        let product = self.missed(&response, |g, i| response.jumps[&g][i], true);
+        let product = self.missed(&response, |g, i| response.at[&g].jumps[i], true);
         Ok((product, response.iterations))
     }
 

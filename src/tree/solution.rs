@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use super::fronts::{ActiveSetFront, ActiveSetFronts};
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::comm::Comm;
+use crate::contact::laws::Iterate;
+use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::context::hierarchy::{Direction, carry};
 use crate::error::Failure;
@@ -14,10 +16,8 @@ use crate::vector::{axpy, dot};
 /// What a load does where the active set is fixed, on this rank.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveSetSolution {
-    /// The normal jumps of every contact group (m).
-    pub jumps: BTreeMap<usize, Vec<f64>>,
-    /// The forces on them, 0 where open (N/m).
-    pub forces: BTreeMap<usize, Vec<f64>>,
+    /// The jumps and forces of every contact group; no force where open.
+    pub at: OnGroups<Iterate>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: BTreeMap<usize, Vec<f64>>,
     /// The unknowns of the nodes between which an iterative solver works.
@@ -31,16 +31,18 @@ pub struct ActiveSetSolution {
 impl ActiveSetSolution {
     /// Whether it consists of finite numbers, on all ranks. Collective.
     pub fn is_finite(&self, comm: &Comm) -> bool {
-        let all = [&self.jumps, &self.forces, &self.boundaries];
-        let mut values = all.into_iter().flat_map(BTreeMap::values).flatten();
+        let of_groups = self
+            .at
+            .values()
+            .flat_map(|at| at.jumps.iter().chain(&at.forces));
+        let mut values = of_groups.chain(self.boundaries.values().flatten());
         let is_finite = values.all(|x| x.is_finite());
         comm.decide(!comm.collect(&is_finite).contains(&false))
     }
 
-    /// Nothing in the place of what is no finite number.
+    /// Nothing in the place of unknowns that are no finite numbers.
     pub fn cut(&mut self) {
-        let all = [&mut self.jumps, &mut self.forces, &mut self.boundaries];
-        for x in all.into_iter().flat_map(BTreeMap::values_mut).flatten() {
+        for x in self.boundaries.values_mut().flatten() {
             *x = if x.is_finite() { *x } else { 0.0 };
         }
     }
@@ -146,10 +148,7 @@ impl ActiveSetFronts {
                 solution.iterations = between.iterations;
                 let is_rough = bddc.is_stale() || bddc.is_judged();
                 solution.is_too_far = is_rough && !between.is_solved;
-                for (g, (jumps, forces)) in between.groups {
-                    solution.jumps.insert(g, jumps);
-                    solution.forces.insert(g, forces);
-                }
+                solution.at = between.groups;
             }
         }
         for &v in self.nodes.iter().rev() {
@@ -159,13 +158,11 @@ impl ActiveSetFronts {
             {
                 let mut boundary = values.clone();
                 boundary.extend(x);
-                if let Some(g) = plan.group_of(v) {
-                    solution.forces.insert(g, front.forces(load, &boundary));
-                }
                 let (x, jumps) = front.merge.recover(load, &boundary);
                 of_children.extend(plan.tree.nodes[v].children.iter().copied().zip(x));
                 if let Some(g) = plan.group_of(v) {
-                    solution.jumps.insert(g, jumps);
+                    let forces = front.forces(load, &boundary);
+                    solution.at.insert(g, Iterate { jumps, forces });
                 }
             }
             for &child in &plan.tree.nodes[v].children {

@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::contact::laws::Iterate;
+use crate::contact::newton::OnGroups;
 use crate::context::Context;
 
 /// Tolerance of an iterative solver beside what is wrong with the active set before.
@@ -62,14 +64,17 @@ impl Descent {
         context: &Context<'_>,
         wrong: &BTreeMap<usize, Vec<usize>>,
         bounds: &BTreeMap<usize, Vec<f64>>,
-        found: &BTreeMap<usize, Vec<f64>>,
+        found: &OnGroups<Iterate>,
         open: &mut BTreeMap<usize, Vec<bool>>,
     ) -> usize {
         let Context { comm, plan, .. } = *context;
         let begun = self.0.is_some();
-        let jumps = self.0.get_or_insert_with(|| found.clone());
+        let all = || found.iter().map(|(&g, at)| (g, at.jumps.clone())).collect();
+        let jumps = self.0.get_or_insert_with(all);
         let part_of = |g: usize| match (begun, wrong.get(&g)) {
-            (true, Some(wrong)) => part(&jumps[&g], &found[&g], &bounds[&g], &open[&g], wrong),
+            (true, Some(wrong)) => {
+                part(&jumps[&g], &found[&g].jumps, &bounds[&g], &open[&g], wrong)
+            }
             _ => f64::INFINITY,
         };
         let mut least = f64::INFINITY;
@@ -82,7 +87,7 @@ impl Descent {
             let wrong = wrong.get(g).map_or(&[][..], Vec::as_slice);
             if let Some(open) = open.get_mut(g) {
                 let count = match begun {
-                    true => go(of_group, &found[g], &bounds[g], open, wrong, least),
+                    true => go(of_group, &found[g].jumps, &bounds[g], open, wrong, least),
                     // Where all that penetrates is closed none does.
                     false => close(of_group, &bounds[g], open, wrong),
                 };
