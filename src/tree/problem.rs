@@ -1,0 +1,137 @@
+//! The contact problem of a load step, and the steps that are made towards its solution.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use crate::contact::laws::ContactLaws;
+use crate::contact::limits::Limits;
+use crate::contact::newton::OnGroups;
+use crate::context::Context;
+use crate::error::Failure;
+use crate::fem::contact_group::ContactGroup;
+use crate::sweep::{SweepOutcome, SweepRecord};
+use crate::tree::fronts::ActiveSetFronts;
+
+/// The contact problem of a load step on this rank.
+pub(super) struct TreeProblem<'a> {
+    /// What the run works on.
+    pub context: &'a Context<'a>,
+    /// The limits of every contact group.
+    pub limits: &'a OnGroups<Limits>,
+    /// Their laws.
+    pub laws: OnGroups<ContactLaws<'a>>,
+    /// The stiffness that the round-off of the force of every limit is relative to (N/m).
+    pub stiffest: OnGroups<Vec<f64>>,
+    /// Where closed jumps are (m).
+    pub bounds: OnGroups<Vec<f64>>,
+    /// Loads on the boundaries of clusters, by node.
+    pub loads: &'a BTreeMap<usize, Vec<f64>>,
+}
+
+impl<'a> TreeProblem<'a> {
+    /// The problem of these `loads` within `limits`.
+    pub fn new(
+        context: &'a Context<'a>,
+        limits: &'a OnGroups<Limits>,
+        loads: &'a BTreeMap<usize, Vec<f64>>,
+    ) -> Self {
+        let mut problem = Self {
+            context,
+            limits,
+            laws: OnGroups::new(),
+            stiffest: OnGroups::new(),
+            bounds: OnGroups::new(),
+            loads,
+        };
+        for (&g, limits) in limits {
+            let group = &context.groups[&g];
+            let of_points = |stiffness: fn(&ContactGroup, usize) -> f64| -> Vec<f64> {
+                let points = points_of_limits(group, limits).into_iter();
+                points.map(|point| stiffness(group, point)).collect()
+            };
+            let r = of_points(ContactGroup::stiffness_at);
+            let of_group = ContactLaws::new(&limits.bounds, &limits.rows, &limits.tangents, r);
+            let stiffest = of_points(ContactGroup::largest_stiffness_at);
+            problem.laws.insert(g, of_group);
+            problem.stiffest.insert(g, stiffest);
+            problem.bounds.insert(g, limits.bounds.clone());
+        }
+        problem
+    }
+
+    /// No open limit.
+    pub fn all_closed(&self) -> OnGroups<Vec<bool>> {
+        let all = self.bounds.iter();
+        all.map(|(&g, bounds)| (g, vec![false; bounds.len()]))
+            .collect()
+    }
+}
+
+/// The number of the point of every limit of a group.
+pub(super) fn points_of_limits(group: &ContactGroup, limits: &Limits) -> Vec<usize> {
+    let conditions: Vec<usize> = group.conditions().map(|one| one.point).collect();
+    let of_limits = limits.conditions_of_limits().into_iter();
+    of_limits.map(|j| conditions[j]).collect()
+}
+
+/// The steps towards a solution.
+pub(super) struct Steps<'o> {
+    began: Instant,
+    /// Their outcome so far.
+    pub outcome: SweepOutcome,
+    observer: &'o mut dyn FnMut(&SweepRecord),
+}
+
+impl<'o> Steps<'o> {
+    /// None yet, of which an `observer` is told.
+    pub fn new(observer: &'o mut dyn FnMut(&SweepRecord)) -> Self {
+        Self {
+            began: Instant::now(),
+            outcome: SweepOutcome::before(Vec::new()),
+            observer,
+        }
+    }
+
+    /// Their number.
+    pub fn count(&self) -> usize {
+        self.outcome.records.len()
+    }
+
+    /// Takes note of a step after which a `residual` is left and so many limits are `active`, before which so many `changed`;
+    /// an iterative solver took these `iterations`.
+    pub fn record(
+        &mut self,
+        (residual, active, changed): (f64, usize, Option<usize>),
+        fronts: &ActiveSetFronts,
+        iterations: usize,
+    ) {
+        let record = SweepRecord {
+            sweep: self.count(),
+            residual,
+            active,
+            changed,
+            seconds: self.began.elapsed().as_secs_f64(),
+        };
+        self.outcome.records.push(record);
+        if let Some(coarse_dofs) = fronts.coarse_dofs() {
+            let solves = self.outcome.iterative.get_or_insert_default();
+            solves.iterations.push(iterations);
+            solves.coarse_dofs = coarse_dofs;
+        }
+        (self.observer)(&record);
+    }
+
+    /// Goes on unless a signal has asked the run to stop. Collective.
+    ///
+    /// # Errors
+    /// A signal did.
+    pub fn go_on(&self, context: &Context<'_>) -> Result<(), Failure> {
+        match context.comm.is_any_asked_to_stop() {
+            false => Ok(()),
+            true => Err(Failure::interrupted(format!(
+                "interrupted after {} sweeps",
+                self.count()
+            ))),
+        }
+    }
+}
