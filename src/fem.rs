@@ -22,5 +22,6 @@ pub mod prescribed;
 pub mod recovery;
 pub mod resultants;
 mod sites;
+pub mod springs;
 pub mod strain;
 pub mod stress;

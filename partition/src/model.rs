@@ -22,6 +22,7 @@ mod ray_search;
 mod rules;
 mod sides;
 mod skin;
+mod springs;
 mod steps;
 mod supports;
 mod surface;
@@ -29,6 +30,7 @@ mod touching;
 
 pub use self::initial_stress::InitialStress;
 pub use self::parts::{Contact, Material, Support};
+pub use self::springs::SpringBlock;
 pub use self::steps::ModelStep;
 use crate::error::InputError;
 use crate::mesh::Mesh;
@@ -62,10 +64,12 @@ pub struct Model {
     pub cell_material: Vec<u32>,
     /// Index of its body for every cell.
     pub cell_body: Vec<u32>,
-    /// Names of the conditions that prescribe displacements.
+    /// Names of the conditions that prescribe displacements, and of springs after them.
     pub support_names: Vec<String>,
     /// Supports in ascending order of nodes, with the values of the first step.
     pub supports: Vec<Support>,
+    /// Springs to the ground: blocks of their stiffness, each with a cell that has its nodes.
+    pub springs: Vec<(u32, SpringBlock)>,
     /// Consistent nodal forces of the first step in ascending order of nodes, one entry for every node
     /// that is loaded in any step (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
@@ -96,6 +100,7 @@ impl Model {
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         let materials = bodies.with_modes(bodies::materials(scene, plane));
         let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
+        let springs = springs::Springs::new(scene, &bodies, &topology, loads.names.len())?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
         let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
         let MadeContacts {
@@ -131,8 +136,9 @@ impl Model {
             cell_body: bodies.cell_body,
             mesh: bodies.mesh,
             topology,
-            support_names: loads.names,
+            support_names: loads.names.into_iter().chain(springs.names).collect(),
             supports: loads.supports,
+            springs: springs.blocks,
             forces: loads.forces,
             initial_stress: loads.initial_stress,
             steps: (loads.steps.into_iter().zip(absent_contacts))

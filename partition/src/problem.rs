@@ -19,7 +19,7 @@ pub mod write;
 use crate::contact_point::{ContactPoint, Probe};
 use crate::element::Elements;
 use crate::element::geometry::{advance, dot};
-use crate::model::{Material, PlaneState, Support};
+use crate::model::{Material, PlaneState, SpringBlock, Support};
 use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 
@@ -61,6 +61,8 @@ pub struct Subdomain {
     pub cell_material: Vec<u32>,
     /// Supports, by node of the subdomain.
     pub supports: Vec<Support>,
+    /// Springs to the ground, by node of the subdomain.
+    pub springs: Vec<SpringBlock>,
     /// Nodal forces, by node of the subdomain (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
     /// Stress without strain.

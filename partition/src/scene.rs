@@ -11,6 +11,7 @@ pub mod loading;
 pub mod material;
 pub mod number;
 pub mod place;
+pub mod spring;
 pub mod step;
 pub mod suggest;
 mod syntax;
@@ -28,6 +29,7 @@ use crate::source;
 use condition::{Bilateral, Body, Displacement, Force, Names, Pressure, Traction};
 use contact::Declaration;
 use material::{Elasticity, PlaneState};
+use spring::Spring;
 use step::LoadStep;
 use units::Units;
 
@@ -68,6 +70,9 @@ pub struct Scene {
     /// Forces on nodes.
     #[serde(default, deserialize_with = "place::list")]
     pub force: Vec<Force>,
+    /// Springs to the ground.
+    #[serde(default, deserialize_with = "place::list")]
+    pub spring: Vec<Spring>,
     /// Γ_c: contacts, and bodies between which they are to be found.
     #[serde(default, deserialize_with = "place::list")]
     pub contact: Vec<Declaration>,

@@ -124,6 +124,15 @@ class Model:
             entry = self._add("displacement", on=on, **(components or all_fixed))
         self._calls.add(entry, call("fix", on, **components, normal=normal or None))
 
+    def spring(
+        self, on: Groups, *, stiffness: Vector | None = None, normal: Number | None = None,
+        tangential: Number | None = None,
+    ) -> None:
+        """Holds points by springs to the ground, each of this stiffness along the axes; or a side by an elastic
+        foundation, with stiffnesses per area along the axes, or along the normal and the tangents."""
+        keys = given(stiffness=stiffness, normal=normal, tangential=tangential)
+        self._calls.add(self._add("spring", on=on, **keys), call("spring", on, **keys))
+
     def load(
         self, on: Groups, *, pressure: Number | None = None, traction: Vector | None = None,
         force: Vector | None = None, force_on_each: Vector | None = None, body_force: Vector | None = None,

@@ -18,7 +18,7 @@ use crate::bytes::Reals;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::load::BlockLoads;
-use crate::vector::dot;
+use crate::vector::{axpy, dot};
 
 /// Smallest error, relative to all terms of forces times displacements, that isn't round-off.
 const NOT_ROUND_OFF: f64 = 1e-12;
@@ -29,7 +29,7 @@ const NOT_ROUND_OFF: f64 = 1e-12;
 pub struct EnergyBalance {
     /// Work of loads.
     pub work_of_loads: f64,
-    /// Work of supports along prescribed displacements.
+    /// Work of supports along prescribed displacements, and of springs to the ground.
     pub work_of_supports: f64,
     /// Change of the elastic energy ½ uᵀ K u.
     pub elastic_energy: f64,
@@ -76,8 +76,10 @@ impl BlockEnergy {
                 of_supports[i] = -balance.residual[i];
             }
         }
-        let of_contacts = of_loads.iter().zip(&balance.external);
-        let of_contacts = of_contacts.map(|(f, external)| f - external).collect();
+        let of_contacts = (of_loads.iter().zip(&balance.external)).zip(&balance.springs);
+        let of_contacts = of_contacts.map(|((f, external), spring)| f - (external - spring));
+        let of_contacts = of_contacts.collect();
+        axpy(1.0, &balance.springs, &mut of_supports);
         let inner = balance.external.iter().zip(&balance.residual);
         let inner: Vec<f64> = inner.map(|(external, left)| external - left).collect();
         let sizes: Vec<f64> = displacement.iter().map(|u| u.abs()).collect();

@@ -9,6 +9,7 @@ use super::elasticity::ElementMatrix;
 use super::gradients::MAX_NODES;
 use super::load::BlockLoads;
 use super::prescribed::Prescribed;
+use super::springs::{add_springs, spring_forces};
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
 /// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
@@ -48,6 +49,7 @@ pub fn assemble(
     let pattern = LowerPattern::of_sites(dofs.site_starts(), &cliques)?;
     let mut stiffness = SparseSymmetric::zeros(pattern);
     scatter(block, dofs, materials, &mut stiffness);
+    add_springs(block, dofs, &mut stiffness);
     let fixing_dofs = fixing_dofs.iter();
     let springs =
         fixing_dofs.map(|&(node, component)| fixing_dof(dofs, node, component, &mut stiffness));
@@ -127,6 +129,13 @@ pub fn load(
     let mut f = loads.nodal_forces(block);
     if !prescribed.is_zero() {
         subtract_held(block, prescribed, materials, &mut f);
+        for (_, node, force) in spring_forces(block, prescribed.constants()) {
+            let of_node = &mut f[node as usize * block.dim..];
+            of_node
+                .iter_mut()
+                .zip(&force[..block.dim])
+                .for_each(|(f, of)| *f += of);
+        }
     }
     for spring in springs {
         let row = spring.node as usize * block.dim + spring.component;

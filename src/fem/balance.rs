@@ -6,6 +6,7 @@ use super::block::Block;
 use super::elasticity::ElementMatrix;
 use super::gradients::MAX_NODES;
 use super::load::BlockLoads;
+use super::springs::spring_forces;
 
 /// f − K u − Bᵀλ of a block and the scale of its terms, node by node (N/m).
 #[derive(Clone, Debug)]
@@ -14,8 +15,10 @@ pub struct Balance {
     pub residual: Vec<f64>,
     /// |f| + Σ_e |K_e||u| + |Bᵀλ|.
     pub scale: Vec<f64>,
-    /// External forces on nodes: f − Bᵀλ.
+    /// External forces on nodes: f − Bᵀλ − K_s u.
     pub external: Vec<f64>,
+    /// Forces of springs on nodes, −K_s u, a part of the external ones.
+    pub springs: Vec<f64>,
     /// ‖f‖∞.
     pub largest_load: f64,
 }
@@ -37,6 +40,15 @@ impl Balance {
             for component in 0..dim {
                 external[node as usize * dim + component] -= push[component];
                 scale[node as usize * dim + component] += push[component].abs();
+            }
+        }
+        let mut springs = vec![0.0; external.len()];
+        for (_, node, force) in spring_forces(block, u) {
+            for (component, force) in force.into_iter().enumerate().take(dim) {
+                let row = node as usize * dim + component;
+                springs[row] += force;
+                external[row] += force;
+                scale[row] += force.abs();
             }
         }
         let mut residual = external.clone();
@@ -70,6 +82,7 @@ impl Balance {
             residual,
             scale,
             external,
+            springs,
             largest_load,
         }
     }

@@ -35,6 +35,11 @@ impl Prescribed {
         &self.constants[node as usize * self.dim..][..self.dim]
     }
 
+    /// c, node by node (m).
+    pub fn constants(&self) -> &[f64] {
+        &self.constants
+    }
+
     /// Whether c is zero.
     pub fn is_zero(&self) -> bool {
         self.constants.iter().all(|&c| c == 0.0)

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::fem::resultants::{Reaction, Resultant};
+use crate::fem::springs::spring_forces;
 use crate::recover::BlockSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
@@ -50,6 +51,9 @@ fn of_block(
         .blocks
         .get(&b)
         .map_or(&[][..], |loads| &loads.supports);
+    for (condition, node, force) in spring_forces(block, &solution.u) {
+        reactions.push((condition, block.points()[node as usize], force));
+    }
     if held.is_empty() {
         return reactions;
     }

@@ -11,7 +11,11 @@ use super::scene::BodyState;
 use crate::context::{Context, Loads};
 use crate::fem::body_frame::BodyFrame;
 use crate::fem::load::BlockLoads;
+use crate::fem::springs::against_motions;
 use crate::vector::axpy;
+
+/// Stiffness of springs against a motion, relative to the largest, that is round-off.
+const NO_SPRING: f64 = 1e-12;
 
 /// The frame of every body. Collective; what is asked of a subdomain is asked on its owner, which has
 /// read it.
@@ -48,17 +52,20 @@ pub(super) fn body_states(
         .map(|&frame| BodyState {
             frame,
             supports: held_by_symmetry(catalog),
+            has_springs: false,
             load: vec![0.0; modes],
             load_scale: 0.0,
             candidates: Vec::new(),
         })
         .collect();
+    let mut of_springs = vec![vec![0.0; modes * modes]; states.len()];
     comm.gather(
         context.plan.owners(),
         |s| {
             let frame = &frames[catalog.subdomains[s].body];
             let (points, loads) = (context.blocks[&s].points(), &loads.blocks[&s]);
             let mut part = of_subdomain(points, loads, dim, frame);
+            part.springs = against_motions(&context.blocks[&s], frame);
             // No support moves a body along a motion that none has.
             for held in held_by_symmetry(catalog) {
                 for row in &mut part.supports {
@@ -70,6 +77,11 @@ pub(super) fn body_states(
         },
         |s, part| {
             let state = &mut states[catalog.subdomains[s].body];
+            axpy(
+                1.0,
+                &part.springs,
+                &mut of_springs[catalog.subdomains[s].body],
+            );
             state.supports.extend(part.supports);
             axpy(1.0, &part.load, &mut state.load);
             state.load_scale += part.load_scale;
@@ -77,6 +89,11 @@ pub(super) fn body_states(
             (state.candidates).extend(candidates.map(|(node, x)| (s as u32, node, x)));
         },
     );
+    for (state, of_springs) in states.iter_mut().zip(&of_springs) {
+        let rows = held_by_springs(catalog, DMatrix::from_row_slice(modes, modes, of_springs));
+        state.has_springs = !rows.is_empty();
+        state.supports.extend(rows);
+    }
     states.iter_mut().for_each(BodyState::drop_round_off);
     states
 }
@@ -91,6 +108,27 @@ fn held_by_symmetry(catalog: &Catalog) -> Vec<Vec<f64>> {
     }
 }
 
+/// The rows of the motions that springs hold with this stiffness, each with a 0 that it prescribes.
+fn held_by_springs(catalog: &Catalog, stiffness: DMatrix<f64>) -> Vec<Vec<f64>> {
+    let eigen = stiffness.symmetric_eigen();
+    let largest = eigen.eigenvalues.amax();
+    let columns = eigen
+        .eigenvectors
+        .column_iter()
+        .zip(eigen.eigenvalues.iter());
+    let held = columns.filter(|(_, value)| **value > NO_SPRING * largest);
+    let mut rows: Vec<Vec<f64>> = held
+        .map(|(column, _)| column.iter().copied().chain([0.0]).collect())
+        .collect();
+    for held in held_by_symmetry(catalog) {
+        for row in &mut rows {
+            let free = row.iter_mut().zip(&held);
+            free.for_each(|(entry, held)| *entry *= 1.0 - held);
+        }
+    }
+    rows
+}
+
 /// The contribution of a subdomain to its body.
 #[derive(Serialize, Deserialize)]
 struct BodyPart {
@@ -98,6 +136,7 @@ struct BodyPart {
     load: Vec<f64>,
     load_scale: f64,
     candidates: Vec<(u32, [f64; 3])>,
+    springs: Vec<f64>,
 }
 
 fn of_subdomain(
@@ -127,6 +166,7 @@ fn of_subdomain(
         load,
         load_scale,
         candidates: (candidates.map(|node| (node as u32, points[node]))).collect(),
+        springs: Vec::new(),
     }
 }
 

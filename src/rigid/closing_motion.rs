@@ -147,7 +147,7 @@ fn prescribed(dim: usize, body: &BodyState, start: &[f64]) -> Vec<f64> {
         row[modes] - there
     };
     let values = DVector::from_iterator(rows.len(), rows.iter().map(missing));
-    if values.iter().all(|&value| value == 0.0) {
+    if body.has_springs || values.iter().all(|&value| value == 0.0) {
         return vec![0.0; modes];
     }
     let a = DMatrix::from_fn(rows.len(), modes, |i, j| rows[i][j]);

@@ -16,6 +16,8 @@ pub struct BodyState {
     pub frame: BodyFrame,
     /// Rows of its supports against its rigid motions, what they prescribe last (m).
     pub supports: Vec<Vec<f64>>,
+    /// Whether springs hold it, along rows of its supports that prescribe 0: it isn't moved along its supports.
+    pub has_springs: bool,
     /// Resultant of its load against its rigid motions.
     pub load: Vec<f64>,
     /// Sum of its absolute nodal forces.

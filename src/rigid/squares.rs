@@ -9,6 +9,7 @@ pub fn body(low: [f64; 3], high: [f64; 3], load: &[f64]) -> BodyState {
     BodyState {
         frame: BodyFrame::new(low, high),
         supports: Vec::new(),
+        has_springs: false,
         load: load.to_vec(),
         load_scale: load.iter().map(|f| f.abs()).sum(),
         candidates: vec![(0, 0, low), (0, 1, high)],

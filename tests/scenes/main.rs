@@ -29,6 +29,7 @@ mod redundant;
 mod released_modes;
 mod resultants;
 mod space;
+mod springs;
 mod stability;
 mod stages;
 mod steps;

@@ -110,6 +110,7 @@ fn cut(
             cells: Elements::default(),
             cell_material: Vec::new(),
             supports: Vec::new(),
+            springs: Vec::new(),
             forces: Vec::new(),
             initial_stress: InitialStress::default(),
             interface: Vec::new(),
@@ -148,6 +149,12 @@ fn cut(
         subdomain.cell_material.push(model.cell_material[cell]);
     }
     give_loads(model, owners, &mut subdomains);
+    for &(cell, spring) in &model.springs {
+        let index = decomposition.subdomain[cell as usize];
+        let nodes = spring.nodes.map(|node| owners.local(node, index));
+        let spring = model::SpringBlock { nodes, ..spring };
+        subdomains[index as usize].springs.push(spring);
+    }
     give_initial_stress(model, decomposition, owners, &mut subdomains);
     Ok(subdomains)
 }

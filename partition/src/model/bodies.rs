@@ -276,6 +276,7 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
     });
     let explicit = scene.contact.iter().filter_map(Declaration::contact);
     (loaded.chain(scene.bilateral.iter().map(|c| &c.on)))
+        .chain(scene.spring.iter().map(|c| &c.on))
         .chain(explicit.flat_map(Contact::sides))
         .flat_map(Names::iter)
         .collect()

@@ -102,7 +102,8 @@ pub const LETTERS: &[(char, &str)] = &[
     ('L', "load steps"),
     ('I', "entries of Γ, summed over subdomains"),
     ('S', "supports, summed over subdomains"),
-    ('U', "conditions that supports come from"),
+    ('U', "conditions that supports and springs come from"),
+    ('Y', "blocks of springs, summed over subdomains"),
     ('F', "loaded nodes, summed over subdomains"),
     ('Q', "contacts"),
     ('G', "contact groups"),
@@ -119,9 +120,10 @@ pub const LETTERS: &[(char, &str)] = &[
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
-pub const MAY_BE_EMPTY: [&str; 6] = [
+pub const MAY_BE_EMPTY: [&str; 7] = [
     "/interface",
     "/support",
+    "/spring",
     "/force",
     "/contact",
     "/probe",
@@ -219,6 +221,14 @@ pub const FIELDS: &[Field] = &[
          condition"),
     optional("/support/name", "U", Lines,
         "names of the conditions; with `condition` or not at all"),
+    field("/spring/offset", "N + 1", Offsets('Y'), "slices of the datasets below"),
+    field("/spring/node", "Y, 2", Integers,
+        "two nodes of one cell, or one node twice: row and column of a block of the stiffness K_s of springs to the ground, \
+         which exert −K_s u; K_s is positive semidefinite"),
+    field("/spring/stiffness", "Y, d, d", Numbers,
+        "the block [N/m], row by row; of two nodes the transposed one isn't listed"),
+    field("/spring/condition", "Y", Indices("condition", 'U'),
+        "the condition that it comes from, an index into `/support/name`"),
     field("/force/offset", "N + 1", Offsets('F'), "slices of the two datasets below"),
     field("/force/node", "F", Integers, "node, strictly ascending within a subdomain"),
     field("/force/value", "F, L?, d", Numbers, "nodal force [N], in every load step"),

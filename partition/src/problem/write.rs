@@ -183,6 +183,21 @@ impl Problem {
         let names = self.catalog.supports.iter().map(String::as_str);
         datasets.strings("/support/name", names)?;
 
+        if all.iter().any(|s| !s.springs.is_empty()) {
+            datasets.offsets("/spring/offset", all.iter().map(|s| s.springs.len()))?;
+            let blocks = || all.iter().flat_map(|s: &Subdomain| &s.springs);
+            datasets.put(
+                "/spring/node",
+                blocks().flat_map(|block| block.nodes.map(i64::from)),
+            )?;
+            datasets.vectors(
+                "/spring/stiffness",
+                blocks().flat_map(|block| &block.stiffness[..self.catalog.dim]),
+            )?;
+            let conditions = blocks().map(|block| i64::from(block.condition));
+            datasets.put("/spring/condition", conditions)?;
+        }
+
         datasets.offsets("/force/offset", all.iter().map(|s| s.forces.len()))?;
         let rows = || all.iter().flat_map(|s: &Subdomain| &s.forces);
         datasets.put("/force/node", rows().map(|&(node, _)| i64::from(node)))?;

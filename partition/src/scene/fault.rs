@@ -155,6 +155,11 @@ impl Scene {
             };
             of_step.check(dim, &within, &mut check);
         }
+        for (index, spring) in self.spring.iter().enumerate() {
+            if let Some((key, fault)) = spring.stiffness.fault(dim) {
+                check(entry("spring", index, key), Some(fault));
+            }
+        }
         self.wrong_contacts(dim, &mut check);
         found.into_iter().next()
     }

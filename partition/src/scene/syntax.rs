@@ -4,12 +4,13 @@
 use toml::de::Error;
 
 /// The lists of a scene, `[[contact]]`, once for each.
-const LISTS: [&str; 7] = [
+const LISTS: [&str; 8] = [
     "displacement",
     "bilateral",
     "traction",
     "pressure",
     "force",
+    "spring",
     "contact",
     "step",
 ];

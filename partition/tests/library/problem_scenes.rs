@@ -102,6 +102,7 @@ impl Builder {
             bodies: (0..bodies).map(|b| format!("block {b}")).collect(),
             cell_material: self.cell_body.iter().map(|b| b % 2).collect(),
             support_names: vec!["along".into(), "across".into()],
+            springs: Vec::new(),
             supports: bottom
                 .iter()
                 .flat_map(|&node| {

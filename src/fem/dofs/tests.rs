@@ -22,6 +22,7 @@ fn square() -> Subdomain {
         cells,
         cell_material: vec![0, 0],
         supports: Vec::new(),
+        springs: Vec::new(),
         forces: Vec::new(),
         initial_stress: InitialStress::default(),
         interface: Vec::new(),

@@ -10,7 +10,7 @@ use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::facets::Facets;
-use crate::model::{PlaneState, Support};
+use crate::model::{PlaneState, SpringBlock, Support};
 use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
 /// Name of indices of nodes in messages.
@@ -30,6 +30,9 @@ struct Slices {
     support_values: Slice<f64>,
     /// Absent from files that don't tell conditions apart.
     support_conditions: Option<Slice<i64>>,
+    spring_nodes: Slice<i64>,
+    spring_stiffness: Slice<f64>,
+    spring_conditions: Slice<i64>,
     force_nodes: Slice<i64>,
     force_values: Slice<f64>,
     /// Absent where no cell has any.
@@ -61,6 +64,9 @@ impl Slices {
             support_directions: contents.numbers("/support/direction", supports.clone())?,
             support_values: contents.numbers("/support/value", supports)?,
             support_conditions: conditions.transpose()?,
+            spring_nodes: contents.integers("/spring/node", rows('Y'))?,
+            spring_stiffness: contents.numbers("/spring/stiffness", rows('Y'))?,
+            spring_conditions: contents.integers("/spring/condition", rows('Y'))?,
             force_nodes: contents.integers("/force/node", forces.clone())?,
             force_values: contents.numbers("/force/value", forces)?,
         })
@@ -94,11 +100,13 @@ impl ProblemFile {
         let rows = self.contents.rows('P', index);
         let points = self.take_points(slices, rows.clone())?;
         let materials = slices.materials.of(self.contents.rows('C', index));
+        let cells = self.take_cells(slices, index, &points)?;
         Ok(Subdomain {
             index,
             body: self.catalog.subdomains[index].body,
             node_tags: take_node_tags(slices, rows)?,
-            cells: self.take_cells(slices, index, &points)?,
+            springs: self.take_springs(slices, index, &cells)?,
+            cells,
             cell_material: materials.iter().map(|&material| material as u32).collect(),
             supports: self.take_supports(slices, index, points.len())?,
             forces: self.take_forces(slices, index, points.len())?,
@@ -256,6 +264,48 @@ impl ProblemFile {
             });
         }
         Ok(supports)
+    }
+
+    fn take_springs(
+        &self,
+        slices: &Slices,
+        index: usize,
+        cells: &Elements,
+    ) -> Result<Vec<SpringBlock>, InputError> {
+        let rows = self.contents.rows('Y', index);
+        let dim = self.catalog.dim;
+        let (node, stiffness) = (&slices.spring_nodes, &slices.spring_stiffness);
+        let (nodes, _) = node.of(rows.clone()).as_chunks::<2>();
+        let sought: HashSet<[i64; 2]> = nodes.iter().copied().collect();
+        let mut found = HashSet::new();
+        for (_, of_cell) in cells.iter().filter(|_| !sought.is_empty()) {
+            let of_cell = || of_cell.iter().map(|&node| i64::from(node));
+            let pairs = of_cell().flat_map(|a| of_cell().map(move |b| [a, b]));
+            found.extend(pairs.filter(|pair| sought.contains(pair)));
+        }
+        let blocks = stiffness.of(rows.clone()).chunks_exact(dim * dim);
+        let conditions = slices.spring_conditions.of(rows.clone());
+        let mut springs = Vec::with_capacity(rows.len());
+        for (((row, pair), block), &condition) in rows.zip(nodes).zip(blocks).zip(conditions) {
+            if !found.contains(pair) {
+                return Err(node.error(row, "expected two nodes of one cell of the subdomain"));
+            }
+            let mut k = [[0.0; 3]; 3];
+            for (k, row) in k.iter_mut().zip(block.chunks_exact(dim)) {
+                k[..dim].copy_from_slice(row);
+            }
+            let differs = |i: usize, j: usize| k[i][j] != k[j][i];
+            let is_unsymmetric = (0..dim).any(|i| (0..i).any(|j| differs(i, j)));
+            if pair[0] == pair[1] && is_unsymmetric {
+                return Err(stiffness.error(row, "expected a symmetric block of a node"));
+            }
+            springs.push(SpringBlock {
+                nodes: pair.map(|node| node as u32),
+                stiffness: k,
+                condition: condition as u32,
+            });
+        }
+        Ok(springs)
     }
 
     fn take_forces(
