@@ -28,6 +28,7 @@ mod page;
 mod printed;
 mod release;
 mod run;
+mod troubleshooting;
 mod vtk;
 
 use std::sync::Arc;
@@ -66,6 +67,18 @@ pub fn trials() -> Vec<Trial> {
         book::holds_every_page(&all);
     }));
     trials.push(needs_python(trial("the_book_is_whole", book::is_whole)));
+    trials.push(trial(
+        "troubleshooting_quotes_messages",
+        troubleshooting::quotes_messages,
+    ));
+    trials.push(trial(
+        "troubleshooting_explains_every_message",
+        troubleshooting::explains_every_message,
+    ));
+    trials.push(trial(
+        "messages_are_found_in_calls",
+        troubleshooting::finds_messages,
+    ));
     trials.push(trial("a_release_solves", release::solves));
     trials.push(trial("a_page_is_split_into_its_blocks", block::are_split));
     trials.push(trial("unmarked_blocks_are_refused", block::refuse_unmarked));
