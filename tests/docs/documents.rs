@@ -22,6 +22,7 @@
 mod block;
 mod book;
 mod code;
+mod figures;
 mod links;
 mod package;
 mod page;
@@ -67,6 +68,11 @@ pub fn trials() -> Vec<Trial> {
         book::holds_every_page(&all);
     }));
     trials.push(needs_python(trial("the_book_is_whole", book::is_whole)));
+    trials.push(trial(
+        "figures_of_readme_stand_in_their_tables",
+        figures::of_readme,
+    ));
+    trials.push(trial("figures_are_told_apart", figures::are_told_apart));
     trials.push(trial(
         "troubleshooting_quotes_messages",
         troubleshooting::quotes_messages,

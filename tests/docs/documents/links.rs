@@ -43,7 +43,7 @@ pub fn in_repository(page: &Page, file: &str) -> PathBuf {
 }
 
 /// What GitHub makes of a heading: small letters, blanks as hyphens, no other punctuation.
-fn anchor_of(heading: &str) -> String {
+pub fn anchor_of(heading: &str) -> String {
     let kept = heading
         .trim()
         .chars()
