@@ -44,8 +44,9 @@ pub struct Certificate {
     pub tension: f64,
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
-    /// The largest of: tangential force beyond its bound, over the largest contact force; way of what sticks, over the
-    /// largest displacement; product of slip and what its force lacks of the bound against it, or has across it, over that of both scales.
+    /// The largest of three violations of the law of friction: tangential force beyond the friction cone, over the
+    /// largest contact force; slip of sticking points, over the largest displacement; slip times the misalignment of
+    /// slip and force, over the product of both scales.
     pub friction: f64,
     /// Sum of loads and reactions over the load scale.
     pub force_balance: f64,

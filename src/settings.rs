@@ -44,7 +44,7 @@ pub struct Settings {
     pub max_sweeps: Option<usize>,
     /// Relaxation of picard; 1 is the paper's (18) to the letter.
     pub relaxation: Option<f64>,
-    /// How the linear interface problem is solved; what takes less time where it isn't said.
+    /// How the linear interface problem is solved; by default what takes less time.
     pub interface: Option<InterfaceMethod>,
     /// Threads of each rank.
     pub threads: u16,

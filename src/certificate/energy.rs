@@ -23,8 +23,8 @@ use crate::vector::{axpy, dot};
 /// Smallest error, relative to all terms of forces times displacements, that isn't round-off.
 const NOT_ROUND_OFF: f64 = 1e-12;
 
-/// Where energy came from and went in a load step, with the mean of the forces at both ends of every increment (J, per
-/// metre of thickness in the plane); in a load step in which bodies or contacts come or go, on the way from unloaded bodies.
+/// Energy balance of a load step, with the mean of the forces at both ends of every increment (J, per metre of
+/// thickness in the plane); in a load step that activates or deactivates bodies or contacts, from unloaded bodies on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EnergyBalance {
     /// Work of loads.
@@ -36,7 +36,7 @@ pub struct EnergyBalance {
     /// What contacts take: `dissipated_work`, and an error of finite increments beyond it, which vanishes as these
     /// become small; less than nothing where an interference fit brings energy in.
     pub work_of_contacts: f64,
-    /// How far the first two are off the sum of the other two, relative to the largest of the four and of the elastic
+    /// Difference of the first two and the sum of the other two, relative to the largest of the four and of the elastic
     /// energy.
     pub imbalance: f64,
     /// Whether that is more than round-off.

@@ -92,7 +92,7 @@ pub struct RankReport {
     pub bytes_sent: u64,
     /// Number of messages that it sent, broadcasts counted once.
     pub messages_sent: u64,
-    /// Most messages, each sent after the one before it had come, that led to its end.
+    /// Length of the critical path, in messages.
     pub longest_chain: u64,
     /// Number of subdomains that it owns.
     pub subdomains: usize,

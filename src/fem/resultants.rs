@@ -54,7 +54,7 @@ pub struct ContactResultant {
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
     pub largest_pressure: f64,
-    /// What its friction does; `null` where it has none.
+    /// Its friction; `null` where it has none.
     pub friction: Option<Friction>,
     /// Number of conditions about to open, which slip under a part of their cohesion.
     #[serde(skip)]
@@ -80,14 +80,14 @@ pub struct Probed {
     pub touching: usize,
 }
 
-/// What friction does in a load step.
+/// Friction in a load step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Friction {
     /// Number of closed conditions with friction that stick.
     pub sticking: usize,
     /// Number of those that slip.
     pub slipping: usize,
-    /// Work that becomes heat (J, per metre of thickness in the plane).
+    /// Work dissipated by friction (J, per metre of thickness in the plane).
     pub dissipated_work: f64,
 }
 

@@ -25,7 +25,7 @@ pub enum Status {
     NotConverged,
 }
 
-/// What contact conditions are solved with.
+/// The operator of contact conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactOperator {
@@ -37,7 +37,7 @@ pub enum ContactOperator {
     Bddc,
 }
 
-/// What the mesh does to the stress, after Zienkiewicz and Zhu, in the energy norm.
+/// Estimate of the error that the mesh makes in the stress, after Zienkiewicz and Zhu, in the energy norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ErrorEstimate {
     /// ‖σ* − σ_h‖ / ‖σ‖, with σ* the recovered stress and ‖σ‖² = ‖σ_h‖² + ‖σ* − σ_h‖².
@@ -63,8 +63,8 @@ pub struct StepReport {
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
     pub active_set_iterations: usize,
-    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active sets
-    /// one for every load; those of tries that were given up among them.
+    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active
+    /// sets one for every load; abandoned attempts included.
     pub linear_solves: usize,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
@@ -96,8 +96,8 @@ pub struct FrictionOfStep {
     /// Whether friction is at its limit: nothing else holds a body, and it gives all the force that it can, so that the
     /// position is one of many; a warning names the motion.
     pub at_limit: bool,
-    /// Number of increments that the load step was solved in, of several load steps the largest; slip and status are said
-    /// of the last one.
+    /// Number of increments of the load step, of several load steps the largest; slip and status are those of the last
+    /// one.
     pub increments: usize,
     /// Whether `--second-start` found another solution; `null` without it.
     pub other_solution: Option<bool>,
@@ -114,18 +114,18 @@ pub struct Report {
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
     pub active_set_iterations: usize,
-    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active sets
-    /// one for every load; those of tries that were given up among them.
+    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active
+    /// sets one for every load; abandoned attempts included.
     pub linear_solves: usize,
-    /// Which other methods had to help, in words.
+    /// Fallback methods that were used, in words.
     pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
     /// How the linear interface problem was solved: `direct` or `iterative`.
     pub interface_solver: InterfaceMethod,
-    /// Why it was solved like that, in words.
+    /// Reason of that choice, in words.
     pub interface_choice: String,
-    /// What the contact conditions were solved with.
+    /// Operator of the contact conditions.
     pub contact_operator: ContactOperator,
     /// Iterations of the interface solver in the start and in every sweep, load step after load step; empty where it is
     /// direct.
@@ -157,7 +157,7 @@ pub struct Report {
     pub condition_number: Option<f64>,
     /// Time of each phase, that of the slowest rank.
     pub seconds: PhaseSeconds,
-    /// What each rank had to do.
+    /// Work of each rank.
     pub per_rank: Vec<RankReport>,
     /// Sum of the ranks' peak resident memory (bytes).
     pub peak_memory_bytes: u64,
@@ -166,18 +166,18 @@ pub struct Report {
     /// What contacts and supports carry.
     #[serde(flatten)]
     pub resultants: Resultants,
-    /// What friction does in all contacts; `null` where there is none.
+    /// Friction of all contacts; `null` where there is none.
     pub friction: Option<FrictionOfStep>,
     /// The load steps, where the problem has any. Above, sweeps, inner steps and friction's work are those of
     /// all, residual, certificate and condition those of the worst, and all else is that of the last one.
     pub steps: Vec<StepReport>,
-    /// What the scene didn't need, in words.
+    /// Parts of a run that the scene didn't need, in words.
     pub skipped: Vec<String>,
-    /// What the user should know, in words.
+    /// Warnings, in words.
     pub warnings: Vec<String>,
     /// The settings; `null` is what the method decides.
     pub settings: Settings,
-    /// What settled each of them.
+    /// Origin of each of them.
     pub settings_from: Origins,
     /// Version of the program.
     pub version: String,

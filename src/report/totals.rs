@@ -170,7 +170,7 @@ impl Totals<'_> {
         (self.steps.iter()).find_map(|step| step.outcome.took_over.as_deref())
     }
 
-    /// Which other methods had to help, in words.
+    /// Fallback methods that were used, in words.
     pub fn fallbacks(&self) -> Vec<String> {
         let all = self.steps.iter().flat_map(|step| &step.outcome.fallbacks);
         once_each(all.cloned())

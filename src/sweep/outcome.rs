@@ -72,7 +72,7 @@ pub struct SweepOutcome {
     pub active_set_iterations: usize,
     /// Evaluations of pairs, and how many more weren't made because nothing had changed.
     pub evaluations: [usize; 2],
-    /// Which other methods had to help, in words.
+    /// Fallback methods that were used, in words.
     pub fallbacks: Vec<String>,
     /// The residual that is left in the end.
     pub residual: f64,

@@ -12,7 +12,7 @@ const HEAD: &str = "\
 # Run time against error
 
 Which cells reach an error of 1 % in the least time, and which tolerance the sweeps need. Measured and written
-by `scripts/accuracy`. [Meshes that adapt](adapting.md) find their cells by themselves.
+by `scripts/accuracy`. [Adaptive refinement](adapting.md) finds the cells by itself.
 
 ";
 

@@ -31,8 +31,8 @@ Among the tests alone, as they need no finer meshes (`tests/scenes/friction`):
 - A joint that slips evenly, under uniform pressure and shear, is exact to 1e-10 in all cells and between nodes that
   don't match.
 - Over a cycle of load the work from outside is what friction dissipates, to 1e-10.
-- Increments of loads to and fro keep the law, and agree to 1e-11 in energy with one system for the whole mesh in which
-  is closed, sticks and slips what they say.
+- Increments of loads to and fro keep the law, and agree to 1e-11 in energy with a monolithic solve with the
+  same contact status.
 ";
 
 /// A case with its table, and which gates it doesn't keep.
