@@ -1,4 +1,4 @@
-//! What a run says of itself when it is done: in the report and in the result file.
+//! What a run says of itself: the log on the way, and the report.
 
 pub mod log;
 pub mod totals;
@@ -8,10 +8,8 @@ use contact_dd_partition::problem::Catalog;
 
 use crate::comm::ranks::{PhaseSeconds, RankReport, RankSeconds};
 use crate::comm::{self, Comm};
-use crate::error::Failure;
 use crate::fem::resultants::Resultants;
-use crate::output::report::{Build, ContactOperator, Report, ReportFile, Status};
-use crate::output::vtkhdf::ResultFile;
+use crate::output::report::{Build, ContactOperator, Report, Status};
 use crate::plan::Plan;
 use crate::plan::cluster::Merging;
 use crate::plan::memory::peak_memory_bytes;
@@ -25,36 +23,6 @@ const SUSPICIOUS_PIVOT: f64 = 1e-13;
 
 /// Condition number from which round-off is worth a warning.
 const BAD_CONDITION: f64 = 1e10;
-
-/// The files of a run, still under temporary names. On the root.
-#[derive(Debug)]
-pub struct Outputs {
-    /// The results.
-    pub result: ResultFile,
-    /// The report, where one is asked for.
-    pub report: Option<ReportFile>,
-}
-
-impl Outputs {
-    /// Finishes the result file and writes the report.
-    ///
-    /// # Errors
-    /// One of them can't be written.
-    pub fn finish(self, totals: &Totals<'_>, report: &Report) -> Result<(), Failure> {
-        let Self {
-            mut result,
-            report: report_file,
-        } = self;
-        let histories = totals.steps.iter().map(|step| &step.outcome.records[..]);
-        result.write_convergence(histories)?;
-        let json = report.to_json();
-        result.finish(&json)?;
-        if let Some(file) = report_file {
-            file.write(&json)?;
-        }
-        Ok(())
-    }
-}
 
 /// Brings every rank's times and memory to the root. Collective.
 pub fn collect(comm: &Comm, seconds: &RankSeconds, plan: &Plan) -> Vec<RankReport> {

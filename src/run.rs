@@ -2,47 +2,44 @@
 //!
 //! for each stage: read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
+mod files;
 mod increment;
 mod operators;
-mod outputs;
 mod restart;
 mod stage;
 mod step_totals;
-mod sweeping;
 
 use std::cell::Cell;
 use std::ops::Range;
 use std::time::Instant;
 
-use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
 use faer::Par;
 
+use self::files::{RunFiles, absent_rows};
 use self::increment::{Increment, Increments};
 use self::operators::Operators;
-use self::outputs::{RunFiles, absent_rows};
 use self::restart::{Finished, finished_steps, keep};
 use self::stage::{Handover, Stages, reason_to_hand_over};
-use self::step_totals::step_totals;
 use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, phase};
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
 use crate::fem::contact_state::ContactRow;
 use crate::output::lock::OutputLock;
+use crate::output::report::Status;
 use crate::plan::Plan;
 use crate::plan::choice::Choice;
 use crate::read::check_problem;
 use crate::report::collect;
 use crate::report::log::RunLog;
-use crate::report::totals::Totals;
+use crate::report::totals::{StepTotals, Totals};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
 use crate::step::transfer::StageEnd;
-use crate::sweep::SweepStatus;
 
 /// End of a run that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,7 +89,6 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let log = RunLog::new(comm, settings, began);
 
     // A stage ends where bodies or contacts come or go; most problems have one.
-    let catalog = file.catalog();
     let stages = Stages {
         comm,
         file: &file,
@@ -100,7 +96,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         log: &log,
         par,
     };
-    let all = catalog.stages();
+    let all = file.catalog().stages();
     if settings.check {
         let checked = all.into_iter().map(|steps| stages.check(steps));
         log.check(&checked.collect::<Result<Vec<_>, _>>()?);
@@ -125,7 +121,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         stages.solve(steps.clone(), left.get(i + 1), &mut progress)?;
     }
     (progress.seconds).add(|s| &mut s.total, comm.times() - start);
-    progress.finish(comm, catalog, settings, &log)
+    progress.finish(&stages)
 }
 
 impl Stages<'_> {
@@ -141,9 +137,9 @@ impl Stages<'_> {
         progress: &mut Progress,
     ) -> Result<(), Failure> {
         let stage = (self.file.catalog()).stage(steps, &progress.finished.transfer.since);
-        let mut from = None;
-        while let Some(handover) = self.solve_from(from, &stage, next, progress)? {
-            from = Some(handover);
+        let mut handover = self.solve_from(None, &stage, next, progress)?;
+        while handover.is_some() {
+            handover = self.solve_from(handover, &stage, next, progress)?;
         }
         Ok(())
     }
@@ -161,20 +157,16 @@ impl Stages<'_> {
         progress: &mut Progress,
     ) -> Result<Option<Handover>, Failure> {
         let (comm, settings, log) = (self.comm, self.settings, self.log);
-        let whole = self.file.catalog();
-        let first = stage.steps.start;
+        let (first, done) = (stage.steps.start, progress.finished.count);
 
-        // What this rank has of the stage.
-        let choices = match &handover {
-            Some(handover) => vec![handover.choice.clone()],
-            None => self.choices(&stage.catalog)?,
-        };
-        let lap = comm.times();
+        // Blocks and contact groups of this rank.
         let is_first = progress.plan.is_none();
+        let choices = self.choices(&stage.catalog, handover.as_ref())?;
+        let lap = comm.times();
         let parts = self.parts(stage, &choices, is_first)?;
         let context = self.context(stage, &parts);
-        let done = progress.finished.count;
         stop_if_asked(&context, settings, done)?;
+        let after = |failure| state::finished(failure, &context, settings, done);
 
         // Rigid-body modes that neither supports nor contact restrain, and the bodies' closing motions.
         log.phase("looking for free rigid motions", None);
@@ -183,41 +175,33 @@ impl Stages<'_> {
         log.phase("creating the outputs", None);
         if is_first {
             let kept = progress.finished.file.take();
-            progress.files = RunFiles::create(&context, settings, kept)
-                .map_err(|failure| state::finished(failure, &context, settings, done))?;
+            progress.files = RunFiles::create(&context, settings, kept).map_err(after)?;
         }
-        let absent = comm.is_root().then(|| absent_rows(whole, stage));
-        let absent = absent.unwrap_or_default();
+        let absent = comm
+            .is_root()
+            .then(|| absent_rows(self.file.catalog(), stage));
         (progress.seconds).add(|s| &mut s.read, comm.times() - lap);
 
         // S_i of the linear subdomains, (11), S_kl of the pairs, (12), and S_0, (15).
         let loads = StepState::default().loads(&context, LoadPoint::end_of(first), &analyses[0]);
         let operators = Operators::new(context, log, &loads, &analyses[0], &mut progress.seconds)
-            .map_err(|failure| state::finished(failure, &context, settings, done))?;
+            .map_err(after)?;
 
         // Load step by load step: each starts from the state that the one before it left.
         let robust = self.more_robust(&stage.catalog, parts.plan.merging);
-        let finished = &mut progress.finished;
-        let (mut state, took_over) = match handover {
-            Some(Handover {
-                state, plan, why, ..
-            }) => (state.handed_over(&context, &plan), Some(why)),
-            None if done > first => (finished.state(&context), None),
-            None => (finished.transfer.state(&context, stage), None),
-        };
-        state.scales = finished.scales();
         let steps = StageSteps {
             stage,
             next,
-            whole,
             context,
             analyses: &analyses,
             before: &before,
             operators: &operators,
-            absent: &absent,
+            absent: &absent.unwrap_or_default(),
             robust: robust.as_ref(),
         };
-        let handover = self.solve_steps(&steps, (state, took_over), progress)?;
+        let (from, took_over) = handover.map(|h| ((h.state, h.plan), h.why)).unzip();
+        let start = progress.finished.start(&context, from, stage);
+        let handover = self.solve_steps(&steps, (start, took_over), progress)?;
         progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
         progress.plan = Some((parts.plan, parts.why));
         Ok(handover)
@@ -239,12 +223,10 @@ impl Stages<'_> {
             stage,
             context,
             analyses,
-            operators,
             robust,
             ..
         } = steps;
-        let first = stage.steps.start;
-        let done = progress.finished.count;
+        let (first, done) = (stage.steps.start, progress.finished.count);
         for k in stage.steps.clone().skip(done.saturating_sub(first)) {
             stop_if_asked(&context, settings, k)?;
             log.step(context.catalog, k);
@@ -252,23 +234,19 @@ impl Stages<'_> {
                 context,
                 settings,
                 log,
-                factors: &operators.condensed,
-                interface: operators.interface.as_ref(),
-                fronts: operators.fronts.as_ref(),
+                operators: steps.operators,
                 is_relieved: robust.is_some(),
                 linear_solves: &progress.linear_solves,
             };
-            let (at_end, earlier) = (&analyses[k - first], &analyses[..k - first]);
+            let (analysis, earlier) = (&analyses[k - first], &analyses[..k - first]);
             let earlier = (earlier.last()).map_or(steps.before, |last| &last.closing_motions);
             let start = robust.map(|robust| (robust, state.clone()));
-            let solved = increments.step(k, (earlier, at_end), state, &mut progress.seconds);
-            if let Some((robust, start)) = start {
-                let is_converged = solved.as_ref().is_ok_and(|s| increments.is_converged(s));
-                let outcome = solved.as_ref().map(|solved| solved.outcome.as_ref());
-                if let Some(why) = reason_to_hand_over(is_converged, outcome) {
-                    progress.finished.count = k;
-                    return Ok(Some(Handover::new(context.plan, robust, start, &why)));
-                }
+            let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds);
+            if let Some((robust, start)) = start
+                && let Some(why) = reason_to_hand_over(increments.ended(&solved))
+            {
+                progress.finished.count = k;
+                return Ok(Some(Handover::new(context.plan, robust, start, &why)));
             }
             let mut solved = solved.map_err(|failure| {
                 state::finished(context.in_step(failure, k), &context, settings, k)
@@ -277,10 +255,19 @@ impl Stages<'_> {
                 outcome.take_over(why);
             }
             log.phase("writing", None);
-            progress.finish_step(steps, k, &solved)?;
+            progress.finish_step(&context, &solved, analysis, steps.absent)?;
+            if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
+                let end = StageEnd {
+                    displacement: &solved.solution.displacement,
+                    slips: &solved.slips.jumps,
+                    closing_motions: &analysis.closing_motions,
+                };
+                let (transfer, whole) = (&progress.finished.transfer, self.file.catalog());
+                progress.finished.transfer = transfer.after(&context, stage, end, whole, next);
+            }
             state = solved.into_state(settings.method);
             if k + 1 < context.catalog.steps.len() {
-                let result = progress.files.result();
+                let result = progress.files.result.as_mut();
                 keep(&context, settings, &state, &progress.finished, result)?;
             }
         }
@@ -294,8 +281,6 @@ struct StageSteps<'a> {
     stage: &'a Stage<'a>,
     /// The load steps of the next stage.
     next: Option<&'a Range<usize>>,
-    /// The whole problem.
-    whole: &'a Catalog,
     context: Context<'a>,
     /// The rigid motions at the end of every load step.
     analyses: &'a [RigidBodyAnalysis],
@@ -304,43 +289,33 @@ struct StageSteps<'a> {
     operators: &'a Operators,
     /// The rows of contact points that are absent; on the root.
     absent: &'a [ContactRow],
-    /// What takes over where the steps don't converge.
+    /// The solver that takes over where the steps don't converge.
     robust: Option<&'a Choice>,
 }
 
 impl Progress {
-    /// Writes the solution of load step k and keeps its totals, and after the last one of a stage what passes to the next.
+    /// Writes the solution of a load step, with the rows of contact points that are `absent`, and keeps its totals.
     /// Collective.
     ///
     /// # Errors
     /// The file can't be written.
     fn finish_step(
         &mut self,
-        steps: &StageSteps<'_>,
-        k: usize,
+        context: &Context<'_>,
         solved: &Increment,
+        analysis: &RigidBodyAnalysis,
+        absent: &[ContactRow],
     ) -> Result<(), Failure> {
-        let context = &steps.context;
-        let analysis = &steps.analyses[k - steps.stage.steps.start];
-        let (solution, slips) = (&solved.solution, &solved.slips);
+        let solution = &solved.solution;
         let lap = context.comm.times();
-        let resultants = (self.files).write(context, solution, slips, steps.absent)?;
+        let resultants = (self.files).write(context, solution, &solved.slips, absent)?;
         (self.seconds).add(|s| &mut s.write, context.comm.times() - lap);
         let totals = solved.outcome.clone().map(|outcome| {
             let found = (outcome, self.linear_solves.take());
             let sums = (resultants, solved.energy);
-            step_totals(found, solution, sums, analysis, context.catalog)
+            StepTotals::new(found, solution, sums, analysis, context.catalog)
         });
         self.finished.steps.extend(totals);
-        if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
-            let end = StageEnd {
-                displacement: &solution.displacement,
-                slips: &slips.jumps,
-                closing_motions: &analysis.closing_motions,
-            };
-            let transfer = &self.finished.transfer;
-            self.finished.transfer = transfer.after(context, steps.stage, end, steps.whole, next);
-        }
         Ok(())
     }
 
@@ -348,39 +323,28 @@ impl Progress {
     ///
     /// # Errors
     /// A file that can't be written.
-    fn finish(
-        self,
-        comm: &Comm,
-        catalog: &Catalog,
-        settings: &Settings,
-        log: &RunLog<'_>,
-    ) -> Result<Ending, Failure> {
+    fn finish(self, run: &Stages<'_>) -> Result<Ending, Failure> {
         let Some((plan, why)) = self.plan else {
             return Err(Failure::internal("no load step is left"));
         };
-        let ranks = collect(comm, &self.seconds, &plan);
         let Finished { steps, warning, .. } = self.finished;
-        let mut outcomes = steps.iter().map(|step| &step.outcome);
-        let converged = outcomes.all(|outcome| outcome.status == SweepStatus::Converged);
-        let finished = match self.files.outputs {
-            Some(outputs) => {
-                let totals = Totals {
-                    catalog,
-                    plan: &plan,
-                    why: &why,
-                    steps,
-                    smallest_pivot: self.smallest_pivot,
-                    ranks,
-                    warnings: settings.unused().into_iter().chain(warning).collect(),
-                };
-                log.finish(&totals, outputs).and_then(|()| log.heard())
-            }
-            _ => Ok(()),
+        let totals = Totals {
+            catalog: run.file.catalog(),
+            plan: &plan,
+            why: &why,
+            steps,
+            smallest_pivot: self.smallest_pivot,
+            ranks: collect(run.comm, &self.seconds, &plan),
+            warnings: run.settings.unused().into_iter().chain(warning).collect(),
         };
-        comm.agree(finished)?;
-        Ok(match comm.decide(converged) {
-            true => Ending::Converged,
-            false => Ending::NotConverged,
-        })
+        let is_root = run.comm.is_root();
+        let write = || (run.log).finish(&totals, |report| self.files.finish(&totals, report));
+        run.comm.agree(is_root.then(write).transpose())?;
+        Ok(
+            match run.comm.decide(totals.status() == Status::Converged) {
+                true => Ending::Converged,
+                false => Ending::NotConverged,
+            },
+        )
     }
 }

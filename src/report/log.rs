@@ -14,11 +14,12 @@ use crate::context::Listener;
 use crate::error::Failure;
 use crate::output::bar::Bar;
 use crate::output::event::{self, Event, Summary};
+use crate::output::report::Report;
 use crate::output::terminal;
 use crate::plan::Plan;
 use crate::plan::cost::CostEstimate;
 use crate::report::totals::Totals;
-use crate::report::{Outputs, failures, reason, report};
+use crate::report::{failures, reason, report};
 use crate::settings::Settings;
 use crate::settings::command_line::LogFormat;
 use crate::sweep::SweepRecord;
@@ -231,13 +232,17 @@ impl<'a> RunLog<'a> {
         self.tell(&Event::Sweep(record));
     }
 
-    /// Finishes the result file, writes the report and says how the run ended. On the root.
+    /// Makes the report, has it written with the results, and says how the run ended. On the root.
     ///
     /// # Errors
-    /// One of them can't be written.
-    pub fn finish(&self, totals: &Totals<'_>, outputs: Outputs) -> Result<(), Failure> {
+    /// Something can't be written.
+    pub fn finish(
+        &self,
+        totals: &Totals<'_>,
+        write: impl FnOnce(&Report) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let report = report(totals, self.settings, self.comm);
-        outputs.finish(totals, &report)?;
+        write(&report)?;
         self.bar.finish();
         for warning in &report.warnings {
             match self.voice {
@@ -263,6 +268,6 @@ impl<'a> RunLog<'a> {
             let why = format!("not converged: {}", failures.join("; "));
             event::error(self.settings.log, exit_code, &why);
         }
-        Ok(())
+        self.heard()
     }
 }

@@ -6,28 +6,27 @@ use std::collections::BTreeMap;
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
 use crate::comm::ranks::RankSeconds;
-use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::limits_of_groups;
 use crate::contact::laws::Statuses;
+use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
-use crate::interface::numbering::Numbering;
-use crate::interface::operator::Interface;
-use crate::interface::problem::InterfaceProblem;
+use crate::interface::s_con::SCon;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
-use crate::recover::{Slips, recover, substitute_back};
+use crate::recover::{DiscreteSolution, Slips, recover, substitute_back};
 use crate::report::log::RunLog;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::scene::Scene;
-use crate::run::sweeping::{sweep, sweep_active_sets};
+use crate::run::operators::Operators;
 use crate::settings::Settings;
-use crate::step::Loading;
+use crate::step::StepProblem;
 use crate::step::halving::StepHalving;
 use crate::step::state::{StepState, analyse, go_on};
-use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
+use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, SweepStatus, Sweeps};
+use crate::tree::contact;
 use crate::tree::fronts::ActiveSetFronts;
 
 /// Data that all increments share: everything made of matrices.
@@ -39,12 +38,8 @@ pub struct Increments<'a> {
     pub settings: &'a Settings,
     /// Log of the run.
     pub log: &'a RunLog<'a>,
-    /// The factors of this rank.
-    pub factors: &'a CondensedBlocks,
-    /// Γ and the operators on it; on the root.
-    pub interface: Option<&'a (Numbering, Interface)>,
-    /// The fronts above all contact, where active sets are fixed.
-    pub fronts: Option<&'a RefCell<ActiveSetFronts>>,
+    /// Operators of the stage.
+    pub operators: &'a Operators,
     /// Whether another solver takes over where this one doesn't converge.
     pub is_relieved: bool,
     /// Linear problems that were solved for contact conditions, in tries that were given up, too; on the root.
@@ -145,8 +140,17 @@ impl Increments<'_> {
         self.linear_solves.set(self.linear_solves.get() + solves);
     }
 
+    /// Whether the sweeps of a load step converged, and their outcome, which the root has, or its failure. Collective.
+    pub fn ended<'s>(
+        &self,
+        solved: &'s Result<Increment, Failure>,
+    ) -> Result<(bool, Option<&'s SweepOutcome>), &'s Failure> {
+        let solved = solved.as_ref()?;
+        Ok((self.is_converged(solved), solved.outcome.as_ref()))
+    }
+
     /// Whether the sweeps converged. Collective.
-    pub fn is_converged(&self, increment: &Increment) -> bool {
+    fn is_converged(&self, increment: &Increment) -> bool {
         let status = increment.outcome.as_ref().map(|outcome| &outcome.status);
         (self.context.comm).decide(status == Some(&SweepStatus::Converged))
     }
@@ -163,35 +167,20 @@ impl Increments<'_> {
         mut before: StepState,
         seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
-        let &Self {
-            context,
-            settings,
-            log,
-            factors,
-            interface,
-            fronts,
-            ..
-        } = self;
-        let comm = context.comm;
+        let (context, log, comm) = (self.context, self.log, self.context.comm);
 
         // F, condensed like the blocks, and the bounds on normal jumps.
         log.phase("condensing the load", None);
         let lap = comm.times();
-        let (mut start, held_at) = (before.start(), before.slips.clone());
+        let (start, held_at) = (before.start(), before.slips.clone());
         let energies_before = std::mem::take(&mut before.energies);
-        let mut statuses = std::mem::take(&mut before.statuses);
+        let statuses = std::mem::take(&mut before.statuses);
         let loads = before.loads(&context, moment, analysis);
-        let loading = Loading {
-            context,
-            factors,
-            interface,
-            analysis,
-        };
-        let mut problem = loading.problem(loads, before)?;
-        if (problem.interface.as_ref()).is_some_and(InterfaceProblem::is_unloaded) {
-            start = Start::Bilateral;
-        }
-        let limits = match fronts {
+        let mut problem = self
+            .operators
+            .loading(context, analysis)
+            .problem(loads, before)?;
+        let limits = match self.operators.fronts {
             Some(_) => limits_of_groups(&context, &problem.loads)?,
             None => BTreeMap::new(),
         };
@@ -201,28 +190,11 @@ impl Increments<'_> {
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the state before.
         log.phase("sweeping", None);
         let lap = comm.times();
-        let mut found = None;
-        let mut outcome = match fronts {
-            Some(fronts) => {
-                let (fronts, loads) = (&mut fronts.borrow_mut(), &problem.condensed);
-                let before = fronts.solves;
-                let of_limits = (&limits, &statuses);
-                let contact = sweep_active_sets(&context, settings, log, fronts, loads, of_limits)
-                    .map_err(|failure| context.of_pivot(failure))?;
-                statuses.clone_from(&contact.statuses);
-                self.count(fronts.solves - before);
-                let outcome = contact.outcome.clone();
-                found = Some(contact);
-                comm.is_root().then_some(outcome)
-            }
-            None => {
-                let (on_gamma, pairs) = (problem.interface.as_ref(), &mut problem.pairs);
-                let outcome = sweep(&context, settings, log, on_gamma, pairs, start)
-                    .map_err(|failure| context.of_pivot(failure))?;
-                self.count(outcome.as_ref().map_or(0, |o| o.active_set_iterations));
-                outcome
-            }
+        let swept = match &self.operators.fronts {
+            Some(fronts) => self.sweep_active_sets(fronts, &problem, &limits, &statuses),
+            None => self.sweep(&mut problem, start),
         };
+        let mut swept = swept.map_err(|failure| context.of_pivot(failure))?;
         seconds.add(|s| &mut s.sweeps, comm.times() - lap);
         // From here on the load step is finished first: what was found is kept.
         go_on(&context)?;
@@ -230,52 +202,167 @@ impl Increments<'_> {
         // Back-substitution, and the check of the full discrete problem.
         log.phase("recovering", None);
         let lap = comm.times();
-        let fixed = FixedActiveSet::new(
-            context,
-            factors,
-            &problem,
-            analysis,
-            interface,
-            fronts.map(|fronts| (fronts, &limits)),
-            outcome.as_ref(),
-        );
-        let discrete = match found {
-            Some(contact) => {
-                let (boundaries, conditions) = (contact.boundaries, contact.conditions);
-                substitute_back(fixed.factors(), &problem, boundaries, conditions)
-            }
-            None => {
-                let u = outcome.as_ref().map(|outcome| &outcome.u[..]);
-                let numbers = interface.map(|(n, _)| &n.interface_dofs[..]);
-                recover(fixed.factors(), &problem, u.zip(numbers))
-            }
-        };
-        let stress_of = (!settings.no_stress).then_some(moment.step);
+        let fixed = self.fixed(&problem, analysis, &limits, swept.outcome.as_ref());
+        let discrete = self.discrete(&mut swept, &fixed, &problem);
+        let stress_of = (!self.settings.no_stress).then_some(moment.step);
         let solution = Solution::new(&fixed, analysis, discrete, stress_of);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
-        let mut scales = problem.earlier;
-        if let Some(outcome) = &mut outcome {
-            outcome.accept(
-                &solution.certificate,
-                solution.is_finite() && energy.is_finite(),
-            );
-            if outcome.status == SweepStatus::Converged {
-                scales = scales.and(solution.certificate.scales);
-            }
-            outcome.name_unsettled(&unsettled_points(&context, outcome));
-        }
+        let scales = self.accept(&mut swept.outcome, &solution, &energy, problem.earlier);
         seconds.add(|s| &mut s.recover, comm.times() - lap);
         Ok(Increment {
             slips: solution.discrete.slips(&context, &held_at),
             pairs: problem.pairs,
-            statuses,
-            outcome,
+            statuses: swept.statuses,
+            outcome: swept.outcome,
             solution,
             energies,
             energy,
             scales,
         })
     }
+
+    /// Solves S_0 U + S_CON(U) = F, (14), from the `start` and tells of every sweep: the root solves for U, the other
+    /// ranks serve S_CON. Collective.
+    ///
+    /// # Errors
+    /// A signal stopped the sweeps.
+    fn sweep(&self, step: &mut StepProblem<'_>, start: Start) -> Result<Swept, Failure> {
+        let (context, log) = (&self.context, self.log);
+        let owners = context.plan.contact_owners();
+        let mut s_con = SCon::new(context.comm, &owners, &mut step.pairs);
+        let solved = match &step.interface {
+            None => {
+                s_con.serve();
+                None
+            }
+            Some(problem) => {
+                let in_contact = !problem.interface.pair_interface_dofs.is_empty();
+                log.sweeps(in_contact);
+                let mut observer = |record: &SweepRecord| {
+                    if in_contact {
+                        log.sweep(record);
+                    }
+                };
+                let start = match problem.is_unloaded() {
+                    true => Start::Bilateral,
+                    false => start,
+                };
+                let settings = self.settings.sweeps();
+                let solved = Sweeps::solve(problem, &mut s_con, settings, start, &mut observer);
+                s_con.stop();
+                Some(solved)
+            }
+        };
+        let outcome = context.comm.agree(solved.transpose())?;
+        self.count(outcome.as_ref().map_or(0, |o| o.active_set_iterations));
+        Ok(Swept {
+            outcome,
+            ..Swept::default()
+        })
+    }
+
+    /// Finds which of many conditions are closed, one fixed active set after the other, and tells of every one; the first
+    /// has the statuses of the load step `before`. Collective.
+    ///
+    /// # Errors
+    /// Some part of the scene moves freely.
+    fn sweep_active_sets(
+        &self,
+        fronts: &RefCell<ActiveSetFronts>,
+        step: &StepProblem<'_>,
+        limits: &BTreeMap<usize, Limits>,
+        before: &BTreeMap<usize, Statuses>,
+    ) -> Result<Swept, Failure> {
+        let (context, log, mut fronts) = (&self.context, self.log, fronts.borrow_mut());
+        log.sweeps(true);
+        let solves = fronts.solves;
+        let loads = step.condensed.iter();
+        let loads = loads.map(|(&v, load)| (v, load.boundary().to_vec()));
+        let (loads, most) = (loads.collect(), self.settings.max_sweeps);
+        let mut observer = |record: &SweepRecord| log.sweep(record);
+        let (fronts, loads) = (&mut *fronts, (&loads, before));
+        let found = contact::solve(context, fronts, limits, loads, most, &mut observer)?;
+        self.count(fronts.solves - solves);
+        Ok(Swept {
+            outcome: context.comm.is_root().then_some(found.outcome),
+            statuses: found.statuses,
+            in_tree: Some((found.boundaries, found.conditions)),
+        })
+    }
+
+    /// The problem of a load step whose active sets the `outcome` of the sweeps fixed.
+    fn fixed<'a>(
+        &'a self,
+        step: &'a StepProblem<'a>,
+        analysis: &'a RigidBodyAnalysis,
+        limits: &'a BTreeMap<usize, Limits>,
+        outcome: Option<&SweepOutcome>,
+    ) -> FixedActiveSet<'a> {
+        let Operators {
+            condensed,
+            interface,
+            fronts,
+        } = self.operators;
+        FixedActiveSet::new(
+            self.context,
+            condensed,
+            step,
+            analysis,
+            interface.as_ref(),
+            fronts.as_ref().map(|fronts| (fronts, limits)),
+            outcome,
+        )
+    }
+
+    /// Takes what the sweeps found to the full discrete problem by back-substitution. Collective.
+    fn discrete(
+        &self,
+        swept: &mut Swept,
+        fixed: &FixedActiveSet<'_>,
+        step: &StepProblem<'_>,
+    ) -> DiscreteSolution {
+        if let Some((boundaries, conditions)) = swept.in_tree.take() {
+            return substitute_back(fixed.factors(), step, boundaries, conditions);
+        }
+        let u = swept.outcome.as_ref().map(|outcome| &outcome.u[..]);
+        let interface = self.operators.interface.as_ref();
+        let numbers = interface.map(|(n, _)| &n.interface_dofs[..]);
+        recover(fixed.factors(), step, u.zip(numbers))
+    }
+
+    /// Accepts the `outcome` of the sweeps as far as the `solution` that it led to is one; returns the scales of this one and
+    /// the `earlier` ones, as far as they converged. On the root.
+    fn accept(
+        &self,
+        outcome: &mut Option<SweepOutcome>,
+        solution: &Solution,
+        energy: &EnergyBalance,
+        earlier: Scales,
+    ) -> Scales {
+        let Some(outcome) = outcome else {
+            return earlier;
+        };
+        let is_finite = solution.is_finite() && energy.is_finite();
+        outcome.accept(&solution.certificate, is_finite);
+        outcome.name_unsettled(&unsettled_points(&self.context, outcome));
+        match outcome.status {
+            SweepStatus::Converged => earlier.and(solution.certificate.scales),
+            SweepStatus::NotConverged(_) => earlier,
+        }
+    }
+}
+
+/// Boundaries of clusters, and forces and closed conditions of contact groups, as the tree has them.
+type InTree = (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<(f64, bool)>>);
+
+/// The end of the sweeps, on this rank.
+#[derive(Default)]
+struct Swept {
+    /// Their outcome; on the root.
+    outcome: Option<SweepOutcome>,
+    /// The statuses of the contact groups, where the tree solved for them.
+    statuses: BTreeMap<usize, Statuses>,
+    in_tree: Option<InTree>,
 }
 
 /// The contact points whose status cycles, by contact and node.

@@ -15,6 +15,7 @@ use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::report::log::RunLog;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::step::Loading;
 use crate::tree::fronts::ActiveSetFronts;
 
 /// The operators of a stage, as this rank has them.
@@ -80,6 +81,20 @@ impl Operators {
             interface,
             fronts,
         })
+    }
+
+    /// The parts of the problem of a load step that don't depend on its loads, but for the rigid motions.
+    pub fn loading<'a>(
+        &'a self,
+        context: Context<'a>,
+        analysis: &'a RigidBodyAnalysis,
+    ) -> Loading<'a> {
+        Loading {
+            context,
+            factors: &self.condensed,
+            interface: self.interface.as_ref(),
+            analysis,
+        }
     }
 
     /// The smallest pivot relative to its diagonal entry; on the root.

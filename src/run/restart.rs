@@ -10,6 +10,7 @@ use std::path::Path;
 
 use contact_dd_partition::destination::unfinished;
 use contact_dd_partition::error::InputError;
+use contact_dd_partition::problem::stage::Stage;
 use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
@@ -22,6 +23,7 @@ use crate::contact::pair::PairState;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::{ResultFile, kept as file};
+use crate::plan::Plan;
 use crate::report::totals::StepTotals;
 use crate::settings::Settings;
 use crate::step::state::StepState;
@@ -130,14 +132,29 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
 }
 
 impl Finished {
-    /// The scales of the finished load steps that converged; on the root.
-    pub fn scales(&self) -> Scales {
-        let steps = self.steps.iter().map(|step| step.scales);
-        steps.fold(Scales::default(), Scales::and)
+    /// The state that the next load step of a `stage` starts from: that `from` which another solver handed over, with the
+    /// owners of its plan, if one did. Collective.
+    pub fn start(
+        &mut self,
+        context: &Context<'_>,
+        from: Option<(StepState, Plan)>,
+        stage: &Stage<'_>,
+    ) -> StepState {
+        let state = match from {
+            Some((state, plan)) => state.handed_over(context, &plan),
+            None if self.count > stage.steps.start => self.state(context),
+            None => self.transfer.state(context, stage),
+        };
+        let scales = self.steps.iter().map(|step| step.scales);
+        StepState {
+            // Those of the finished load steps that converged; on the root.
+            scales: scales.fold(Scales::default(), Scales::and),
+            ..state
+        }
     }
 
     /// The state that the load step after the finished ones starts from, in the middle of a stage. Collective.
-    pub fn state(&mut self, context: &Context<'_>) -> StepState {
+    fn state(&mut self, context: &Context<'_>) -> StepState {
         let comm = context.comm;
         let (mut pairs, mut slips, mut energies) = (Vec::new(), Vec::new(), Vec::new());
         let mut statuses = Vec::new();

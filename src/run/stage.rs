@@ -85,15 +85,14 @@ impl Handover {
     }
 }
 
-/// The reason for a handover where a load step ended with `outcome`, which the root has, or failed; `None` where it
-/// converged, or a signal stopped it.
+/// The reason for a handover where a load step ended with an outcome, which the root has, converged or not, or failed;
+/// `None` where it converged, or a signal stopped it.
 pub fn reason_to_hand_over(
-    is_converged: bool,
-    solved: Result<Option<&SweepOutcome>, &Failure>,
+    ended: Result<(bool, Option<&SweepOutcome>), &Failure>,
 ) -> Option<String> {
-    match solved {
-        Ok(_) if is_converged => None,
-        Ok(outcome) => Some(match outcome.map(|outcome| &outcome.status) {
+    match ended {
+        Ok((true, _)) => None,
+        Ok((false, outcome)) => Some(match outcome.map(|outcome| &outcome.status) {
             Some(SweepStatus::NotConverged(why)) => why.clone(),
             _ => String::new(),
         }),
@@ -109,7 +108,7 @@ impl Stages<'_> {
     /// A part that moves freely, or one for which there is no place.
     pub fn check(&self, steps: Range<usize>) -> Result<Checked, Failure> {
         let stage = self.file.catalog().stage(steps, &[]);
-        let choices = self.choices(&stage.catalog)?;
+        let choices = self.choices(&stage.catalog, None)?;
         let parts = self.parts(&stage, &choices, self.settings.check)?;
         self.log.phase("looking for free rigid motions", None);
         let analyses = analyse_steps(&self.context(&stage, &parts), stage.steps.clone(), &[])?;
@@ -125,13 +124,20 @@ impl Stages<'_> {
         })
     }
 
-    /// The choices of what answers for the contact conditions of a stage, the best one first. Collective.
+    /// The choices of the operator for the contact conditions of a stage, the best one first; that of a handover if there
+    /// was one. Collective.
     ///
     /// # Errors
-    /// What is asked for can't be.
-    pub fn choices(&self, catalog: &Catalog) -> Result<Vec<Choice>, Failure> {
-        self.comm
-            .agree(Choice::all(catalog, self.settings.wishes()))
+    /// Wishes that exclude each other.
+    pub fn choices(
+        &self,
+        catalog: &Catalog,
+        handover: Option<&Handover>,
+    ) -> Result<Vec<Choice>, Failure> {
+        match handover {
+            Some(handover) => Ok(vec![handover.choice.clone()]),
+            None => (self.comm).agree(Choice::all(catalog, self.settings.wishes())),
+        }
     }
 
     /// The choice that takes over where a `merging` doesn't lead to a solution, if there is memory for it. Collective.

@@ -16,44 +16,46 @@ use crate::sweep::{SweepOutcome, SweepStatus};
 /// cells are small.
 const SEEN: f64 = 1e-3;
 
-/// The totals of a load step whose `solution` the sweeps' `outcome` led to, by way of so many `linear_solves`.
-pub fn step_totals(
-    (outcome, linear_solves): (SweepOutcome, usize),
-    solution: &Solution,
-    (resultants, energy): (Resultants, EnergyBalance),
-    analysis: &RigidBodyAnalysis,
-    catalog: &Catalog,
-) -> StepTotals {
-    let error = solution.estimate.map(|estimate| estimate.relative());
-    let converged = outcome.status == SweepStatus::Converged;
-    let slides = solution.friction_limit.iter().filter(|_| converged);
-    let slides: Vec<String> = slides.map(|what| at_limit(what)).collect();
-    let strain = (solution.largest_strain).and_then(|s| large_strain(s, catalog));
-    let warnings = [
-        &analysis.motions.warnings[..],
-        &solution.minimum_norm.warnings,
-        &slides,
-        &outcome.notes,
-        &resultants.warnings(),
-        &resultants.warnings_of_mesh(catalog, error),
-        &Vec::from_iter(strain),
-        &Vec::from_iter(energy.warning()),
-    ];
-    StepTotals {
-        active: outcome.totals.active - solution.minimum_norm.opened,
-        certificate: solution.certificate,
-        condition: solution.condition,
-        resultants,
-        energy,
-        estimate: solution.estimate,
-        at_limit: !slides.is_empty(),
-        scales: match converged {
-            true => solution.certificate.scales,
-            false => Scales::default(),
-        },
-        warnings: warnings.concat(),
-        linear_solves,
-        outcome,
+impl StepTotals {
+    /// The totals of a load step whose `solution` the sweeps' `outcome` led to, by way of so many `linear_solves`.
+    pub fn new(
+        (outcome, linear_solves): (SweepOutcome, usize),
+        solution: &Solution,
+        (resultants, energy): (Resultants, EnergyBalance),
+        analysis: &RigidBodyAnalysis,
+        catalog: &Catalog,
+    ) -> Self {
+        let error = solution.estimate.map(|estimate| estimate.relative());
+        let converged = outcome.status == SweepStatus::Converged;
+        let slides = solution.friction_limit.iter().filter(|_| converged);
+        let slides: Vec<String> = slides.map(|what| at_limit(what)).collect();
+        let strain = (solution.largest_strain).and_then(|s| large_strain(s, catalog));
+        let warnings = [
+            &analysis.motions.warnings[..],
+            &solution.minimum_norm.warnings,
+            &slides,
+            &outcome.notes,
+            &resultants.warnings(),
+            &resultants.warnings_of_mesh(catalog, error),
+            &Vec::from_iter(strain),
+            &Vec::from_iter(energy.warning()),
+        ];
+        Self {
+            active: outcome.totals.active - solution.minimum_norm.opened,
+            certificate: solution.certificate,
+            condition: solution.condition,
+            resultants,
+            energy,
+            estimate: solution.estimate,
+            at_limit: !slides.is_empty(),
+            scales: match converged {
+                true => solution.certificate.scales,
+                false => Scales::default(),
+            },
+            warnings: warnings.concat(),
+            linear_solves,
+            outcome,
+        }
     }
 }
 

@@ -12,21 +12,23 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_state::ContactRow;
 use crate::fem::resultants::Resultants;
-use crate::output::report::ReportFile;
+use crate::output::report::{Report, ReportFile};
 use crate::output::vtkhdf::beside::FileBeside;
 use crate::output::vtkhdf::kept::Kept;
 use crate::output::vtkhdf::{Layout, ResultFile};
 use crate::recover::Slips;
 use crate::recover::penetration::probe;
 use crate::recover::solution::Solution;
-use crate::report::Outputs;
+use crate::report::totals::Totals;
 use crate::settings::Settings;
 
-/// The output files, as this rank has them.
+/// The output files, as this rank has them, under temporary names until they are finished.
 #[derive(Debug, Default)]
 pub struct RunFiles {
-    /// Result and report; on the root.
-    pub outputs: Option<Outputs>,
+    /// The results; on the root.
+    pub result: Option<ResultFile>,
+    /// The report, where one is asked for; on the root.
+    report: Option<ReportFile>,
     /// The result file beside the root's, where all ranks may write to it at once.
     beside: Option<FileBeside>,
 }
@@ -44,19 +46,17 @@ impl RunFiles {
     ) -> Result<Self, Failure> {
         let comm = context.comm;
         let layout = layout(context, settings);
-        let create = move |layout: &Layout| -> Result<Outputs, Failure> {
+        let create = move |layout: &Layout| -> Result<_, Failure> {
             let report = settings.report.as_deref().map(ReportFile::create);
-            Ok(Outputs {
-                result: match finished {
-                    None => ResultFile::create(&settings.output, layout)?,
-                    Some(kept) => {
-                        let whole = kept.check(&settings.output);
-                        whole.map_err(|error| Failure::input(format!("--restart: {error}")))?;
-                        ResultFile::resume(&settings.output, layout, kept)?
-                    }
-                },
-                report: report.transpose()?,
-            })
+            let result = match finished {
+                None => ResultFile::create(&settings.output, layout)?,
+                Some(kept) => {
+                    let whole = kept.check(&settings.output);
+                    whole.map_err(|error| Failure::input(format!("--restart: {error}")))?;
+                    ResultFile::resume(&settings.output, layout, kept)?
+                }
+            };
+            Ok((result, report.transpose()?))
         };
         let create = || {
             let created = create(&layout);
@@ -68,23 +68,20 @@ impl RunFiles {
                 )),
             }
         };
-        let outputs = comm.agree(comm.is_root().then(create).transpose())?;
+        let created = comm.agree(comm.is_root().then(create).transpose())?;
+        let (result, report) = created.unzip();
         // A single rank needs nobody beside it.
-        let result = outputs.as_ref().filter(|_| comm.size() > 1);
-        let mut places = result.and_then(|outputs| outputs.result.places());
+        let shared = result.as_ref().filter(|_| comm.size() > 1);
+        let mut places = shared.and_then(ResultFile::places);
         comm.broadcast(&mut places);
         let beside = places
             .and_then(|places| FileBeside::open(&places, &settings.output, &layout, comm.hosts()));
         let is_alone = comm.is_any(beside.is_none());
         Ok(Self {
-            outputs,
+            result,
+            report: report.flatten(),
             beside: beside.filter(|_| !is_alone),
         })
-    }
-
-    /// The result file; on the root.
-    pub fn result(&mut self) -> Option<&mut ResultFile> {
-        self.outputs.as_mut().map(|outputs| &mut outputs.result)
     }
 
     /// Writes the solution of a load step, with rows of the contact points that are `absent`; returns what contacts and
@@ -101,14 +98,30 @@ impl RunFiles {
     ) -> Result<Resultants, Failure> {
         let mut resultants = Resultants::new(context.catalog, solution.reactions.clone());
         let contacts = &mut resultants.contacts;
-        let result = self.outputs.as_mut().map(|outputs| &mut outputs.result);
-        let files = (result, self.beside.as_mut());
+        let files = (self.result.as_mut(), self.beside.as_mut());
         write_solution(context, (solution, slips), files, contacts, absent)?;
         probe(context, &solution.displacement, contacts);
         if context.catalog.plane == Some(PlaneState::Axisymmetric) {
             resultants.sum_around_axis();
         }
         Ok(resultants)
+    }
+
+    /// Finishes the result file and writes the report. On the root.
+    ///
+    /// # Errors
+    /// One of them can't be written.
+    pub fn finish(self, totals: &Totals<'_>, report: &Report) -> Result<(), Failure> {
+        let json = report.to_json();
+        if let Some(mut result) = self.result {
+            let histories = totals.steps.iter().map(|step| &step.outcome.records[..]);
+            result.write_convergence(histories)?;
+            result.finish(&json)?;
+        }
+        if let Some(file) = self.report {
+            file.write(&json)?;
+        }
+        Ok(())
     }
 }
 
