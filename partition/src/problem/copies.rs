@@ -1,4 +1,4 @@
-//! What subdomains must agree on: a node that several have, and that nodes are told apart by tag.
+//! Agreement of subdomains: on the nodes that several have, and on tags that tell nodes apart.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

@@ -55,7 +55,7 @@ impl Digest {
 /// Adds the digest of a whole HDF5 file to it.
 ///
 /// # Errors
-/// What the system said.
+/// The reason that the system gave.
 pub fn append(path: &Path) -> io::Result<()> {
     let mut file = File::options().read(true).append(true).open(path)?;
     let length = file.metadata()?.len();

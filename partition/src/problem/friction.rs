@@ -11,7 +11,7 @@ impl Catalog {
         points.filter(|point| point.law.has_friction()).count()
     }
 
-    /// What friction a contact has, and on how many of its conditions where not on all; `None` without.
+    /// Friction of a contact in words, and on how many of its conditions where not on all; `None` without.
     pub fn friction(&self, contact: usize) -> Option<String> {
         let points = self.points.iter();
         let laws: Vec<LawRow> = points

@@ -4,6 +4,7 @@ mod attribute;
 mod catalog;
 mod contents;
 mod dataset;
+mod entries;
 mod header;
 mod hierarchy;
 mod materials;

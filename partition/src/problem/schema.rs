@@ -86,7 +86,7 @@ pub struct Attribute {
     pub value: &'static str,
 }
 
-/// What letters of shapes count.
+/// Letters of shapes, and the nouns that they count.
 pub const LETTERS: &[(char, &str)] = &[
     ('N', "subdomains"),
     (
@@ -117,6 +117,13 @@ pub const LETTERS: &[(char, &str)] = &[
         'v',
         "components of a strain, 3 in the plane, 4 around an axis, 6 in space",
     ),
+];
+
+/// Optional datasets of which a file has all or none.
+pub const TOGETHER: [&[&str]; 3] = [
+    &["/support/condition", "/support/name"],
+    &["/initial_stress/cell", "/initial_stress/node"],
+    &["/contact/law", "/contact/friction", "/contact/shear_bound"],
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.

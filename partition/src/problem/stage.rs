@@ -68,7 +68,7 @@ impl Catalog {
             && bodies.all(|body| !absent.bodies.contains(&(body as u32)))
     }
 
-    /// What is there in the load steps of a stage. Jumps count from those that points had when they came, `since` by their
+    /// The problem of the load steps of a stage. Jumps count from those that points had when they came, `since` by their
     /// places in this catalog (m); from none where it is empty.
     pub fn stage(&self, steps: Range<usize>, since: &[[f64; 3]]) -> Stage<'_> {
         let k = steps.start;

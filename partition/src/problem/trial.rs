@@ -29,7 +29,7 @@ const AT_ONCE: usize = 64;
 /// The computing time within which each step of reading a small file ends (seconds).
 const PATIENCE: u64 = 1;
 
-/// What a step of reading takes in a debug build, and less than that (bytes in a second).
+/// Rate of reading in a debug build, at least (bytes in a second).
 const SLOWEST: u64 = 20 << 20;
 
 /// The memory that reading a small file takes, and far more (bytes).
@@ -38,7 +38,7 @@ const MEMORY: u64 = 4 << 30;
 /// The memory that reading a large file takes, over its size, and more.
 const MEMORY_OF_SIZE: u64 = 8;
 
-/// How long the wait for the other process is before it is looked at again.
+/// Time between two looks at the other process.
 const PAUSE: Duration = Duration::from_millis(2);
 
 /// Checks that the HDF5 library can read a problem file: by its digest, or by trying. Ends early, without a finding,

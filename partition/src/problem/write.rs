@@ -10,7 +10,7 @@ use toml::Value;
 use super::law::LawRow;
 use super::schema::{Counts, FIELDS};
 use super::strings::{type_of, write_strings};
-use super::{FORMAT, InitialStress, Problem, Subdomain, VERSION, digest, vtkhdf};
+use super::{FORMAT, InitialStress, Problem, Subdomain, SubdomainNode, VERSION, digest, vtkhdf};
 use crate::destination::Destination;
 use crate::error::OutputError;
 use crate::model::PlaneState;
@@ -119,7 +119,7 @@ impl Problem {
         )?;
         let clusters = catalog.hierarchy.clusters.iter();
         if clusters.len() > 0 {
-            datasets.put("/hierarchy/cluster", clusters.map(|&v| i64::from(v)))?;
+            datasets.integers("/hierarchy/cluster", clusters.copied())?;
         }
         let steps = &catalog.steps;
         if !steps.is_empty() {
@@ -148,38 +148,32 @@ impl Problem {
         let offsets = all.iter().flat_map(|s| s.cells.offsets());
         datasets.put("/VTKHDF/Offsets", offsets.map(|&offset| offset as i64))?;
         let nodes = all.iter().flat_map(|s| s.cells.connectivity());
-        datasets.put("/VTKHDF/Connectivity", nodes.map(|&node| i64::from(node)))?;
+        datasets.integers("/VTKHDF/Connectivity", nodes.copied())?;
         let tags = all.iter().flat_map(|s| &s.node_tags);
         datasets.put("/VTKHDF/PointData/GlobalNodeId", tags.copied())?;
         let numbers = all.iter().map(|s| (s.index as i64, s.cells.len()));
         let numbers = numbers.flat_map(|(index, cells)| std::iter::repeat_n(index, cells));
         datasets.put("/VTKHDF/CellData/Subdomain", numbers)?;
         let materials = all.iter().flat_map(|s| &s.cell_material);
-        datasets.put(
-            "/VTKHDF/CellData/Material",
-            materials.map(|&m| i64::from(m)),
-        )
+        datasets.integers("/VTKHDF/CellData/Material", materials.copied())
     }
 
     fn write_conditions(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
         let all = &self.subdomains;
         datasets.offsets("/interface/offset", all.iter().map(|s| s.interface.len()))?;
         let nodes = || all.iter().flat_map(|s: &Subdomain| &s.interface);
-        datasets.put("/interface/node", nodes().map(|n| i64::from(n.node)))?;
-        datasets.put(
-            "/interface/interface",
-            nodes().map(|n| i64::from(n.interface)),
-        )?;
+        datasets.integers("/interface/node", nodes().map(|n| n.node))?;
+        datasets.integers("/interface/interface", nodes().map(|n| n.interface))?;
 
         datasets.offsets("/support/offset", all.iter().map(|s| s.supports.len()))?;
         let rows = || all.iter().flat_map(|s: &Subdomain| &s.supports);
-        datasets.put("/support/node", rows().map(|s| i64::from(s.node)))?;
+        datasets.integers("/support/node", rows().map(|s| s.node))?;
         datasets.vectors("/support/direction", rows().map(|s| &s.direction))?;
         let values = all
             .iter()
             .flat_map(|s| (0..s.supports.len()).map(move |i| s.support(i)));
         datasets.put("/support/value", values.flatten())?;
-        datasets.put("/support/condition", rows().map(|s| i64::from(s.condition)))?;
+        datasets.integers("/support/condition", rows().map(|s| s.condition))?;
         let names = self.catalog.supports.iter().map(String::as_str);
         datasets.strings("/support/name", names)?;
 
@@ -200,7 +194,7 @@ impl Problem {
 
         datasets.offsets("/force/offset", all.iter().map(|s| s.forces.len()))?;
         let rows = || all.iter().flat_map(|s: &Subdomain| &s.forces);
-        datasets.put("/force/node", rows().map(|&(node, _)| i64::from(node)))?;
+        datasets.integers("/force/node", rows().map(|&(node, _)| node))?;
         let values = all
             .iter()
             .flat_map(|s| (0..s.forces.len()).map(move |i| s.force(i)));
@@ -225,19 +219,11 @@ impl Problem {
 
     fn write_probes(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
         let probes = || self.catalog.probes.iter();
-        datasets.put("/probe/contact", probes().map(|p| i64::from(p.contact)))?;
+        datasets.integers("/probe/contact", probes().map(|p| p.contact))?;
         datasets.put("/probe/node", probes().map(|p| p.tag))?;
         datasets.vectors("/probe/normal", probes().map(|p| &p.normal))?;
         datasets.put("/probe/gap", probes().map(|p| p.gap))?;
-        datasets.offsets("/probe/entry_offset", probes().map(|p| p.entries.len()))?;
-        let entries = || probes().flat_map(|p| &p.entries);
-        let subdomains = entries().map(|(at, _)| i64::from(at.subdomain));
-        datasets.put("/probe/entry_subdomain", subdomains)?;
-        datasets.put(
-            "/probe/entry_node",
-            entries().map(|(at, _)| i64::from(at.node)),
-        )?;
-        datasets.put("/probe/entry_weight", entries().map(|&(_, weight)| weight))
+        datasets.entries("/probe", probes().map(|p| &p.entries))
     }
 
     fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
@@ -247,8 +233,8 @@ impl Problem {
         let absent = self.catalog.steps.iter().map(|step| &step.absent.contacts);
         datasets.presence("/steps/contact", self.catalog.contacts.len(), absent)?;
         let points = || self.catalog.points.iter();
-        datasets.put("/contact/contact", points().map(|p| i64::from(p.contact)))?;
-        datasets.put("/contact/place", points().map(|p| i64::from(p.place)))?;
+        datasets.integers("/contact/contact", points().map(|p| p.contact))?;
+        datasets.integers("/contact/place", points().map(|p| p.place))?;
         datasets.put("/contact/gap", points().map(|p| p.gap))?;
         datasets.put("/contact/area", points().map(|p| p.area))?;
         datasets.vectors("/contact/position", points().map(|p| &p.position))?;
@@ -256,15 +242,7 @@ impl Problem {
         datasets.vectors("/contact/normal", points().map(|p| &p.frame.normal))?;
         datasets.put("/contact/node_a", points().map(|p| p.tag_a))?;
         datasets.put("/contact/node_b", points().map(|p| p.tag_b))?;
-        datasets.offsets("/contact/entry_offset", points().map(|p| p.entries.len()))?;
-        let nodes = || points().flat_map(|p| p.entries.iter().map(|(node, _)| node));
-        datasets.put(
-            "/contact/entry_subdomain",
-            nodes().map(|n| i64::from(n.subdomain)),
-        )?;
-        datasets.put("/contact/entry_node", nodes().map(|n| i64::from(n.node)))?;
-        let weights = points().flat_map(|p| p.entries.iter().map(|&(_, weight)| weight));
-        datasets.put("/contact/entry_weight", weights)?;
+        datasets.entries("/contact", points().map(|p| &p.entries))?;
         if !points().any(|p| p.law.has_friction()) {
             return Ok(());
         }
@@ -346,6 +324,29 @@ impl Datasets<'_> {
             end
         });
         self.put(path, std::iter::once(0).chain(ends))
+    }
+
+    /// Writes nodes with weights of a `group`, point by point.
+    fn entries<'v>(
+        &mut self,
+        group: &str,
+        points: impl Iterator<Item = &'v Vec<(SubdomainNode, f64)>> + Clone,
+    ) -> hdf5::Result<()> {
+        let path = |name: &str| format!("{group}/entry_{name}");
+        self.offsets(&path("offset"), points.clone().map(Vec::len))?;
+        let all = points.flatten();
+        let nodes = || all.clone().map(|(node, _)| node);
+        self.integers(&path("subdomain"), nodes().map(|node| node.subdomain))?;
+        self.integers(&path("node"), nodes().map(|node| node.node))?;
+        self.put(&path("weight"), all.clone().map(|&(_, weight)| weight))
+    }
+
+    fn integers<T: Into<i64>>(
+        &mut self,
+        path: &str,
+        values: impl Iterator<Item = T>,
+    ) -> hdf5::Result<()> {
+        self.put(path, values.map(Into::into))
     }
 
     fn strings<'v>(

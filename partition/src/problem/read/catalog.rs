@@ -175,16 +175,9 @@ fn check_each_occurs(
 
 /// Names of the conditions that prescribe displacements; one for all where the file doesn't tell.
 fn read_support_names(contents: &Contents) -> Result<Vec<String>, InputError> {
-    let pair = ["/support/condition", "/support/name"];
-    match pair.map(|path| contents.has(path)) {
-        [true, true] => contents.strings("/support/name"),
-        [false, false] => Ok(vec!["supports".into()]),
-        [has_condition, _] => Err(InputError::new(format!(
-            "dataset {} is missing; expected {} and {} or neither",
-            pair[usize::from(has_condition)],
-            pair[0],
-            pair[1]
-        ))),
+    match contents.has("/support/name") {
+        true => contents.strings("/support/name"),
+        false => Ok(vec!["supports".into()]),
     }
 }
 
@@ -213,24 +206,15 @@ fn read_steps(contents: &Contents) -> Result<Vec<LoadStep>, InputError> {
         .collect())
 }
 
-/// What isn't there of what a letter counts, load step by load step; none where the file doesn't say.
+/// The absent ones of what a letter counts, load step by load step; none where the file doesn't say.
 fn read_absent(contents: &Contents, path: &str, letter: char) -> Result<Vec<Vec<u32>>, InputError> {
     let is_there = contents.all_integers(path)?;
-    let count = contents.count(letter);
-    if !contents.has(path) || count == 0 {
-        return Ok(Vec::new());
-    }
-    let mut steps = Vec::new();
-    for (row, of_step) in is_there.all().chunks(count).enumerate() {
-        if let Some(value) = of_step.iter().find(|value| !matches!(value, 0 | 1)) {
-            let what =
-                format!("{value} says nothing; expected 1 for what is there, 0 for what isn't");
-            return Err(is_there.error(row, &what));
-        }
+    let of_step = |of_step: &[i64]| {
         let absent = (0..).zip(of_step).filter(|(_, value)| **value == 0);
-        steps.push(absent.map(|(number, _)| number).collect());
-    }
-    Ok(steps)
+        absent.map(|(number, _)| number).collect()
+    };
+    let steps = is_there.all().chunks(contents.count(letter).max(1));
+    Ok(steps.map(of_step).collect())
 }
 
 /// Contacts with the numbers of their points.

@@ -1,4 +1,4 @@
-//! What a problem file holds: all datasets of the schema, read by slices.
+//! The content of a problem file: all datasets of the schema, read by slices.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -10,7 +10,7 @@ use super::slice::Slice;
 use crate::error::InputError;
 use crate::model::PlaneState;
 use crate::name;
-use crate::problem::schema::{self, Counts, FIELDS, FREE, Field, Kind, MAY_BE_EMPTY};
+use crate::problem::schema::{self, Counts, FIELDS, FREE, Field, Kind, MAY_BE_EMPTY, TOGETHER};
 use crate::scene::suggest::nearest;
 
 /// The datasets of a file, each of the type and shape that the schema says.
@@ -18,7 +18,7 @@ use crate::scene::suggest::nearest;
 pub(super) struct Contents {
     datasets: BTreeMap<&'static str, Dataset>,
     counts: Counts,
-    /// Where the slices of what a letter counts begin and end, for every letter whose offsets or
+    /// Offsets of the slices of what a letter counts, for every letter whose offsets or
     /// sizes the schema has; all are empty in a group that is.
     offsets: BTreeMap<char, Vec<usize>>,
 }
@@ -56,6 +56,9 @@ impl Contents {
             counts,
             offsets: BTreeMap::new(),
         };
+        for together in TOGETHER {
+            contents.check_together(together)?;
+        }
         for field in FIELDS {
             if let Kind::Offsets(letter) | Kind::Sizes(letter) = field.kind {
                 let offsets = contents.read_offsets(field, letter)?;
@@ -63,6 +66,18 @@ impl Contents {
             }
         }
         Ok(contents)
+    }
+
+    /// Checks that all of some datasets are there, or none.
+    fn check_together(&self, paths: &[&str]) -> Result<(), InputError> {
+        let missing = paths.iter().find(|path| !self.has(path));
+        match missing.filter(|_| paths.iter().any(|path| self.has(path))) {
+            Some(missing) => Err(InputError::new(format!(
+                "dataset {missing} is missing; expected all of {}, or none of them",
+                paths.join(", ")
+            ))),
+            None => Ok(()),
+        }
     }
 
     fn read_offsets(&self, field: &Field, letter: char) -> Result<Vec<usize>, InputError> {
@@ -86,7 +101,7 @@ impl Contents {
         offsets[slices.start]..offsets[slices.end]
     }
 
-    /// How many of what a letter counts each slice has.
+    /// Sizes of the slices of what a letter counts.
     pub fn sizes(&self, letter: char) -> Vec<usize> {
         let ends = self.offsets[&letter].windows(2);
         ends.map(|w| w[1] - w[0]).collect()
@@ -97,7 +112,7 @@ impl Contents {
         self.datasets.contains_key(path)
     }
 
-    /// How many there are of what a letter counts.
+    /// The count behind a letter.
     pub fn count(&self, letter: char) -> usize {
         self.counts.of(letter)
     }
@@ -110,13 +125,12 @@ impl Contents {
         let Some(dataset) = self.datasets.get(path) else {
             return Ok(Slice::new("", 0, 1, Vec::new()));
         };
-        let slice = dataset.slice(rows.clone())?;
-        let (what, count) = match dataset.field.kind {
-            Kind::Indices(what, letter) => (what, self.count(letter)),
-            Kind::Codes(what, count) => (what, count),
-            _ => return Ok(slice),
-        };
-        slice.indices(rows, what, count)?;
+        let slice = dataset.slice(rows)?;
+        match dataset.field.kind {
+            Kind::Indices(what, letter) => slice.check_indices(what, self.count(letter))?,
+            Kind::Codes(what, count) => slice.check_indices(what, count)?,
+            _ => {}
+        }
         Ok(slice)
     }
 

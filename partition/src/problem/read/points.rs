@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use super::contents::Contents;
+use super::entries::Entries;
 use crate::contact_point::{ContactPoint, Law};
 use crate::error::InputError;
 use crate::problem::law::LawRow;
@@ -47,22 +48,12 @@ pub(super) fn read(
 /// The law of every point; none has friction where the file says nothing of it.
 fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
     let rows = 0..contents.count('R');
-    let all = ["/contact/law", "/contact/friction", "/contact/shear_bound"];
-    let missing = all.iter().find(|path| !contents.has(path));
-    match (missing, all.iter().any(|path| contents.has(path))) {
-        (Some(_), false) => return Ok(vec![Law::Frictionless; rows.len()]),
-        (Some(missing), true) => {
-            let [law, friction, bound] = all;
-            return Err(InputError::new(format!(
-                "dataset {missing} is missing; expected {law}, {friction} and {bound}, or none of them"
-            )));
-        }
-        (None, _) => {}
+    if !contents.has("/contact/law") {
+        return Ok(vec![Law::Frictionless; rows.len()]);
     }
-    let [_, friction, bound] = all;
-    let law = contents.integers(all[0], rows.clone())?;
-    let friction = contents.numbers(friction, rows.clone())?;
-    let bound = contents.numbers(bound, rows.clone())?;
+    let law = contents.integers("/contact/law", rows.clone())?;
+    let friction = contents.numbers("/contact/friction", rows.clone())?;
+    let bound = contents.numbers("/contact/shear_bound", rows.clone())?;
     let of_row = |row: usize| {
         let values = LawRow {
             law: law.all()[row],
@@ -80,10 +71,7 @@ fn read_entries(
     contents: &Contents,
     subdomains: &[SubdomainSummary],
 ) -> Result<Vec<Vec<(SubdomainNode, f64)>>, InputError> {
-    let span = 0..contents.count('E');
-    let subdomain = contents.integers("/contact/entry_subdomain", span.clone())?;
-    let node = contents.integers("/contact/entry_node", span.clone())?;
-    let weight = contents.numbers("/contact/entry_weight", span)?;
+    let all = Entries::read(contents, "/contact", 'E', subdomains)?;
     let mut entries = Vec::with_capacity(contents.count('R'));
     let mut named = HashSet::new();
     for group in 0..contents.count('G') {
@@ -91,22 +79,16 @@ fn read_entries(
             let mut list = Vec::new();
             named.clear();
             for at in contents.rows('E', row) {
-                let owner = subdomain.of(at..at + 1)[0] as u32;
-                let summary = &subdomains[owner as usize];
-                if summary.group != Some(group) {
+                let owner = all.owner(at);
+                if subdomains[owner as usize].group != Some(group) {
                     let what = format!("subdomain {owner} isn't in group {group}");
-                    return Err(subdomain.error(at, &what));
+                    return Err(all.subdomain.error(at, &what));
                 }
-                let what = format!("node of subdomain {owner}");
-                let number = node.indices(at..at + 1, &what, summary.nodes)?[0];
-                let named_node = SubdomainNode {
-                    subdomain: owner,
-                    node: number,
-                };
-                if !named.insert(named_node) {
-                    return Err(node.error(at, "the point named the node before"));
+                let entry = all.entry(at)?;
+                if !named.insert(entry.0) {
+                    return Err(all.node.error(at, "the point named the node before"));
                 }
-                list.push((named_node, weight.of(at..at + 1)[0]));
+                list.push(entry);
             }
             if list.iter().all(|&(_, weight)| weight == 0.0) {
                 return Err(InputError::new(format!(
@@ -119,7 +101,7 @@ fn read_entries(
     Ok(entries)
 }
 
-/// What the file says of the nodes of the points elsewhere. What is wrong there is found when subdomains are read.
+/// The nodes of the points in the datasets of Γ and of supports, whose faults are found when subdomains are read.
 fn read_nodes(
     contents: &Contents,
     points: &[ContactPoint<SubdomainNode>],

@@ -1,4 +1,4 @@
-//! How the problem wants to be solved: the attributes of `/settings`, which are what `[solver]` of a
+//! Settings of the solver: the attributes of `/settings`, which are what `[solver]` of a
 //! scene may hold.
 
 use toml::{Table, Value};

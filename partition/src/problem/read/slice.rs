@@ -64,6 +64,11 @@ impl<T> Slice<T> {
 }
 
 impl Slice<i64> {
+    /// Checks that all values are numbers of one of `count` things.
+    pub fn check_indices(&self, what: &str, count: usize) -> Result<(), InputError> {
+        self.check(|&value| index(value, what, count).map(|_| ()))
+    }
+
     /// The values of some of the rows as numbers of one of `count` things.
     pub fn indices(
         &self,
@@ -100,7 +105,7 @@ impl Slice<i64> {
         }
     }
 
-    /// Where what the values count begins and ends; they are positive, their sum is `total`.
+    /// Offsets of what the values count; they are positive, their sum is `total`.
     pub fn running_sum(&self, total: usize, what: &str) -> Result<Vec<usize>, InputError> {
         let mut sums = vec![0];
         let mut sum = 0;

@@ -16,7 +16,7 @@ use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TO
 /// Name of indices of nodes in messages.
 const NODE: &str = "node of its subdomain";
 
-/// What the file says of consecutive subdomains, each value by itself as the schema says.
+/// The datasets of consecutive subdomains, each value by itself as the schema says.
 struct Slices {
     points: Slice<f64>,
     tags: Slice<i64>,
@@ -85,12 +85,6 @@ impl ProblemFile {
         }
         if range.is_empty() {
             return Ok(Vec::new());
-        }
-        let stress = ["/initial_stress/cell", "/initial_stress/node"];
-        if let [true, false] | [false, true] = stress.map(|path| self.contents.has(path)) {
-            return Err(InputError::new(
-                "/initial_stress has one of 'cell' and 'node'; expected both or none",
-            ));
         }
         let slices = Slices::read(self, range.clone())?;
         range.map(|index| self.take(&slices, index)).collect()

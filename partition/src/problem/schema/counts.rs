@@ -1,16 +1,16 @@
-//! What the letters of shapes count in a file.
+//! The counts behind the letters of shapes in a file.
 
 use std::collections::BTreeMap;
 
 use super::{Field, noun};
 use crate::model::PlaneState;
 
-/// How many there are of what letters count.
+/// The counts behind letters.
 #[derive(Clone, Debug, Default)]
 pub struct Counts(BTreeMap<char, usize>);
 
 impl Counts {
-    /// What the dimension of space and the plane state say.
+    /// The counts that follow from the dimension of space and the plane state.
     pub fn new(dim: usize, plane: Option<PlaneState>) -> Self {
         let mut counts = Self::default();
         counts.set('d', dim);
