@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::element::ElementKind;
 
-/// What a corner takes of the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput.
+/// Share of a corner in the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput.
 /// 34, 2012). On triangles of 6 nodes it may be anything below 1/2, on quadrilaterals of 8 above 1/8, too; with
 /// this the dual functions are the least in the mean.
 pub(super) const TAKEN: f64 = 0.2;
@@ -43,7 +43,7 @@ pub(super) struct Blending {
 }
 
 impl Blending {
-    /// That of a facet of a kind, one corner of which may lie on the axis that it goes around: there a line of three
+    /// The blend of a facet of a kind, one corner of which may lie on the axis that it goes around: there a line of three
     /// nodes has ∫ N dS = 0.
     pub fn new(kind: ElementKind, on_axis: Option<usize>) -> Self {
         let takers = match (has_weightless_corners(kind), on_axis) {

@@ -1,4 +1,4 @@
-//! Polygons in a plane, and what two of them have in common.
+//! Polygons in a plane, the intersection of two, and facets that are seen as such.
 
 /// A point of the plane.
 pub(super) type PlanePoint = [f64; 2];
@@ -75,6 +75,33 @@ pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePo
         }
     }
     inside
+}
+
+/// A facet that is seen from another one, as it lies in the plane of that.
+pub(super) struct Seen {
+    /// Its index.
+    pub facet: usize,
+    /// The part of it that is seen.
+    pub outline: Vec<PlanePoint>,
+    /// Distance along the normal in the middle of that (m).
+    pub gap: f64,
+    /// Whether it is the far side of the body that looks.
+    pub is_far_side: bool,
+}
+
+impl Seen {
+    /// Whether something else of `all` lies before its middle, or the body that looks does.
+    pub fn is_hidden(&self, all: &[Self]) -> bool {
+        let x = middle(&self.outline);
+        let hides = |other: &Self| {
+            let is_nearer = match other.is_far_side {
+                true => self.gap < other.gap,
+                false => self.gap.abs() > other.gap.abs(),
+            };
+            is_nearer && other.facet != self.facet && contains(&other.outline, x)
+        };
+        self.is_far_side || all.iter().any(hides)
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What is allowed and all the same is most likely a mistake of the scene: warnings.
+//! Warnings of likely mistakes of a scene that are allowed all the same.
 
 mod strains;
 mod undeclared;

@@ -34,6 +34,5 @@ mod segments;
 mod tests;
 mod weights;
 
-pub(super) use self::foot::{foot, middle};
-pub(super) use self::map::Map;
+pub(super) use self::foot::foot_on;
 pub(super) use self::pairing::{Mortar, pair};

@@ -179,8 +179,8 @@ fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
 /// the part of its tributary area that is of each: that opposite facets of side b, as side a may reach
 /// beyond it.
 ///
-/// Where corners of several bodies meet in a point, two that lie diagonally across share nothing but
-/// that point, and a condition between them would follow from those between neighbours.
+/// Pairs without those of diagonal bodies: of corners of several bodies in a point two that lie diagonally across share
+/// nothing but that point, and a condition between them would follow from those between neighbours.
 fn opposite(a: &SideNode, partners: Vec<u32>, faced: &[Faced]) -> Vec<(u32, f64)> {
     let mut areas: Vec<f64> = vec![0.0; partners.len()];
     for Faced { facet, partners } in faced {

@@ -1,4 +1,4 @@
-//! What a model consists of: materials, supports and contacts.
+//! The parts of a model: materials, supports and contacts.
 
 use crate::contact_point::{ContactPoint, Probe};
 use crate::stiffness::Stiffness;

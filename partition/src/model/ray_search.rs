@@ -1,4 +1,4 @@
-//! What a straight line meets of a surface.
+//! Intersections of a straight line with a surface.
 
 use super::facet_tree::FacetTree;
 use super::surface::Surface;
@@ -46,8 +46,8 @@ impl<'a> Target<'a> {
         self.tree.within(may_hold).collect()
     }
 
-    /// What the line from `start` along the unit vector `direction` meets first, either way but
-    /// no more than `behind` backwards, of what faces it; nodes for which `passes` holds are
+    /// First intersection of the line from `start` along the unit vector `direction`, either way but
+    /// no more than `behind` backwards, with what faces it; nodes for which `passes` holds are
     /// passed by. O(log n) for a surface that isn't parallel to the line.
     pub fn hit(
         &self,

@@ -79,21 +79,21 @@ impl<'a> Skin<'a> {
             if opposite.is_empty() {
                 continue;
             }
-            for seen in View::new(facet, self.mesh).of(&opposite) {
-                let size = facet.shape.size().max(self.facets[seen.facet].shape.size());
-                if seen.gap.abs() > reach(size) {
+            for (seen, gap, measure) in View::new(facet, self.mesh).of(&opposite) {
+                let size = facet.shape.size().max(self.facets[seen].shape.size());
+                if gap.abs() > reach(size) {
                     continue;
                 }
-                let facets = [index.min(seen.facet), index.max(seen.facet)];
-                let found = pairs.entry(facets).or_insert(Facing {
+                let facets = [index.min(seen), index.max(seen)];
+                let found = (pairs.entry(facets)).or_insert(Facing {
                     facets,
-                    gap: seen.gap,
-                    measure: seen.measure,
+                    gap,
+                    measure,
                 });
                 // Of two that aren't parallel each sees the other in its own way.
-                found.measure = found.measure.max(seen.measure);
-                if seen.gap.abs() < found.gap.abs() {
-                    found.gap = seen.gap;
+                found.measure = found.measure.max(measure);
+                if gap.abs() < found.gap.abs() {
+                    found.gap = gap;
                 }
             }
         }

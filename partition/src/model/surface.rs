@@ -54,7 +54,7 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    /// How far chords that turn by the angle stand off an arc: of an arc over the chord h that turns by α the height is
+    /// Sagitta of chords that turn by the angle: of an arc over the chord h that turns by α the height is
     /// h α/8 (m).
     fn height(&self) -> f64 {
         self.size * self.angle / 8.0
@@ -182,7 +182,7 @@ impl Surface {
         Self::largest_height(turns.iter().filter(|turn| turn.is_straight()))
     }
 
-    /// How far straight facets stand off a curve that goes on over them, at most: it turns at two ends of a facet, where a
+    /// Largest sagitta of straight facets of a curve that goes on over them: it turns at two ends of a facet, where a
     /// corner between two flat parts turns at one (m).
     pub fn stands_off_curve(&self) -> f64 {
         let mut heights = vec![[0.0_f64; 2]; self.facets.len()];

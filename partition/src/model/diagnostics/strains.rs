@@ -203,7 +203,8 @@ impl Diagnostics<'_> {
             .fold(0.0, |most: f64, size| most.max(size.abs()))
     }
 
-    /// What a load makes whose size at a place of a side is `size`; values that aren't finite have been refused.
+    /// The strain that a load makes whose size at a place of a side is `size`; values that aren't finite have been
+    /// refused.
     fn of_side(
         &self,
         label: &str,

@@ -16,7 +16,7 @@ use crate::contact_point::ContactPoint;
 pub(super) struct Carried {
     /// A contact point for every node that carries a multiplier, along the side.
     pub points: Vec<ContactPoint<u32>>,
-    /// How much is lost of where the sides are nearest to each other (m): the least of the mean gaps over the facets
+    /// Loss of the least gap between the sides (m): the least of the mean gaps over the facets
     /// around nodes, over the least gap that there is. So far they can go through each other before the first point
     /// closes.
     pub unseen: f64,

@@ -1,4 +1,4 @@
-//! What of side b covers a facet of side a, piece by piece, and the integrals over it.
+//! The cover of a facet of side a by side b, piece by piece, and the integrals over it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -32,7 +32,7 @@ pub(super) struct Sample {
     pub gap: f64,
 }
 
-/// What a facet of side a and one of side b have in common: the integrals from which those with any weight
+/// The overlap of a facet of side a and one of side b: the integrals from which those with any weight
 /// ψ = Σ c_i N_i follow.
 pub(super) struct Overlap {
     /// Facet of side b.

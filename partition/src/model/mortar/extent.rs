@@ -1,4 +1,4 @@
-//! How far what covers a facet extends on it.
+//! Extent of the cover of a facet.
 
 use nalgebra::DMatrix;
 

@@ -1,6 +1,7 @@
-//! Where a line meets a facet of space.
+//! The foot of a line on a facet of space.
 
 use super::super::clip::PlanePoint;
+use super::super::surface::SurfaceFacet;
 use super::map::{Map, Xi};
 use crate::contact_point::LocalFrame;
 use crate::element::definition::Domain;
@@ -14,7 +15,7 @@ pub(super) const ROUND_OFF: f64 = 1e-9;
 const FAR: f64 = 4.0;
 
 /// ξ in the middle of a facet.
-pub(in crate::model) fn middle(domain: Domain) -> Xi {
+pub(super) fn middle(domain: Domain) -> Xi {
     match domain {
         Domain::Triangle => [1.0 / 3.0; 2],
         _ => [0.0; 2],
@@ -30,13 +31,9 @@ pub(super) fn solve(j: [[f64; 2]; 2], r: PlanePoint) -> PlanePoint {
     ]
 }
 
-/// Where the line through `x` along the unit vector `normal` meets a facet or, a little beyond its edges, what
+/// The foot of the line through `x` along the unit vector `normal` on a facet or, a little beyond its edges, on what
 /// it goes on as: η, and the distance (m). Newton's method from `start`.
-pub(in crate::model) fn foot(
-    facet: &Map,
-    [x, normal]: [[f64; 3]; 2],
-    start: Xi,
-) -> Option<(Xi, f64)> {
+pub(super) fn foot(facet: &Map, [x, normal]: [[f64; 3]; 2], start: Xi) -> Option<(Xi, f64)> {
     let tangents = LocalFrame::new(normal).tangents;
     let mut eta = start;
     for _ in 0..STEPS {
@@ -55,4 +52,13 @@ pub(in crate::model) fn foot(
         }
     }
     None
+}
+
+/// The same on a facet of a surface, from its middle on.
+pub(in crate::model) fn foot_on(facet: &SurfaceFacet, line: [[f64; 3]; 2]) -> Option<(Xi, f64)> {
+    foot(
+        &Map::new(facet.kind, &facet.at),
+        line,
+        middle(facet.kind.domain()),
+    )
 }

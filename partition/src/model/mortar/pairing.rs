@@ -6,7 +6,7 @@ use super::probes::probes;
 use crate::contact_point::{ContactPoint, Probe};
 use crate::magnitude::short;
 
-/// What the facets of curves stand off, of both sides, in multiples of the larger one: gaps that are no larger are those of
+/// Sagitta of the facets of curves, of both sides, in multiples of the larger one: gaps that are no larger are those of
 /// sides that fit each other.
 const FITTING: f64 = 2.0;
 

@@ -1,4 +1,4 @@
-//! What of side b covers a facet of side a in space: polygons, cut out in flat coordinates on the facet
+//! The cover of a facet of side a by side b in space: polygons, cut out in flat coordinates on the facet
 //! (Puso and Laursen 2004; Popp, Gitterle, Gee and Wall 2010).
 //!
 //! All facets of side b are seen along the same averaged normals, so that those with a common edge neither
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 
-use super::super::clip::{PlanePoint, area, clip, contains, middle, triangles};
+use super::super::clip::{PlanePoint, Seen, area, clip, middle, triangles};
 use super::super::surface::SurfaceFacet;
 use super::chart::{Chart, aside};
 use super::cover::{BEYOND, Cover, Opposite, Overlap, Pieces};
@@ -28,13 +28,6 @@ const PARTS: f64 = 8.0;
 const AFFINE: f64 = 1e-6;
 /// Degree beyond that of the shape functions' products of facets that aren't flat, which nothing integrates exactly.
 const BEYOND_CURVED: usize = 2;
-/// A facet of side b and what of it is seen from a facet of side a.
-struct Piece {
-    facet: usize,
-    polygon: Vec<PlanePoint>,
-    /// Distance in the middle (m).
-    distance: f64,
-}
 
 /// Facets that cover a facet of side a, and whether some of them face the same way.
 pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
@@ -49,30 +42,31 @@ pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
         if faces {
             shadow.reverse();
         }
-        let polygon = clip(&shadow, &chart.outline);
+        let outline = clip(&shadow, &chart.outline);
         // False of what isn't a number, too.
-        let is_seen = area(&polygon) > SLIVER * chart.area;
+        let is_seen = area(&outline) > SLIVER * chart.area;
         if !is_seen {
             continue;
         }
-        let line = chart.line(chart.xi(middle(&polygon), center(field.facet())));
-        let Some((_, distance)) = foot(&opposite.maps[candidate], line, center(facet)) else {
+        let line = chart.line(chart.xi(middle(&outline), center(field.facet())));
+        let Some((_, gap)) = foot(&opposite.maps[candidate], line, center(facet)) else {
             continue;
         };
-        if distance < -opposite.behind {
+        if gap < -opposite.behind {
             continue;
         }
         match faces {
-            true => pieces.push(Piece {
+            true => pieces.push(Seen {
                 facet: candidate,
-                polygon,
-                distance,
+                outline,
+                gap,
+                is_far_side: false,
             }),
             false => any_back_facing = true,
         }
     }
     let mut cover = Cover::new(field.facet().nodes.len());
-    let seen = pieces.iter().filter(|piece| !is_hidden(piece, &pieces));
+    let seen = pieces.iter().filter(|piece| !piece.is_hidden(&pieces));
     let overlaps = seen.map(|piece| integrate(&chart, field.facet(), piece, opposite, &mut cover));
     cover.pieces = Pieces::Overlaps(overlaps.collect());
     (cover, any_back_facing)
@@ -149,21 +143,11 @@ impl<'a> Shadows<'a> {
     }
 }
 
-/// Whether something else lies before the middle of a piece.
-fn is_hidden(piece: &Piece, pieces: &[Piece]) -> bool {
-    let x = middle(&piece.polygon);
-    pieces.iter().any(|other| {
-        other.facet != piece.facet
-            && other.distance.abs() < piece.distance.abs()
-            && contains(&other.polygon, x)
-    })
-}
-
 /// Adds a piece, which a facet of side b covers, to `cover`.
 fn integrate(
     chart: &Chart,
     facet: &SurfaceFacet,
-    piece: &Piece,
+    piece: &Seen,
     opposite: &Opposite,
     cover: &mut Cover,
 ) -> Overlap {
@@ -181,14 +165,14 @@ fn integrate(
         (eta, gap) = foot(&opposite.maps[piece.facet], chart.line(xi), eta)?;
         Some((xi, eta, gap))
     };
-    for &corner in &piece.polygon {
+    for &corner in &piece.outline {
         if let Some((xi, _, gap)) = across(corner) {
             cover.extent.include(xi);
             cover.least_gap = cover.least_gap.min(gap);
         }
     }
     let rule = &opposite.rules[degree(facet, other)];
-    for [p, q, r] in triangles(&piece.polygon) {
+    for [p, q, r] in triangles(&piece.outline) {
         let double = 2.0 * area(&[p, q, r]);
         for &([s, t, _], weight) in rule {
             let at = [0, 1].map(|k| p[k] + s * (q[k] - p[k]) + t * (r[k] - p[k]));

@@ -1,11 +1,10 @@
-//! Where the side without conditions is looked at for penetration.
+//! Probes: nodes of the side without conditions that are looked at for penetration.
 
 use super::super::ray_search::{Hit, Target};
 use super::super::sides::{SideNode, Sides};
 use super::super::surface::SurfaceFacet;
 use super::field::{ahead, beside};
-use super::foot::{foot, middle};
-use super::map::Map;
+use super::foot::foot_on;
 use super::root::root;
 use crate::contact_point::Probe;
 use crate::element::geometry::{difference, dot};
@@ -50,8 +49,7 @@ fn met(facet: &SurfaceFacet, node: &SideNode) -> Option<(Vec<f64>, f64)> {
             Some((shape, ahead(facet, x, normal, eta)))
         }
         _ => {
-            let map = Map::new(facet.kind, &facet.at);
-            let ([s, t], gap) = foot(&map, [x, normal], middle(facet.kind.domain()))?;
+            let ([s, t], gap) = foot_on(facet, [x, normal])?;
             Some((facet.kind.shape([s, t, 0.0]), gap))
         }
     }

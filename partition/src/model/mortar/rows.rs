@@ -1,4 +1,4 @@
-//! What a multiplier's weight covers, gathered facet by facet, and the contact point that comes of it.
+//! The cover of a multiplier's weight, gathered facet by facet, and the contact point that comes of it.
 
 use std::collections::HashMap;
 
@@ -205,7 +205,7 @@ impl Row {
         ]
     }
 
-    /// Where the force on side a acts: beside node `a` where others hand over to it.
+    /// Point at which the force on side a acts: beside node `a` where others hand over to it.
     fn force_point(&self, a: &SideNode, mesh: &Mesh) -> [f64; 3] {
         (self.side_a.iter()).fold(a.position, |at, &(node, value)| {
             let way = difference(mesh.points[node as usize], a.position);

@@ -1,4 +1,4 @@
-//! What of side b covers a line of side a: segments between the places onto which ends of facets of side b are
+//! The cover of a line of side a by side b: segments between the places onto which ends of facets of side b are
 //! projected.
 
 use super::super::surface::SurfaceFacet;

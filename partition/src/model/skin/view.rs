@@ -1,7 +1,7 @@
-//! What a facet of the boundary sees along its normal.
+//! The view of a facet of the boundary along its normal.
 
-use super::super::clip::{PlanePoint, area, clip, contains, middle};
-use super::super::mortar::{Map, foot, middle as middle_of};
+use super::super::clip::{PlanePoint, Seen, area, clip, middle};
+use super::super::mortar::foot_on;
 use super::super::surface::SurfaceFacet;
 use super::facet::{ROUND_OFF, STANDING_OFF, SkinFacet};
 use crate::contact_point::LocalFrame;
@@ -15,19 +15,6 @@ const LEAST: f64 = 1e-6;
 /// Overlap relative to the thinner of two cells behind facets from which on it is the material of the body that lies
 /// between them, however wide the cells are.
 const MATERIAL: f64 = 0.5;
-
-/// A facet that is seen.
-pub(super) struct Seen {
-    /// Index.
-    pub facet: usize,
-    /// Distance along the normal in the middle of what is seen of it (m).
-    pub gap: f64,
-    /// Length or area of that.
-    pub measure: f64,
-    outline: Vec<PlanePoint>,
-    /// Whether it is the far side of the body itself.
-    is_far_side: bool,
-}
 
 /// The plane of a facet, in which others are cut out. A line is a strip as wide as it is long, so that there is one way
 /// for both dimensions.
@@ -58,16 +45,25 @@ impl<'a> View<'a> {
         view
     }
 
-    /// What it sees of `opposite` facets, which look its way, each with its index, with nothing between.
-    pub fn of(&self, opposite: &[(usize, &SkinFacet)]) -> Vec<Seen> {
+    /// Its view of `opposite` facets, which look its way, each with its index, with nothing between: index, distance along
+    /// the normal in the middle of the visible part, length or area of that (m).
+    pub fn of(&self, opposite: &[(usize, &SkinFacet)]) -> Vec<(usize, f64, f64)> {
         let seen = opposite
             .iter()
             .filter_map(|(index, other)| self.seen(*index, other));
-        let mut all: Vec<Seen> = seen.collect();
-        let is_visible: Vec<bool> = all.iter().map(|seen| !is_hidden(seen, &all)).collect();
-        let mut is_visible = is_visible.into_iter();
-        all.retain(|_| is_visible.next() == Some(true));
-        all
+        let all: Vec<Seen> = seen.collect();
+        let visible = all.iter().filter(|seen| !seen.is_hidden(&all));
+        visible
+            .map(|seen| (seen.facet, seen.gap, self.measure(&seen.outline)))
+            .collect()
+    }
+
+    /// The length of a part of a strip, or the area of that of a face.
+    fn measure(&self, outline: &[PlanePoint]) -> f64 {
+        match self.width > 0.0 {
+            true => area(outline) / self.width,
+            false => area(outline),
+        }
     }
 
     /// The visible part of another facet.
@@ -76,9 +72,8 @@ impl<'a> View<'a> {
         let mut shadow = self.flat(shape);
         shadow.reverse();
         let outline = clip(&shadow, &self.outline);
-        let common = area(&outline);
         // False of what isn't a number, too.
-        let is_seen = common > LEAST * area(&self.outline).min(area(&shadow));
+        let is_seen = area(&outline) > LEAST * area(&self.outline).min(area(&shadow));
         if !is_seen {
             return None;
         }
@@ -87,11 +82,6 @@ impl<'a> View<'a> {
         Some(Seen {
             facet: index,
             gap,
-            measure: if self.width > 0.0 {
-                common / self.width
-            } else {
-                common
-            },
             outline,
             is_far_side: self.facet.piece == other.piece && self.is_beyond(other, gap),
         })
@@ -151,28 +141,12 @@ impl<'a> View<'a> {
         let crossing = shape.kind.crossing(&shape.at, x, normal);
         let beyond = || {
             let is_curved = shape.kind.dim() > 1 && !shape.kind.is_linear();
-            let map = is_curved.then(|| Map::new(shape.kind, &shape.at))?;
-            let (_, way) = foot(&map, [x, normal], middle_of(shape.kind.domain()))?;
-            Some(way)
+            let foot = is_curved.then(|| foot_on(shape, [x, normal])).flatten();
+            foot.map(|(_, way)| way)
         };
         crossing.or_else(beyond).unwrap_or_else(|| {
             let to_plane = dot(difference(shape.at[0], x), shape.normal);
             to_plane / dot(normal, shape.normal)
         })
     }
-}
-
-/// Whether something else lies before the middle of what is seen of a facet, or the body itself does.
-fn is_hidden(seen: &Seen, all: &[Seen]) -> bool {
-    if seen.is_far_side {
-        return true;
-    }
-    let x = middle(&seen.outline);
-    all.iter().any(|other| {
-        let is_nearer = match other.is_far_side {
-            true => seen.gap < other.gap,
-            false => seen.gap.abs() > other.gap.abs(),
-        };
-        is_nearer && other.facet != seen.facet && contains(&other.outline, x)
-    })
 }

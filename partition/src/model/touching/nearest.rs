@@ -1,4 +1,4 @@
-//! How far bodies are apart between which no contact was found.
+//! Distance of bodies between which no contact was found.
 
 use rstar::RTree;
 use rstar::primitives::GeomWithData;

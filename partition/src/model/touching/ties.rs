@@ -6,7 +6,7 @@ use crate::mesh::topology::Topology;
 use crate::model::bodies::Bodies;
 use crate::scene::contact::Between;
 
-/// How many facets two bodies share the nodes of, by their numbers, the smaller first.
+/// Number of facets of which two bodies share the nodes, by the numbers of the bodies, the smaller first.
 pub(super) struct Ties(BTreeMap<[u32; 2], usize>);
 
 impl Ties {
