@@ -75,16 +75,9 @@ impl Bddc {
     ) -> Result<Self, Failure> {
         let Context { comm, plan, .. } = *context;
         let owners = plan.owners_of(&plan.merge_roots);
-        let mut dofs: Vec<Vec<InterfaceDof>> = Vec::new();
-        comm.gather(
-            &owners,
-            |c| {
-                clusters
-                    .get(&plan.merge_roots[c])
-                    .map(|cluster| cluster.dofs.clone())
-            },
-            |_, of_cluster| dofs.extend(of_cluster),
-        );
+        let own = |c: usize| Some(clusters.get(&plan.merge_roots[c])?.dofs.clone());
+        let dofs = comm.gathered(&owners, own).into_iter();
+        let mut dofs: Vec<Vec<InterfaceDof>> = dofs.flatten().collect();
         comm.broadcast(&mut dofs);
         let numbers: Vec<usize> = (0..plan.groups.len())
             .filter(|&g| plan.is_above_merge_roots(plan.groups[g].node))
@@ -94,15 +87,10 @@ impl Bddc {
             .filter_map(|g| Some((*g, context.groups.get(g)?)));
         let groups = own.map(|(g, group)| Ok((g, GroupBetween::new(context, g, group)?)));
         let groups: BTreeMap<usize, GroupBetween> = comm.agree(groups.collect())?;
-        let mut of_groups: Vec<Vec<InterfaceDof>> = Vec::new();
         let group_owners: Vec<usize> = (numbers.iter())
             .map(|&g| plan.node_owners[plan.groups[g].node])
             .collect();
-        comm.gather(
-            &group_owners,
-            |i| groups[&numbers[i]].dofs(),
-            |_, of_group| of_groups.push(of_group),
-        );
+        let mut of_groups = comm.gathered(&group_owners, |i| groups[&numbers[i]].dofs());
         comm.broadcast(&mut of_groups);
         let between = between(&dofs, numbers.into_iter().zip(group_owners).zip(of_groups));
         Ok(Self {
@@ -184,18 +172,9 @@ impl Bddc {
         let (before, changed) = self.classify(context, touched, renewed);
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
-        let placement = |c: usize| {
-            Placement::new(
-                c,
-                &clusters[&plan.merge_roots[c]],
-                &self.classes,
-                &self.ties,
-            )
-        };
-        let shared = |c: usize| {
-            let cluster = &clusters[&plan.merge_roots[c]];
-            Shared::new(cluster, placement(c), (&sprung, spring), par)
-        };
+        let cluster = |c: usize| &clusters[&plan.merge_roots[c]];
+        let placement = |c| Placement::new(c, cluster(c), &self.classes, &self.ties);
+        let shared = |c| Shared::new(cluster(c), placement(c), (&sprung, spring), par);
         let made = self.made(&before, &changed, renewed);
         let own = self.owners.iter().enumerate();
         let own = own.filter(|(_, owner)| **owner == comm.rank());
@@ -207,16 +186,11 @@ impl Bddc {
             }
             let sides = match self.level {
                 PreconditionerLevel::Diagonals => {
-                    let diagonal = &clusters[&plan.merge_roots[c]].diagonal;
-                    Ok(placement(c).sides(diagonal, is_made))
+                    Ok(placement(c).sides(&cluster(c).diagonal, is_made))
                 }
-                _ => shared(c).and_then(|(shared, s)| {
-                    shared.sides(
-                        &s,
-                        is_made,
-                        self.level == PreconditionerLevel::Energies,
-                        par,
-                    )
+                level => shared(c).and_then(|(shared, s)| {
+                    let is_looked_into = level == PreconditionerLevel::Energies;
+                    shared.sides(&s, is_made, is_looked_into, par)
                 }),
             };
             Ok((c, sides.map_err(moves)?))
@@ -276,7 +250,7 @@ impl Bddc {
         (std::mem::replace(&mut self.classes, classes), changed)
     }
 
-    /// What is to become of a preconditioner that is too bad, or can't be made: classes are looked into, and where that
+    /// Improves a preconditioner that is too bad, or can't be made: classes are looked into, and where that
     /// was in vain it is to be held, and as good as it is. Returns whether there was anything left to do.
     pub fn look_deeper(&mut self) -> bool {
         let Some(deeper) = self.level.next() else {
@@ -316,15 +290,10 @@ impl Bddc {
         self.groups.get(&g).map(|group| &group.open)
     }
 
-    /// What closed conditions tie, on all ranks. Collective.
+    /// The ties of closed conditions, on all ranks. Collective.
     fn ties(&self, comm: &Comm) -> Ties {
-        let mut all = Vec::new();
-        comm.gather(
-            &self.group_owners(),
-            |i| self.groups[&self.between[i].number].ties(),
-            |_, ties| all.push(ties),
-        );
-        let mut ties = Ties::join(all);
+        let of_group = |i: usize| self.groups[&self.between[i].number].ties();
+        let mut ties = Ties::join(comm.gathered(&self.group_owners(), of_group));
         comm.broadcast(&mut ties);
         ties
     }

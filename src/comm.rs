@@ -82,7 +82,7 @@ impl Comm {
 
     /// Makes the failure of the lowest failing rank the result of all. Collective.
     ///
-    /// Where others have no failure its message ends with the rank and the phase.
+    /// Its message ends with the rank and the phase where others have no failure.
     ///
     /// # Errors
     /// The failure that the ranks agreed on.

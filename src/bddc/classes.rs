@@ -30,13 +30,13 @@ pub struct Class {
 
 /// Combinations of the unknowns of a class of two clusters: those that both have, then those that one of them has.
 ///
-/// Where a closed contact condition has put displacements of another cluster in the place of one of its own, a cluster
-/// has only as many combinations of them as it has conditions.
+/// Classes under closed contact conditions: with displacements of another cluster in the place of one of its own, a
+/// cluster has only as many combinations of them as it has conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
     /// The new unknowns, a column each.
     pub q: Mat<f64>,
-    /// Where those of both, of the first and of the second cluster begin and end.
+    /// Bounds of the unknowns of both, of the first and of the second cluster.
     pub ends: [usize; 4],
 }
 

@@ -84,7 +84,7 @@ impl GroupBetween {
         self.replaced.iter().map(constant).collect()
     }
 
-    /// What `forces` on its jumps make of the loads on its unknowns, −Bᵀλ.
+    /// Loads −Bᵀλ of `forces` on its jumps.
     pub fn loads_of(&self, forces: &[f64]) -> Vec<(InterfaceDof, f64)> {
         let acting = forces.iter().zip(&self.terms).filter(|(f, _)| **f != 0.0);
         let loads = acting.flat_map(|(f, terms)| terms.iter().map(move |&(dof, c)| (dof, -c * f)));
@@ -114,7 +114,7 @@ impl GroupBetween {
     }
 }
 
-/// What closed conditions tie, on all ranks.
+/// Ties of closed conditions, on all ranks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ties {
     /// Tied displacements and what is in their place, but for constants, group by group up the hierarchy: what a group
@@ -152,7 +152,7 @@ impl Ties {
         self.resolved.get(dof)
     }
 
-    /// What is in the place of an unknown: itself where it isn't tied.
+    /// The terms in the place of an unknown: itself where it isn't tied.
     pub fn terms(&self, dof: &InterfaceDof) -> Terms {
         let terms = self.tied(dof);
         terms.cloned().unwrap_or_else(|| vec![(*dof, 1.0)])

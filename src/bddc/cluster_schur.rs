@@ -1,4 +1,4 @@
-//! What a cluster is to others.
+//! The Schur complement of a cluster.
 
 use crate::schur::condensed::{Condensed, InterfaceDof};
 use crate::schur::symmetric::PackedSymmetric;

@@ -48,7 +48,7 @@ impl Part {
 #[derive(Debug)]
 struct Front {
     factor: Trapezoid<f64>,
-    /// Where the unknowns of each child are, those that are eliminated first.
+    /// Places of the unknowns of each child, those that are eliminated first.
     places: Vec<Vec<usize>>,
     /// The smallest pivot relative to its diagonal entry.
     smallest_pivot: f64,
@@ -113,7 +113,7 @@ pub struct Coarse {
     nodes: Vec<usize>,
     /// The fronts of this rank.
     fronts: BTreeMap<usize, Front>,
-    /// What clusters and nodes leave, at the owner of the node above.
+    /// The coarse matrices of clusters and nodes, at the owner of the node above.
     parts: BTreeMap<usize, Part>,
     /// The share of the diagonal that is added; none before the first factorization.
     share: Option<f64>,
@@ -321,7 +321,7 @@ mod tests {
         }
     }
 
-    /// What is left to these `classes`, in this order, and where they are among all.
+    /// The coarse unknowns left to these `classes`, in this order, and their places among all.
     fn part(classes: &[usize]) -> (Part, Mat<f64>, Vec<usize>) {
         let places: Vec<usize> = classes.iter().flat_map(|&k| UNKNOWNS[k].clone()).collect();
         let n = places.len();

@@ -57,7 +57,7 @@ enum Share {
 pub enum Side {
     /// The stiffness of each unknown.
     Diagonal(#[serde(with = "crate::bytes")] Vec<f64>),
-    /// Where all other unknowns are held, and where they are free.
+    /// With all other unknowns held, and with them free.
     Whole {
         /// S_FF.
         #[serde(with = "crate::bytes::symmetric")]

@@ -78,8 +78,8 @@ impl Shared {
         Ok((shared, s))
     }
 
-    /// What each class that `is_chosen`, by its place, is where all else that is shared is held, and, where it
-    /// `is_looked_into`, where all else is free.
+    /// The Schur complement of each class that `is_chosen`, by its place, with all else that is shared held, and, where
+    /// it `is_looked_into`, with all else free.
     pub fn sides(
         &self,
         s: &Mat<f64>,
@@ -194,7 +194,7 @@ pub struct Local {
     pub shared: Shared,
     /// The basis and the scaling of every class.
     bases: Vec<Basis>,
-    /// Where [others | coarse] are found.
+    /// Places of [others | coarse].
     order: Vec<usize>,
     others: Others,
 }
@@ -285,7 +285,7 @@ impl Local {
         y.split_off(self.own())
     }
 
-    /// What the cluster, whose S is `s`, and its springs exert where its unknowns are x.
+    /// The forces (S + springs) x of the cluster, whose S is `s`.
     pub fn forces(&self, s: &PackedSymmetric, x: &[f64]) -> Vec<f64> {
         let mut y = s.multiply(x);
         let springs = self.shared.springs.iter().zip(x);

@@ -1,4 +1,4 @@
-//! How rigid motions move the unknowns that clusters share.
+//! Rigid motions on the unknowns that clusters share.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ use crate::schur::condensed::InterfaceDof;
 /// Part of a motion that counts as none beside the largest one.
 const DEPENDENT: f64 = 1e-3;
 
-/// Where the nodes are that clusters share, and along which axes their unknowns move them, on all ranks.
+/// Positions of the nodes that clusters share, and the axes of their unknowns, on all ranks.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SharedNodes {
     dim: usize,

@@ -1,4 +1,4 @@
-//! Where the unknowns of a cluster are found: [own | shared], what it shares class after class.
+//! Places of the unknowns of a cluster: [own | shared], what it shares class after class.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -12,11 +12,11 @@ use crate::schur::condensed::InterfaceDof;
 /// The unknowns of a cluster as [own | shared].
 #[derive(Debug)]
 pub struct Placement {
-    /// What each unknown of the cluster is in terms of these, but for constants.
+    /// Each unknown of the cluster in terms of these, but for constants.
     pub terms: Vec<Vec<(usize, f64)>>,
     /// Number of own ones.
     pub own: usize,
-    /// Where its classes are among those that it shares.
+    /// Places of its classes among those that it shares.
     pub ranges: Vec<Range<usize>>,
 }
 
@@ -73,7 +73,7 @@ impl Placement {
         self.own + self.ranges.last().map_or(0, |last| last.end)
     }
 
-    /// What each class that `is_chosen`, by its place, is by the `diagonal` of the cluster.
+    /// The stiffness of each class that `is_chosen`, by its place, from the `diagonal` of the cluster.
     pub fn sides(&self, diagonal: &[f64], is_chosen: impl Fn(usize) -> bool) -> Vec<Option<Side>> {
         let mut of_unknowns = vec![0.0; self.size()];
         for (terms, d) in self.terms.iter().zip(diagonal) {

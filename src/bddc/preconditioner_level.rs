@@ -1,6 +1,6 @@
-//! How far one goes to make a preconditioner that is good, or that can be made at all.
+//! Levels of the preconditioner: from cheap ones to those that are good, or that can be made at all.
 
-/// What is made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
+/// Classes that are made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PreconditionerLevel {
     /// The rigid motions of classes, of which clusters have shares as their diagonals say, in single precision.
@@ -14,7 +14,7 @@ pub enum PreconditionerLevel {
 }
 
 impl PreconditionerLevel {
-    /// Where one begins. In the plane clusters share so little that all of it can be looked at.
+    /// The first level. In the plane clusters share so little that all of it can be looked at.
     pub fn first(dim: usize) -> Self {
         match dim {
             3 => Self::Diagonals,

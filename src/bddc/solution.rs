@@ -25,10 +25,10 @@ pub struct ClusterLoads<'a> {
     pub forces: &'a BTreeMap<usize, Vec<f64>>,
 }
 
-/// How far a solution is iterated.
+/// Accuracy to which a solution is iterated.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy<'a> {
-    /// What the error in the energy norm is to be below, relative to that of the solution, about.
+    /// Bound of the error in the energy norm, relative to that of the solution, about.
     pub tolerance: f64,
     /// The unknowns of every cluster, by its node, in a solution that isn't far.
     pub start: Option<&'a BTreeMap<usize, Vec<f64>>>,
@@ -117,7 +117,8 @@ impl Bddc {
         }
     }
 
-    /// What clusters share for their parts of a load, the number of iterations and whether they sufficed. Collective.
+    /// The shared unknowns for the clusters' parts of a load, the number of iterations and whether they sufficed.
+    /// Collective.
     fn iterate(
         &self,
         context: &Context<'_>,
@@ -184,7 +185,7 @@ impl Bddc {
         start
     }
 
-    /// What forces on the jumps of the contact groups of this rank load clusters with, on all ranks: the first that has
+    /// Loads on clusters of forces on the jumps of the contact groups of this rank, on all ranks: the first that has
     /// an unknown, and its place there. Collective.
     fn loads_of(
         &self,
@@ -212,21 +213,17 @@ impl Bddc {
         loads
     }
 
-    /// What tied displacements are beside the terms of others, on all ranks. Collective.
+    /// The constants of tied displacements beside the terms of others, on all ranks. Collective.
     fn constants(
         &self,
         comm: &Comm,
         values: &BTreeMap<usize, Vec<f64>>,
     ) -> BTreeMap<InterfaceDof, f64> {
-        let mut constants = Vec::new();
-        comm.gather(
-            &self.group_owners(),
-            |i| {
-                let number = self.between[i].number;
-                self.groups[&number].constants(&values[&number])
-            },
-            |_, of_group| constants.extend(of_group),
-        );
+        let of_group = |i: usize| {
+            let number = self.between[i].number;
+            self.groups[&number].constants(&values[&number])
+        };
+        let mut constants = comm.gathered(&self.group_owners(), of_group).concat();
         comm.broadcast(&mut constants);
         let mut constants = constants.into_iter().collect();
         self.ties.resolve(&mut constants);

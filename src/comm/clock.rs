@@ -16,7 +16,7 @@ pub const LATENCY: f64 = 2e-6;
 /// Share of the latency that keeps a rank busy, at either end.
 const BUSY: f64 = 0.25;
 
-/// Where a rank is in its run.
+/// The place of a rank in its run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Times {
     /// By the clock on the wall (s).

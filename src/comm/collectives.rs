@@ -36,6 +36,30 @@ impl Comm {
         }
     }
 
+    /// The values that [`gather`](Self::gather) brings to the root, in their order; nothing elsewhere. Collective.
+    pub fn gathered<T: Serialize + DeserializeOwned>(
+        &self,
+        owners: &[usize],
+        make: impl FnMut(usize) -> T,
+    ) -> Vec<T> {
+        let mut all = Vec::new();
+        self.gather(owners, make, |_, value| all.push(value));
+        all
+    }
+
+    /// The values that [`scatter`](Self::scatter) brings to this rank, by their number. Collective.
+    pub fn scattered<T: Serialize + DeserializeOwned>(
+        &self,
+        owners: &[usize],
+        make: impl FnMut(usize) -> T,
+    ) -> BTreeMap<usize, T> {
+        let mut own = BTreeMap::new();
+        self.scatter(owners, make, |i, value| {
+            own.insert(i, value);
+        });
+        own
+    }
+
     /// Brings one value of the root to each of `owners`, in their order, those of a rank together. Collective.
     ///
     /// `make(i)` is called on the root, `take(i, value)` on the owner of `i`.
@@ -132,10 +156,8 @@ impl Comm {
     /// Brings the value of every rank to the root, which gets them in the order of ranks; the
     /// others get nothing. Collective.
     pub fn collect<T: Serialize + DeserializeOwned + Clone>(&self, value: &T) -> Vec<T> {
-        let mut all = Vec::new();
         let ranks: Vec<usize> = (0..self.size()).collect();
-        self.gather(&ranks, |_| value.clone(), |_, value| all.push(value));
-        all
+        self.gathered(&ranks, |_| value.clone())
     }
 
     /// The largest size of all numbers on all ranks. Collective.

@@ -1,4 +1,4 @@
-//! What launchers tell a process in its environment: whether it is one of many, and which.
+//! Variables of launchers in the environment of a process: whether it is one of many, and which.
 
 use std::env;
 
@@ -7,7 +7,7 @@ use crate::error::Failure;
 /// The variables in which launchers of MPIs give the number of ranks.
 const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE"];
 
-/// What srun counts: its tasks, or the daemons of an `mpirun` that starts them by srun.
+/// Processes that srun counts: its tasks, or the daemons of an `mpirun` that starts them by srun.
 const SRUN_SIZE: &str = "SLURM_STEP_NUM_TASKS";
 
 /// The variables in which launchers give the rank of a process. Some give no size, PMIx only on request.

@@ -1,4 +1,4 @@
-//! What this rank is doing, for the messages of failures and panics.
+//! The phase of this rank, for the messages of failures and panics.
 
 use std::sync::{Mutex, PoisonError};
 

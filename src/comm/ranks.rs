@@ -1,4 +1,4 @@
-//! What each rank had to do, and how long it took.
+//! Work and times of each rank.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,7 +61,7 @@ impl PhaseSeconds {
 pub struct RankSeconds {
     /// By the clock on the wall.
     pub elapsed: PhaseSeconds,
-    /// What it worked, without messages and waiting.
+    /// Its work, without messages and waiting.
     pub work: PhaseSeconds,
     /// On a core of its own, messages by the network that is assumed.
     pub modelled: PhaseSeconds,
@@ -88,7 +88,7 @@ pub struct RankReport {
     pub modelled: PhaseSeconds,
     /// Peak resident memory (bytes).
     pub peak_memory_bytes: u64,
-    /// What it sent to other ranks, broadcasts counted once (bytes).
+    /// Bytes that it sent to other ranks, broadcasts counted once.
     pub bytes_sent: u64,
     /// Number of messages that it sent, broadcasts counted once.
     pub messages_sent: u64,

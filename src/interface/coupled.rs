@@ -138,7 +138,7 @@ impl<'a> CoupledContact<'a> {
         }
     }
 
-    /// How far another solution with friction is from U, the largest difference of a jump (m). U is a solution, at which
+    /// Distance of another solution with friction from U, the largest difference of a jump (m). U is a solution, at which
     /// the pairs answered `state` and the residual is `r`.
     pub fn other_solution(&self, u: &[f64], r: &[f64], state: &ConState) -> Option<f64> {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
@@ -274,7 +274,7 @@ impl<'a> CoupledContact<'a> {
         jumps.chain(dependent).copied().collect()
     }
 
-    /// What every pair has of all normal jumps, and of linearly dependent constraints if these follow.
+    /// The part of every pair in all normal jumps, and of linearly dependent constraints if these follow.
     fn by_pair<T: Copy>(&self, all: &[T]) -> Vec<Vec<T>> {
         let (mut jumps, mut dependent) = all.split_at(self.h.nrows());
         let mut take = |law: &CondensedContact| {

@@ -88,7 +88,7 @@ impl<'a> InterfaceProblem<'a> {
         u
     }
 
-    /// What a residual is relative to whose terms are at most this large: to these, or where they are round-off to a part
+    /// Scale of a residual whose terms are at most this large: these, or where they are round-off to a part
     /// of what they are round-off of.
     pub fn residual_scale(&self, terms: f64) -> f64 {
         match terms < NOTHING * self.elsewhere {

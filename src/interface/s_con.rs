@@ -195,16 +195,9 @@ impl<'a> SCon<'a> {
         A: Serialize + DeserializeOwned + Default,
     {
         let owners: Vec<usize> = called.iter().map(|&p| self.owners[p]).collect();
-        let mut received: BTreeMap<usize, Q> = BTreeMap::new();
-        self.comm.scatter(
-            &owners,
-            |i| question(called[i]),
-            |i, asked| {
-                received.insert(called[i], asked);
-            },
-        );
+        let received = (self.comm).scattered(&owners, |i| question(called[i]));
+        let received = received.into_iter().map(|(i, asked)| (called[i], asked));
         let mut answers: BTreeMap<usize, A> = received
-            .into_iter()
             .filter_map(|(p, asked)| Some((p, answer(self.pairs.get_mut(&p)?, asked))))
             .collect();
         self.comm.gather(

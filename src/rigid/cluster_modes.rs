@@ -13,7 +13,7 @@ use crate::context::Context;
 use crate::fem::assembly::FixingDof;
 use crate::interface::rigid_modes::RigidModes;
 
-/// How far a motion moves a condition, relative to others, that is none.
+/// Jump of a condition in a motion, relative to others, that is none.
 const ROUND_OFF: f64 = 1e-9;
 
 impl Scene {
@@ -72,7 +72,7 @@ impl Scene {
         }
     }
 
-    /// How motions move a pin of one of `own` bodies.
+    /// Displacement of a pin of one of `own` bodies by the motions.
     fn fixing_row(&self, fixing_dof: &FixingDof, own: &[usize]) -> Option<RigidRow> {
         own.iter().find_map(|&b| {
             let body = &self.bodies[b];
@@ -114,20 +114,12 @@ pub(super) fn cluster_modes(
         elsewhere[subdomain.body] |= *known != cluster;
     }
     let kinematics = Kinematics::new(scene.dim, &scene.bodies);
-    let mut motions = BTreeMap::new();
-    context.comm.scatter(
-        &plan.contact_owners(),
-        |p| {
-            let cluster = plan.contact[p];
-            let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
-            // Where the cluster leaves its nodes to the interface problem, bodies move these.
-            let inside = !plan.leaves_its_nodes(plan.clusters[cluster].node);
-            let within = |body: usize| inside && !elsewhere[body] && home[body] == Some(cluster);
-            scene.drive(&kinematics, &conditions, fixing_dofs, within)
-        },
-        |p, drive| {
-            motions.insert(p, drive);
-        },
-    );
-    motions
+    context.comm.scattered(&plan.contact_owners(), |p| {
+        let cluster = plan.contact[p];
+        let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
+        // Where the cluster leaves its nodes to the interface problem, bodies move these.
+        let inside = !plan.leaves_its_nodes(plan.clusters[cluster].node);
+        let within = |body: usize| inside && !elsewhere[body] && home[body] == Some(cluster);
+        scene.drive(&kinematics, &conditions, fixing_dofs, within)
+    })
 }

@@ -134,12 +134,9 @@ fn layout(context: &Context<'_>, settings: &Settings) -> Layout {
         blocks,
         ..
     } = context;
-    let mut connectivity = vec![0; plan.blocks()];
-    comm.gather(
-        plan.owners(),
-        |s| (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len()),
-        |s, length| connectivity[s] = length,
-    );
+    let mut connectivity = comm.gathered(plan.owners(), |s| {
+        (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len())
+    });
     comm.broadcast(&mut connectivity);
     Layout::new(catalog, &connectivity, !settings.no_stress)
 }

@@ -3,9 +3,11 @@
 //! After every load step but the last its results are on disk, under the result's name + `.unfinished`, and beside
 //! them the state that the next step starts from. `--restart` takes both, on any number of ranks.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};
 use std::io::Read;
+use std::mem::take;
 use std::path::Path;
 
 use contact_dd_partition::destination::unfinished;
@@ -30,7 +32,7 @@ use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;
 
 /// State that a run keeps beside the results of its finished load steps.
-#[derive(Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 struct KeptState {
     /// The identity of the run.
     run: Identity,
@@ -51,7 +53,7 @@ struct KeptState {
 }
 
 /// Two runs that agree in this go the same way.
-#[derive(PartialEq, Serialize, Deserialize)]
+#[derive(Default, PartialEq, Serialize, Deserialize)]
 struct Identity {
     problem: u64,
     settings: String,
@@ -117,8 +119,8 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
     if let Some((file, mut kept)) = kept {
         finished.file = Some(file);
         finished.count = kept.steps.len();
-        finished.steps = std::mem::take(&mut kept.steps);
-        finished.transfer = std::mem::take(&mut kept.transfer);
+        finished.steps = take(&mut kept.steps);
+        finished.transfer = take(&mut kept.transfer);
         finished.kept = Some(kept);
     } else {
         finished.warning = Some(format!(
@@ -155,50 +157,27 @@ impl Finished {
 
     /// The state that the load step after the finished ones starts from, in the middle of a stage. Collective.
     fn state(&mut self, context: &Context<'_>) -> StepState {
-        let comm = context.comm;
-        let (mut pairs, mut slips, mut energies) = (Vec::new(), Vec::new(), Vec::new());
-        let mut statuses = Vec::new();
-        let mut state = StepState::default();
-        if let Some(kept) = self.kept.take() {
-            state.interface = kept.interface;
-            pairs = kept.pairs;
-            statuses = kept.statuses;
-            slips = kept.slips;
-            energies = kept.energies;
+        let Context { comm, plan, .. } = *context;
+        let mut kept = self.kept.take().unwrap_or_default();
+        let groups = plan.group_owners();
+        let pairs = comm.scattered(&plan.contact_owners(), |p| kept.pairs[p].clone());
+        let slips = comm.scattered(&groups, |g| Reals(take(&mut kept.slips[g])));
+        let statuses = comm.scattered(&groups, |g| take(&mut kept.statuses[g]));
+        let statuses = statuses.into_iter();
+        let energies = match context.catalog.has_friction() {
+            true => comm.scattered(plan.owners(), |b| take(&mut kept.energies[b])),
+            false => BTreeMap::new(),
+        };
+        StepState {
+            interface: kept.interface,
+            pairs,
+            statuses: statuses.filter_map(|(g, s)| Some((g, s?))).collect(),
+            slips: (slips.into_iter())
+                .map(|(g, Reals(slips))| (g, slips))
+                .collect(),
+            energies,
+            scales: Scales::default(),
         }
-        comm.scatter(
-            &context.plan.contact_owners(),
-            |p| pairs[p].clone(),
-            |p, of_pair| {
-                state.pairs.insert(p, of_pair);
-            },
-        );
-        comm.scatter(
-            &context.plan.group_owners(),
-            |g| Reals(slips[g].clone()),
-            |g, Reals(of_group)| {
-                state.slips.insert(g, of_group);
-            },
-        );
-        comm.scatter(
-            &context.plan.group_owners(),
-            |g| std::mem::take(&mut statuses[g]),
-            |g, of_group: Option<Statuses>| {
-                state
-                    .statuses
-                    .extend(of_group.map(|of_group| (g, of_group)));
-            },
-        );
-        if context.catalog.has_friction() {
-            comm.scatter(
-                context.plan.owners(),
-                |b| std::mem::take(&mut energies[b]),
-                |b, energy| {
-                    state.energies.insert(b, energy);
-                },
-            );
-        }
-        state
     }
 }
 
@@ -207,7 +186,7 @@ fn read(settings: &Settings) -> Result<Option<(file::Kept, KeptState)>, Failure>
     let Some(mut file) = file::Kept::read(&settings.output).map_err(unread)? else {
         return Ok(None);
     };
-    let state = std::mem::take(&mut file.state);
+    let state = take(&mut file.state);
     let kept: KeptState = ciborium::from_reader(&state[..])
         .map_err(|error| unread(file::unread(&file::state_of(&settings.output), &error)))?;
     let run = Identity::new(settings)?;
@@ -235,32 +214,15 @@ pub fn keep(
     finished: &Finished,
     result: Option<&mut ResultFile>,
 ) -> Result<(), Failure> {
-    let mut pairs = Vec::new();
-    context.comm.gather(
-        &context.plan.contact_owners(),
-        |p| state.pairs[&p].clone(),
-        |_, pair| pairs.push(pair),
-    );
-    let mut slips = Vec::new();
-    context.comm.gather(
-        &context.plan.group_owners(),
-        |g| Reals(state.slips[&g].clone()),
-        |_, Reals(of_group)| slips.push(of_group),
-    );
-    let mut statuses = Vec::new();
-    context.comm.gather(
-        &context.plan.group_owners(),
-        |g| state.statuses.get(&g).cloned(),
-        |_, of_group| statuses.push(of_group),
-    );
-    let mut energies = Vec::new();
-    if context.catalog.has_friction() {
-        context.comm.gather(
-            context.plan.owners(),
-            |b| state.energies[&b].clone(),
-            |_, energy| energies.push(energy),
-        );
-    }
+    let Context { comm, plan, .. } = *context;
+    let groups = plan.group_owners();
+    let pairs = comm.gathered(&plan.contact_owners(), |p| state.pairs[&p].clone());
+    let slips = comm.gathered(&groups, |g| Reals(state.slips[&g].clone()));
+    let statuses = comm.gathered(&groups, |g| state.statuses.get(&g).cloned());
+    let energies = match context.catalog.has_friction() {
+        true => comm.gathered(plan.owners(), |b| state.energies[&b].clone()),
+        false => Vec::new(),
+    };
     let write = |result: &mut ResultFile| -> Result<(), Failure> {
         let kept = KeptState {
             run: Identity::new(settings)?,
@@ -268,7 +230,7 @@ pub fn keep(
             interface: state.interface.clone(),
             pairs,
             statuses,
-            slips,
+            slips: slips.into_iter().map(|Reals(slips)| slips).collect(),
             energies,
             transfer: finished.transfer.clone(),
         };
@@ -277,5 +239,5 @@ pub fn keep(
             .map_err(|error| Failure::internal(error.to_string()))?;
         Ok(result.keep(&bytes)?)
     };
-    context.comm.agree(result.map_or(Ok(()), write))
+    comm.agree(result.map_or(Ok(()), write))
 }
