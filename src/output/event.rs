@@ -43,17 +43,72 @@ pub struct Summary<'a> {
     pub interface_choice: &'a str,
 }
 
+/// A load step that begins.
+#[derive(Clone, Debug, Serialize)]
+pub struct Step<'a> {
+    /// Its number, from 1.
+    pub step: usize,
+    /// Number of all.
+    pub steps: usize,
+    /// Its name.
+    pub name: &'a str,
+    /// Its time on the load path.
+    pub time: f64,
+    /// The bodies and contacts that are absent in it.
+    #[serde(skip)]
+    pub absent: Vec<String>,
+    /// Time that it and those to come take, about (s); none before the first one is solved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds_left: Option<f64>,
+}
+
+/// Estimated cost of solving.
+#[derive(Clone, Debug, Serialize)]
+pub struct Costs<'a> {
+    /// Memory of all ranks (bytes).
+    pub memory_bytes: f64,
+    /// Memory of the largest rank (bytes).
+    pub largest_rank_memory_bytes: f64,
+    /// Memory that their hosts have left (bytes).
+    pub available_bytes: f64,
+    /// Arithmetic of all ranks (flop).
+    pub flops: f64,
+    /// Arithmetic of the busiest rank (flop).
+    pub busiest_rank_flops: f64,
+    /// Why contact conditions are to be solved for as they are, in words.
+    pub interface_choice: &'a str,
+    /// Unknowns of the coarse problem of the iterative interface solver, about; none where it is direct.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coarse_dofs: Option<usize>,
+}
+
+/// The end of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finished<'a> {
+    /// The exit code of the program.
+    pub exit_code: u8,
+    /// The result file.
+    pub result: String,
+    /// Why the sweeps ended, in words.
+    pub reason: &'a str,
+    /// The report.
+    pub report: &'a Report,
+    /// The problem, whose units its numbers have.
+    #[serde(skip)]
+    pub catalog: &'a Catalog,
+}
+
 /// One line of the log; `event` names its kind. Numbers that aren't finite are `null`.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event<'a> {
     /// The problem, and the ranks and threads that solve it.
     Problem(&'a Summary<'a>),
-    /// How it is to be solved.
+    /// The settings of the run.
     Settings {
         /// The settings, as in the report.
         settings: &'a Settings,
-        /// What settled each.
+        /// The origin of each.
         settings_from: &'a Origins,
     },
     /// The run comes to another phase.
@@ -67,22 +122,7 @@ pub enum Event<'a> {
         seconds: f64,
     },
     /// A load step begins, where the problem has any.
-    Step {
-        /// Its number, from 1.
-        step: usize,
-        /// Number of all.
-        steps: usize,
-        /// Its name.
-        name: &'a str,
-        /// Its time on the load path.
-        time: f64,
-        /// The bodies and contacts that are absent in it.
-        #[serde(skip)]
-        absent: Vec<String>,
-        /// How long it and those to come take, about (s); none before the first one is solved.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        seconds_left: Option<f64>,
-    },
+    Step(&'a Step<'a>),
     /// So much of a phase is done, once a second.
     Progress {
         /// Its name.
@@ -91,7 +131,7 @@ pub enum Event<'a> {
         done: f64,
         /// Since the run began (s).
         seconds: f64,
-        /// How long the rest of it takes, about (s).
+        /// Time that the rest of it takes, about (s).
         #[serde(skip_serializing_if = "Option::is_none")]
         seconds_left: Option<f64>,
     },
@@ -102,43 +142,15 @@ pub enum Event<'a> {
         /// In words.
         message: &'a str,
     },
-    /// What solving would take; in place of `finished` where it was `--check`.
-    Check {
-        /// Memory of all ranks (bytes).
-        memory_bytes: f64,
-        /// Memory of the largest rank (bytes).
-        largest_rank_memory_bytes: f64,
-        /// Memory that their hosts have left (bytes).
-        available_bytes: f64,
-        /// Arithmetic of all ranks (flop).
-        flops: f64,
-        /// Arithmetic of the busiest rank (flop).
-        busiest_rank_flops: f64,
-        /// Why contact conditions are to be solved for as they are, in words.
-        interface_choice: &'a str,
-        /// Unknowns of the coarse problem of the iterative interface solver, about; none where it is direct.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        coarse_dofs: Option<usize>,
-    },
+    /// Estimated cost of solving; in place of `finished` where it was `--check`.
+    Check(&'a Costs<'a>),
     /// The run has ended and its results are written.
-    Finished {
-        /// The exit code of the program.
-        exit_code: u8,
-        /// The result file.
-        result: String,
-        /// Why the sweeps ended, in words.
-        reason: &'a str,
-        /// The report.
-        report: &'a Report,
-        /// The problem, whose units its numbers have.
-        #[serde(skip)]
-        catalog: &'a Catalog,
-    },
+    Finished(&'a Finished<'a>),
     /// The run has failed; on stderr.
     Error {
         /// The exit code of the program.
         exit_code: u8,
-        /// Where, and what was expected.
+        /// Place, and expectation.
         message: &'a str,
     },
 }

@@ -15,7 +15,7 @@ use crate::fem::resultants::{Friction, Resultants};
 use crate::settings::command_line::InterfaceMethod;
 use crate::settings::{Origins, Settings};
 
-/// How a run ended.
+/// Status in which a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
@@ -25,7 +25,7 @@ pub enum Status {
     NotConverged,
 }
 
-/// The operator of contact conditions.
+/// Operator with which contact conditions are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactOperator {
@@ -37,7 +37,7 @@ pub enum ContactOperator {
     Bddc,
 }
 
-/// Estimate of the error that the mesh makes in the stress, after Zienkiewicz and Zhu, in the energy norm.
+/// Discretization error of the stress, after Zienkiewicz and Zhu, in the energy norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ErrorEstimate {
     /// ‖σ* − σ_h‖ / ‖σ‖, with σ* the recovered stress and ‖σ‖² = ‖σ_h‖² + ‖σ* − σ_h‖².
@@ -53,11 +53,11 @@ pub struct ErrorEstimate {
 pub struct StepReport {
     /// Its name.
     pub name: String,
-    /// What it stands at on the axis of time.
+    /// Its time on the load path.
     pub time: f64,
     /// Names of the bodies and contacts that aren't there; contacts of absent bodies needn't be among them.
     pub absent: Vec<String>,
-    /// How its sweeps ended.
+    /// Status in which its sweeps ended.
     pub status: Status,
     /// Number of sweeps after the start.
     pub sweeps: usize,
@@ -78,20 +78,20 @@ pub struct StepReport {
     pub condition_number: Option<f64>,
     /// Estimate of the mesh's error; `null` where stresses are left out.
     pub error_estimate: Option<ErrorEstimate>,
-    /// What contacts and supports carry.
+    /// Resultants of contacts and supports.
     #[serde(flatten)]
     pub resultants: Resultants,
-    /// What friction does in it, in all contacts; `null` where there is none.
+    /// State and work of friction in it, in all contacts; `null` where there is none.
     pub friction: Option<FrictionOfStep>,
 }
 
-/// What friction does in a load step, in all contacts.
+/// State and work of friction in a load step, in all contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FrictionOfStep {
-    /// What it does.
+    /// Its state and work.
     #[serde(flatten)]
     pub friction: Friction,
-    /// Where the energy came from and went.
+    /// Balance of energy.
     pub energy: EnergyBalance,
     /// Whether friction is at its limit: nothing else holds a body, and it gives all the force that it can, so that the
     /// position is one of many; a warning names the motion.
@@ -106,7 +106,7 @@ pub struct FrictionOfStep {
 /// The report. A number that isn't finite is `null` in its JSON.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Report {
-    /// How the run ended.
+    /// Status in which the run ended.
     pub status: Status,
     /// `newton`, `anderson` or `picard`.
     pub method: String,
@@ -121,11 +121,11 @@ pub struct Report {
     pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
-    /// How the linear interface problem was solved: `direct` or `iterative`.
+    /// Solver of the linear interface problem: `direct` or `iterative`.
     pub interface_solver: InterfaceMethod,
     /// Reason of that choice, in words.
     pub interface_choice: String,
-    /// Operator of the contact conditions.
+    /// Operator with which contact conditions were solved.
     pub contact_operator: ContactOperator,
     /// Iterations of the interface solver in the start and in every sweep, load step after load step; empty where it is
     /// direct.
@@ -163,10 +163,10 @@ pub struct Report {
     pub peak_memory_bytes: u64,
     /// Estimate of the mesh's error; `null` where stresses are left out.
     pub error_estimate: Option<ErrorEstimate>,
-    /// What contacts and supports carry.
+    /// Resultants of contacts and supports.
     #[serde(flatten)]
     pub resultants: Resultants,
-    /// Friction of all contacts; `null` where there is none.
+    /// State and work of friction in all contacts; `null` where there is none.
     pub friction: Option<FrictionOfStep>,
     /// The load steps, where the problem has any. Above, sweeps, inner steps and friction's work are those of
     /// all, residual, certificate and condition those of the worst, and all else is that of the last one.
@@ -203,7 +203,7 @@ pub struct Build {
     pub profile: String,
     /// The compiler.
     pub compiler: String,
-    /// What it was compiled for.
+    /// Target of the compilation.
     pub target: String,
     /// The MPI library that it runs with.
     pub mpi: String,
@@ -226,12 +226,12 @@ impl Build {
     }
 }
 
-/// Where a report goes.
+/// Destination of a report.
 #[derive(Debug)]
 pub enum ReportFile {
     /// A file, under a temporary name until it is whole.
     File(Destination),
-    /// What isn't a file, a terminal or a pipe.
+    /// A place that isn't a file, a terminal or a pipe.
     Stream(PathBuf),
 }
 

@@ -1,4 +1,4 @@
-//! What the ranks hand over to be written.
+//! Results that the ranks hand over to be written.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What the root rank prints: plain lines of fixed columns, the same on a terminal and in a log.
+//! Text of the root rank: plain lines of fixed columns, the same on a terminal and in a log.
 //!
 //! Whether to print them at all, and whether to show colours, is the caller's business.
 
@@ -13,7 +13,7 @@ use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::scene::units::Units;
 
 use super::bar::in_words;
-use super::event::{Event, Summary};
+use super::event::{Costs, Event, Finished, Step, Summary};
 use super::report::{FrictionOfStep, Status, StepReport};
 use crate::certificate::Certificate;
 use crate::sweep::SweepRecord;
@@ -39,10 +39,10 @@ pub fn text(event: &Event<'_>) -> Option<String> {
                 .map(|(name, value)| format!("\n{}", entry(name, value)));
             entries.collect()
         }
-        Event::Step { .. } => step(event)?,
+        Event::Step(of) => step(of),
         Event::Sweep(record) => sweep(record),
-        Event::Check { .. } => costs(event)? + "\n\nthe problem file is valid",
-        Event::Finished { .. } => closing(event)?,
+        Event::Check(of) => costs(of),
+        Event::Finished(of) => closing(of),
         Event::Phase { .. }
         | Event::Progress { .. }
         | Event::Warning { .. }
@@ -51,34 +51,22 @@ pub fn text(event: &Event<'_>) -> Option<String> {
 }
 
 /// The cost of solving, for all ranks together and the largest of them.
-fn costs(event: &Event<'_>) -> Option<String> {
-    let &Event::Check {
-        memory_bytes,
-        largest_rank_memory_bytes,
-        available_bytes,
-        flops,
-        busiest_rank_flops,
-        coarse_dofs,
-        // The summary of the problem has it.
-        interface_choice: _,
-    } = event
-    else {
-        return None;
-    };
+fn costs(of: &Costs) -> String {
     let giga = |number: f64| number / 1e9;
-    let coarse = coarse_dofs.map_or_else(String::new, |dofs| {
+    let coarse = of.coarse_dofs.map_or_else(String::new, |dofs| {
         format!("\n  coarse       {dofs} dofs between clusters")
     });
-    Some(format!(
+    format!(
         "\nsolving it would take about\n  \
          memory       {:.2} GB, {:.2} GB on the largest rank; {:.1} GB are available\n  \
-         arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank{coarse}",
-        giga(memory_bytes),
-        giga(largest_rank_memory_bytes),
-        giga(available_bytes),
-        giga(flops),
-        giga(busiest_rank_flops)
-    ))
+         arithmetic   {:.3} Gflop, {:.3} Gflop on the busiest rank{coarse}\n\n\
+         the problem file is valid",
+        giga(of.memory_bytes),
+        giga(of.largest_rank_memory_bytes),
+        giga(of.available_bytes),
+        giga(of.flops),
+        giga(of.busiest_rank_flops)
+    )
 }
 
 /// The problem.
@@ -115,18 +103,8 @@ fn summary(of: &Summary) -> String {
 }
 
 /// The load step that begins, what is absent in it, and how long the rest takes where that is long.
-fn step(event: &Event<'_>) -> Option<String> {
-    let Event::Step {
-        step,
-        steps,
-        name,
-        time,
-        absent,
-        seconds_left,
-    } = event
-    else {
-        return None;
-    };
+fn step(of: &Step) -> String {
+    let absent = &of.absent;
     let first: Vec<String> = absent
         .iter()
         .take(NAMED)
@@ -137,13 +115,14 @@ fn step(event: &Event<'_>) -> Option<String> {
         None | Some(0) => format!(", without {}", first.join(", ")),
         Some(more) => format!(", without {} and {more} more", first.join(", ")),
     };
-    let left = match seconds_left {
-        Some(seconds) if *seconds > LONG => format!("; {}", in_words(*seconds)),
+    let left = match of.seconds_left {
+        Some(seconds) if seconds > LONG => format!("; {}", in_words(seconds)),
         _ => String::new(),
     };
-    Some(format!(
-        "\nstep {step} of {steps}: '{name}' at {time}{without}{left}"
-    ))
+    format!(
+        "\nstep {} of {}: '{}' at {}{without}{left}",
+        of.step, of.steps, of.name, of.time
+    )
 }
 
 /// One line of the table of sweeps.
@@ -157,17 +136,14 @@ fn sweep(line: &SweepRecord) -> String {
 
 /// All that follows the sweeps: why they ended, the certificate, the timing table, what was skipped, warnings, and where
 /// the results are.
-fn closing(event: &Event<'_>) -> Option<String> {
-    let Event::Finished {
+fn closing(of: &Finished) -> String {
+    let Finished {
         reason,
         report,
         catalog,
         result,
         ..
-    } = event
-    else {
-        return None;
-    };
+    } = of;
     let units = catalog.units;
     // Around an axis forces are those of the whole ring.
     let dim = match catalog.plane {
@@ -182,11 +158,8 @@ fn closing(event: &Event<'_>) -> Option<String> {
         format!("\n{style}{reason}{style:#}\n"),
         certificate(&report.certificate, report.friction.is_some()),
     ];
-    if let Some(condition) = report.condition_number {
-        lines.push(format!(
-            "             condition number about {condition:.0e}"
-        ));
-    }
+    let condition = report.condition_number;
+    lines.extend(condition.map(|c| format!("             condition number about {c:.0e}")));
     if let Some(estimate) = report.error_estimate {
         let percent = 100.0 * estimate.relative;
         lines.push(format!(
@@ -209,16 +182,12 @@ fn closing(event: &Event<'_>) -> Option<String> {
     lines.extend(timing::lines(&report.per_rank));
     lines.push(String::new());
     lines.extend(report.skipped.iter().map(|what| format!("skipped: {what}")));
-    lines.extend(
-        report
-            .fallbacks
-            .iter()
-            .map(|what| format!("fall-back: {what}")),
-    );
+    let fallbacks = report.fallbacks.iter();
+    lines.extend(fallbacks.map(|what| format!("fall-back: {what}")));
     let warnings = report.warnings.iter();
     lines.extend(warnings.map(|what| format!("{WARNING}warning:{WARNING:#} {what}")));
     lines.push(format!("results: {result}"));
-    Some(lines.join("\n"))
+    lines.join("\n")
 }
 
 /// A line a load step; nothing where there is none.

@@ -1,4 +1,4 @@
-//! What a run says of itself on the way: text for people, or events for programs.
+//! The log of a run: text for people, or events for programs.
 
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeSet;
@@ -13,7 +13,7 @@ use crate::comm::{self, Comm};
 use crate::context::Listener;
 use crate::error::Failure;
 use crate::output::bar::Bar;
-use crate::output::event::{self, Event, Summary};
+use crate::output::event::{self, Costs, Event, Finished, Step, Summary};
 use crate::output::report::Report;
 use crate::output::terminal;
 use crate::plan::Plan;
@@ -30,7 +30,7 @@ const NOT_CONVERGED: u8 = 3;
 /// Time between progress events for programs.
 const PULSE: Duration = Duration::from_secs(1);
 
-/// What validating found in load steps in which the same is there.
+/// Result of validating load steps in which the same is there.
 #[derive(Debug)]
 pub struct Checked {
     /// Warnings of their rigid motions.
@@ -165,7 +165,7 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// What validating found in every stage, and what solving the one that takes most memory would cost.
+    /// The result of validating every stage, and the cost of solving the one that takes most memory.
     pub fn check(&self, stages: &[Checked]) {
         self.bar.finish();
         let all = stages.iter().flat_map(|stage| &stage.warnings);
@@ -186,17 +186,16 @@ impl<'a> RunLog<'a> {
         else {
             return;
         };
-        let (available, coarse_dofs) = (*available, *coarse_dofs);
         let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
-        self.tell(&Event::Check {
+        self.tell(&Event::Check(&Costs {
             memory_bytes: all.bytes,
             largest_rank_memory_bytes: most.bytes,
-            available_bytes: available,
+            available_bytes: *available,
             flops: all.flops,
             busiest_rank_flops: most.flops,
             interface_choice: why,
-            coarse_dofs,
-        });
+            coarse_dofs: *coarse_dofs,
+        }));
     }
 
     /// Log line of a load step that begins, where there are any.
@@ -210,14 +209,14 @@ impl<'a> RunLog<'a> {
         // The steps to come take as long as those of this run.
         let of_one = began.elapsed().as_secs_f64() / (k - first) as f64;
         let seconds_left = (k > first).then_some(of_one * (all - k) as f64);
-        self.tell(&Event::Step {
+        self.tell(&Event::Step(&Step {
             step: k + 1,
             steps: all,
             name: &step.name,
             time: step.time,
             absent: catalog.absent_in(k),
             seconds_left,
-        });
+        }));
     }
 
     /// The head of the table of sweeps, if there are going to be any.
@@ -257,13 +256,13 @@ impl<'a> RunLog<'a> {
         } else {
             NOT_CONVERGED
         };
-        self.tell(&Event::Finished {
+        self.tell(&Event::Finished(&Finished {
             exit_code,
             result: self.settings.output.display().to_string(),
             reason: &reason(totals),
             report: &report,
             catalog: totals.catalog,
-        });
+        }));
         if !failures.is_empty() {
             let why = format!("not converged: {}", failures.join("; "));
             event::error(self.settings.log, exit_code, &why);

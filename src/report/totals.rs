@@ -45,7 +45,7 @@ pub struct StepTotals {
     pub certificate: Certificate,
     /// The condition number.
     pub condition: Option<f64>,
-    /// What contacts and supports carry.
+    /// Resultants of contacts and supports.
     pub resultants: Resultants,
     /// The balance of energy, where there is friction.
     pub energy: EnergyBalance,
@@ -134,7 +134,7 @@ impl Totals<'_> {
         conditions.try_fold(0.0, |worst: f64, condition| Some(worst.max(condition?)))
     }
 
-    /// What friction does: the state in the end, the work of all steps.
+    /// Friction: the state in the end, the work of all steps.
     pub fn friction(&self) -> Option<FrictionOfStep> {
         let steps = self.steps.iter();
         let all = steps.filter_map(StepTotals::friction);
@@ -153,7 +153,7 @@ impl Totals<'_> {
         })
     }
 
-    /// How the linear interface problem was solved.
+    /// The solver of the linear interface problem.
     pub fn interface_solver(&self) -> InterfaceMethod {
         match self
             .steps
@@ -165,12 +165,12 @@ impl Totals<'_> {
         }
     }
 
-    /// Which solver of the interface problem didn't converge before another one took over, and why, in words.
+    /// The solver of the interface problem that didn't converge before another one took over, and why, in words.
     pub fn took_over(&self) -> Option<&str> {
         (self.steps.iter()).find_map(|step| step.outcome.took_over.as_deref())
     }
 
-    /// Fallback methods that were used, in words.
+    /// Fallbacks that were used, in words.
     pub fn fallbacks(&self) -> Vec<String> {
         let all = self.steps.iter().flat_map(|step| &step.outcome.fallbacks);
         once_each(all.cloned())

@@ -1,5 +1,5 @@
-//! What tells whether the finished load steps of an unfinished result file are whole, and makes the rest of it whole
-//! again.
+//! Checkpoints: digests that tell whether the finished load steps of an unfinished result file are whole, and make the
+//! rest of it whole again.
 //!
 //! All columns have their places from the start, and each load step its rows in them: writing one step touches no other.
 //! A digest for every column and step tells whether rows are those that were written. What is in the file beside the

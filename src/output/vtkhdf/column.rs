@@ -44,11 +44,11 @@ pub(crate) trait List {
     /// Number of rows.
     fn rows(&self) -> usize;
 
-    /// Makes a dataset for `rows` rows of this type, see [`empty`].
-    fn empty(&self, group: &Group, name: &str, rows: usize) -> Result<Dataset>;
+    /// Makes a dataset for `rows` rows of this type, in each of so many load `steps`, see [`empty`].
+    fn empty(&self, group: &Group, name: &str, steps: usize, rows: usize) -> Result<Dataset>;
 
-    /// Fills a dataset from row `start` on.
-    fn fill(&self, dataset: &Dataset, start: usize) -> Result<()>;
+    /// Fills what a dataset has of a load step from row `start` on.
+    fn fill(&self, dataset: &Dataset, step: usize, start: usize) -> Result<()>;
 
     /// Rows as the file has them.
     fn bytes(&self) -> &[u8];
@@ -62,12 +62,12 @@ impl<R: Row> List for Vec<R> {
         self.len()
     }
 
-    fn empty(&self, group: &Group, name: &str, rows: usize) -> Result<Dataset> {
-        empty::<R>(group, name, 0, rows)
+    fn empty(&self, group: &Group, name: &str, steps: usize, rows: usize) -> Result<Dataset> {
+        empty::<R>(group, name, steps, rows)
     }
 
-    fn fill(&self, dataset: &Dataset, start: usize) -> Result<()> {
-        fill(dataset, 0, start, self)
+    fn fill(&self, dataset: &Dataset, step: usize, start: usize) -> Result<()> {
+        fill(dataset, step, start, self)
     }
 
     fn bytes(&self) -> &[u8] {
@@ -92,15 +92,16 @@ pub(super) struct Written {
 }
 
 impl Written {
-    /// One that is [`empty`].
-    pub(super) fn empty<R: Row>(
+    /// One that is [`empty`], for rows like those of a list.
+    pub(super) fn empty(
+        list: &dyn List,
         group: &Group,
         name: &str,
         steps: usize,
         rows: usize,
     ) -> Result<Self> {
         Ok(Self {
-            dataset: empty::<R>(group, name, steps, rows)?,
+            dataset: list.empty(group, name, steps, rows)?,
             rows,
             steps: (steps > 0).then_some(steps),
             digest: 0,
@@ -108,11 +109,11 @@ impl Written {
     }
 
     /// [Fills](fill) what it has of a load step from row `start` on.
-    pub(super) fn fill<R: Row>(&mut self, step: usize, start: usize, rows: &[R]) -> Result<()> {
+    pub(super) fn fill(&mut self, step: usize, start: usize, list: &dyn List) -> Result<()> {
         let first = self.steps.map_or(start, |_| step * self.rows + start);
-        let of_rows = digest(first, size_of::<R>(), bytemuck::cast_slice(rows));
+        let of_rows = digest(first, list.row_bytes(), list.bytes());
         self.digest = self.digest.wrapping_add(of_rows);
-        fill(&self.dataset, step, start, rows)
+        list.fill(&self.dataset, step, start)
     }
 
     /// Ends a load step; returns the digest of what was written in it.

@@ -4,7 +4,7 @@ use contact_dd_partition::problem::ContactSummary;
 use hdf5::{File, Group, Result};
 
 use super::checkpoint::Column;
-use super::column::{self, Written};
+use super::column::{self, List, Row, Written};
 use crate::comm::is_asked_to_stop;
 use crate::fem::contact_state::ContactRow;
 
@@ -17,17 +17,44 @@ pub(super) struct ContactTables {
 #[derive(Debug)]
 struct Table {
     name: String,
-    node_a: Written,
-    node_b: Written,
-    position: Written,
-    normal: Written,
-    gap: Written,
-    force: Written,
-    pressure: Written,
-    status: Written,
-    /// Tangential force and slip, where the contact has friction.
-    friction: Option<[Written; 2]>,
+    columns: Vec<Written>,
     written: Vec<bool>,
+}
+
+/// The load steps in which a column is written.
+#[derive(Clone, Copy, PartialEq)]
+enum In {
+    First,
+    Each,
+    /// Each one, where the contact has friction.
+    EachWithFriction,
+}
+
+/// The columns, those of contacts with friction last.
+const COLUMNS: [(&str, In, fn(&[ContactRow]) -> Box<dyn List>); 10] = [
+    ("node_a", In::First, |run| list(run, |(p, _)| p.tag_a)),
+    ("node_b", In::First, |run| list(run, |(p, _)| p.tag_b)),
+    ("position", In::First, |run| list(run, |(p, _)| p.position)),
+    ("normal", In::First, |run| list(run, |(p, _)| p.normal())),
+    ("gap", In::Each, |run| list(run, |(_, state)| state.gap)),
+    ("force", In::Each, |run| list(run, |(_, state)| state.force)),
+    ("pressure", In::Each, |run| {
+        list(run, |(p, state)| state.force / p.area)
+    }),
+    ("status", In::Each, |run| {
+        list(run, |(_, state)| state.status())
+    }),
+    ("tangential_force", In::EachWithFriction, |run| {
+        list(run, |(_, state)| state.tangential_force)
+    }),
+    ("slip", In::EachWithFriction, |run| {
+        list(run, |(_, state)| state.slip)
+    }),
+];
+
+/// The values of a column in some rows.
+fn list<R: Row>(run: &[ContactRow], of: fn(&ContactRow) -> R) -> Box<dyn List> {
+    Box::new(run.iter().map(of).collect::<Vec<R>>())
 }
 
 impl ContactTables {
@@ -66,9 +93,9 @@ impl ContactTables {
     }
 
     /// All datasets as they lie in the file.
-    pub(super) fn columns(&mut self) -> Result<Vec<Column>> {
-        let all = self.tables.iter_mut().flat_map(Table::columns);
-        all.map(|column| column.column()).collect()
+    pub(super) fn columns(&self) -> Result<Vec<Column>> {
+        let all = self.tables.iter().flat_map(|table| &table.columns);
+        all.map(Written::column).collect()
     }
 
     /// Checks that every row was written in a load step, and makes ready for the next one; returns the digests of the
@@ -80,7 +107,7 @@ impl ContactTables {
             }
             written.fill(false);
         }
-        let all = self.tables.iter_mut().flat_map(Table::columns);
+        let all = (self.tables.iter_mut()).flat_map(|table| &mut table.columns);
         Ok(all.map(Written::finish_step).collect())
     }
 }
@@ -90,38 +117,17 @@ impl Table {
         let (name, rows) = (&contact.name, contact.conditions);
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
-        let tags = |name| Written::empty::<i64>(&group, name, 0, rows);
-        let vectors = |name| Written::empty::<[f64; 3]>(&group, name, 0, rows);
-        let states = |name| Written::empty::<f64>(&group, name, steps, rows);
-        let jumps = |name| Written::empty::<[f64; 3]>(&group, name, steps, rows);
-        let friction = || -> Result<_> { Ok([jumps("tangential_force")?, jumps("slip")?]) };
+        let is_there = |when: In| contact.has_friction || when != In::EachWithFriction;
+        let columns = COLUMNS.iter().filter(|(_, when, _)| is_there(*when));
+        let columns = columns.map(|(name, when, values)| {
+            let steps = if *when == In::First { 0 } else { steps };
+            Written::empty(&*values(&[]), &group, name, steps, rows)
+        });
         Ok(Self {
             name: name.clone(),
-            node_a: tags("node_a")?,
-            node_b: tags("node_b")?,
-            position: vectors("position")?,
-            normal: vectors("normal")?,
-            gap: states("gap")?,
-            force: states("force")?,
-            pressure: states("pressure")?,
-            status: Written::empty::<u8>(&group, "status", steps, rows)?,
-            friction: contact.has_friction.then(friction).transpose()?,
+            columns: columns.collect::<Result<_>>()?,
             written: vec![false; rows],
         })
-    }
-
-    fn columns(&mut self) -> impl Iterator<Item = &mut Written> {
-        let own = [
-            &mut self.node_a,
-            &mut self.node_b,
-            &mut self.position,
-            &mut self.normal,
-            &mut self.gap,
-            &mut self.force,
-            &mut self.pressure,
-            &mut self.status,
-        ];
-        own.into_iter().chain(self.friction.iter_mut().flatten())
     }
 
     /// Writes rows whose places follow each other.
@@ -132,33 +138,10 @@ impl Table {
             let rows = self.written.len();
             return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
         };
-        let tags = |column: &mut Written, of: fn(&ContactRow) -> i64| {
-            column.fill(0, start, &run.iter().map(of).collect::<Vec<_>>())
-        };
-        let vectors = |table: &mut Written, of: fn(&ContactRow) -> [f64; 3]| {
-            table.fill(0, start, &run.iter().map(of).collect::<Vec<_>>())
-        };
-        let reals = |column: &mut Written, of: fn(&ContactRow) -> f64| {
-            column.fill(step, start, &run.iter().map(of).collect::<Vec<_>>())
-        };
-        if step == 0 {
-            tags(&mut self.node_a, |(point, _)| point.tag_a)?;
-            tags(&mut self.node_b, |(point, _)| point.tag_b)?;
-            vectors(&mut self.position, |(point, _)| point.position)?;
-            vectors(&mut self.normal, |(point, _)| point.normal())?;
-        }
-        reals(&mut self.gap, |(_, state)| state.gap)?;
-        reals(&mut self.force, |(_, state)| state.force)?;
-        reals(&mut self.pressure, |(point, state)| {
-            state.force / point.area
-        })?;
-        let status: Vec<u8> = run.iter().map(|(_, state)| state.status()).collect();
-        self.status.fill(step, start, &status)?;
-        if let Some([tangential_force, slip]) = &mut self.friction {
-            let forces: Vec<_> = run.iter().map(|row| row.1.tangential_force).collect();
-            tangential_force.fill(step, start, &forces)?;
-            let slips: Vec<_> = run.iter().map(|row| row.1.slip).collect();
-            slip.fill(step, start, &slips)?;
+        for ((_, when, values), column) in COLUMNS.iter().zip(&mut self.columns) {
+            if step == 0 || *when != In::First {
+                column.fill(step, start, &*values(run))?;
+            }
         }
         written.fill(true);
         Ok(())

@@ -144,7 +144,7 @@ impl Grid {
             } else {
                 steps * rows
             };
-            list.empty(&group, field.place, rows)
+            list.empty(&group, field.place, 0, rows)
         };
         let mut datasets: Vec<Dataset> = written(&none, &placement.left_out)
             .map(create)
@@ -195,7 +195,7 @@ impl Grid {
         } = self;
         placement.each(results, step, |k, row, list| {
             placement.sum(&mut digests[k], row, list);
-            list.fill(&datasets[k], row)
+            list.fill(&datasets[k], 0, row)
         })?;
         let written = results.first..results.first + results.sizes.len();
         self.written[written].fill(true);

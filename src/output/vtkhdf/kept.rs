@@ -1,5 +1,5 @@
-//! What a run keeps beside its finished load steps, in `RESULT.unfinished.state`: a file that is written anew after
-//! every load step, and takes the place of the one before when it is on the disk.
+//! The state that a run keeps beside its finished load steps, in `RESULT.unfinished.state`: a file that is written anew
+//! after every load step, and takes the place of the one before when it is on the disk.
 
 use std::ffi::OsString;
 use std::fs::{self, File};

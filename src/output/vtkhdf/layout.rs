@@ -1,4 +1,4 @@
-//! How much room everything takes in the result file.
+//! Sizes of all parts of the result file.
 
 use contact_dd_partition::model::PlaneState;
 use contact_dd_partition::problem::{Catalog, ContactSummary};
