@@ -3,6 +3,5 @@
 mod order;
 mod patch;
 mod round;
-mod sorts;
 mod space;
 mod system;

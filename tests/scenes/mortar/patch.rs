@@ -6,8 +6,8 @@ use crate::support::blocks::{Blocks, moved};
 use crate::support::scenes::model;
 use crate::support::solution::Solution;
 use crate::support::solver::solve;
-use crate::support::sorts::{Sort, sort};
-use crate::support::uneven::{PRESSURE, block, materials, turned_pressure};
+use crate::support::sorts::{SORTS, Sort, sort};
+use crate::support::uneven::{PRESSURE, block, materials, turned_pressure, two_sorts};
 
 /// Blocks that lie on each other, from below.
 struct Pile {
@@ -111,7 +111,7 @@ impl Pile {
 
 /// Fails unless everything is under the uniform pressure, all contacts closed, to within 1e-10.
 #[track_caller]
-pub fn is_uniform(solution: &Solution, angle: f64) {
+fn is_uniform(solution: &Solution, angle: f64) {
     let [xx, yy, xy] = turned_pressure(angle);
     for (centre, [s_xx, s_yy, _, s_xy, _, _]) in &solution.cells {
         for (found, expected) in [(s_xx, xx), (s_yy, yy), (s_xy, xy)] {
@@ -122,52 +122,49 @@ pub fn is_uniform(solution: &Solution, angle: f64) {
     solution.check_pressure(PRESSURE, 1e-10 * PRESSURE);
 }
 
-#[test]
-fn a_uniform_pressure_passes_between_meshes_of_any_sizes() {
-    for n in [[4, 7], [9, 2], [5, 5], [1, 6], [3, 40], [40, 3]] {
-        for upside_down in [false, true] {
-            let pile = Pile::new(&[[0.0, 2.0], [0.0, 2.0]], &n, upside_down);
-            let solution = solve(&pile.model(0.0), 2);
-            is_uniform(&solution, 0.0);
-            assert!(solution.points().all(|point| point.tags[1] == -1));
-        }
+/// Blocks on each other along x, numbers of cells, angles, and numbers of subdomains.
+type Patch = (Vec<[f64; 2]>, Vec<usize>, Vec<f64>, Vec<usize>);
+
+/// Sides that end together on meshes of any sizes, sides that overlap in part, three blocks in any position.
+fn patches() -> Vec<Patch> {
+    let two = |lower, upper, n: [usize; 2]| (vec![lower, upper], n.to_vec(), vec![0.0], vec![2]);
+    let whole = [[4, 7], [9, 2], [5, 5], [1, 6], [3, 40], [40, 3]];
+    let mut patches: Vec<Patch> = (whole.map(|n| two([0.0, 2.0], [0.0, 2.0], n))).to_vec();
+    patches.extend([
+        two([0.0, 3.0], [0.7, 2.1], [8, 5]),
+        two([0.0, 3.0], [0.7, 2.1], [3, 11]),
+        two([0.0, 2.0], [1.1, 3.3], [6, 5]),
+        two([0.0, 2.0], [0.0, 1.001], [4, 3]),
+        two([0.0, 2.0], [0.0, 1.0 + 1e-9], [4, 3]),
+        two([0.0, 2.0], [0.9, 1.2], [2, 3]),
+        two([0.0, 1.3], [-0.4, 2.0], [5, 2]),
+    ]);
+    for n in [[3, 8, 5], [8, 3, 10]] {
+        let x = vec![[0.0, 2.0], [0.3, 1.9], [-0.2, 1.5]];
+        patches.push((x, n.to_vec(), vec![0.0, 0.4, 2.0], vec![3, 7]));
     }
+    patches
 }
 
 #[test]
-fn a_uniform_pressure_passes_where_sides_overlap_in_part() {
-    for (lower, upper, n) in [
-        ([0.0, 3.0], [0.7, 2.1], [8, 5]),
-        ([0.0, 3.0], [0.7, 2.1], [3, 11]),
-        ([0.0, 2.0], [1.1, 3.3], [6, 5]),
-        ([0.0, 2.0], [0.0, 1.001], [4, 3]),
-        ([0.0, 2.0], [0.0, 1.0 + 1e-9], [4, 3]),
-        ([0.0, 2.0], [0.9, 1.2], [2, 3]),
-        ([0.0, 1.3], [-0.4, 2.0], [5, 2]),
-    ] {
+fn a_uniform_pressure_passes_between_blocks_however_they_lie_on_each_other() {
+    for (x, n, angles, counts) in patches() {
         for upside_down in [false, true] {
-            let pile = Pile::new(&[lower, upper], &n, upside_down);
-            is_uniform(&solve(&pile.model(0.0), 2), 0.0);
-        }
-    }
-}
-
-#[test]
-fn a_uniform_pressure_passes_inclined_and_through_three_blocks() {
-    for (n, upside_down) in [([3, 8, 5], false), ([8, 3, 10], true)] {
-        for angle in [0.0, 0.4, 2.0] {
-            let x = [[0.0, 2.0], [0.3, 1.9], [-0.2, 1.5]];
             let pile = Pile::new(&x, &n, upside_down);
-            let model = pile.model(angle);
-            for count in [3, 7] {
-                is_uniform(&solve(&model, count), angle);
+            for &angle in &angles {
+                let model = pile.model(angle);
+                for &count in &counts {
+                    let solution = solve(&model, count);
+                    is_uniform(&solution, angle);
+                    assert!(solution.points().all(|point| point.tags[1] == -1));
+                }
             }
         }
     }
 }
 
 /// A plate with a crack along y = 0 from tip to tip, its sides of n[0] facets below and n[1] above.
-pub fn cracked_plate(n: [usize; 2], text: &str, cells: Sort) -> Model {
+fn cracked_plate(n: [usize; 2], text: &str, cells: Sort) -> Model {
     let mut blocks = Blocks::new();
     for (column, x, cells) in [
         ("left", [-3.0, -1.0], [4, 4]),
@@ -209,16 +206,30 @@ pub fn cracked_plate(n: [usize; 2], text: &str, cells: Sort) -> Model {
 
 #[test]
 fn a_uniform_pressure_passes_across_a_crack_whose_tips_are_shared() {
-    for n in [[4, 7], [7, 4], [2, 9], [6, 6]] {
+    let of_sizes = [[4, 7], [7, 4], [2, 9], [6, 6]].map(|n| (n, sort("triangle3"), vec![1, 2, 5]));
+    let of_sorts = SORTS.map(|sort| ([4, 7], sort, vec![5]));
+    for (n, cells, counts) in of_sizes.into_iter().chain(of_sorts) {
         for sides in [
             "'middle above bottom', 'middle below top'",
             "'middle below top', 'middle above bottom'",
         ] {
             let text = format!("[[contact]]\nname = 'crack'\nsides = [{sides}]\n");
-            let model = cracked_plate(n, &text, sort("triangle3"));
-            for count in [1, 2, 5] {
-                let solution = solve(&model, count);
-                is_uniform(&solution, 0.0);
+            let model = cracked_plate(n, &text, cells);
+            for &count in &counts {
+                is_uniform(&solve(&model, count), 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_cells_of_any_kinds() {
+    for (i, lower) in SORTS.into_iter().enumerate() {
+        for (step, n, angle) in [(0, [3, 7], 0.0), (1, [7, 3], 0.4), (3, [5, 5], 2.0)] {
+            let upper = SORTS[(i + step) % SORTS.len()];
+            for upside_down in [false, true] {
+                let model = two_sorts([lower, upper], n, 3, angle, upside_down);
+                is_uniform(&solve(&model, 5), angle);
             }
         }
     }
