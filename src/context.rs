@@ -1,4 +1,4 @@
-//! What every phase of a run works on.
+//! The data that every phase of a run works on.
 
 pub mod hierarchy;
 

@@ -1,4 +1,4 @@
-//! How a run can fail, and the exit code that says so.
+//! Failures of a run, and their exit codes.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -59,8 +59,8 @@ impl Failure {
         Self::new(FailureKind::Interrupted, message)
     }
 
-    /// Where a run that was asked to stop goes on, after `k` of `all` load steps whose results are in `kept`; any other
-    /// failure as it is.
+    /// The failure with the place where a run that was asked to stop goes on, after `k` of `all` load steps whose
+    /// results are in `kept`; any other failure as it is.
     pub fn after(mut self, k: usize, all: usize, kept: &Path) -> Self {
         if self.kind == FailureKind::Interrupted {
             let kept = kept.display();

@@ -1,4 +1,4 @@
-//! What is to be condensed and merged, and by whom: blocks, their hierarchy, clusters.
+//! The plan of condensation and merging, and the owners: blocks, their hierarchy, clusters.
 
 mod assign;
 pub mod choice;
@@ -39,7 +39,7 @@ pub struct Plan {
     pub clusters: Vec<ClusterPlan>,
     /// The clusters in contact.
     pub contact: Vec<usize>,
-    /// What becomes of contact on the way.
+    /// Treatment of contact on the way.
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.

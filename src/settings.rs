@@ -32,11 +32,11 @@ pub struct Settings {
     #[serde(serialize_with = "as_text")]
     #[schemars(with = "String")]
     pub output: PathBuf,
-    /// Where the report goes as well.
+    /// Further destination of the report.
     #[serde(serialize_with = "as_optional_text")]
     #[schemars(with = "Option<String>")]
     pub report: Option<PathBuf>,
-    /// How the interface problem is solved.
+    /// Method for the interface problem.
     pub method: Method,
     /// Relative residual of the interface problem below which sweeps stop.
     pub tolerance: f64,
@@ -44,7 +44,7 @@ pub struct Settings {
     pub max_sweeps: Option<usize>,
     /// Relaxation of picard; 1 is the paper's (18) to the letter.
     pub relaxation: Option<f64>,
-    /// How the linear interface problem is solved; by default what takes less time.
+    /// Solver of the linear interface problem; the one that takes less time where it isn't said.
     pub interface: Option<InterfaceMethod>,
     /// Threads of each rank.
     pub threads: u16,
@@ -58,15 +58,15 @@ pub struct Settings {
     pub check: bool,
     /// Whether to print nothing but warnings and errors.
     pub quiet: bool,
-    /// What is printed.
+    /// Format of the log.
     pub log: LogFormat,
-    /// Where each of these came from.
+    /// Origin of each of these.
     #[serde(skip)]
     pub from: Origins,
 }
 
 impl Settings {
-    /// What the command line says, else what the problem file says, else the defaults.
+    /// The settings of the command line, else those of the problem file, else the defaults.
     pub fn new(command_line: &CommandLine, problem: &SolverSettings) -> Self {
         let mut from = Origins::default();
         let CommandLine { solver, run, .. } = command_line;
@@ -148,7 +148,7 @@ impl Settings {
         })
     }
 
-    /// What a user asks for of the solvers.
+    /// Wishes of the user for the solvers.
     pub fn wishes(&self) -> Wishes {
         let interface = self.interface;
         Wishes {
@@ -224,7 +224,7 @@ impl fmt::Display for Origin {
     }
 }
 
-/// Where each setting came from, by its name in the report.
+/// Origin of each setting, by its name in the report.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Origins(BTreeMap<&'static str, Origin>);
@@ -246,7 +246,7 @@ impl Origins {
         command_line.clone().or_else(|| problem_file.clone())
     }
 
-    /// Where the setting called `name` came from.
+    /// Origin of the setting called `name`.
     pub fn of(&self, name: &str) -> Origin {
         self.0.get(name).copied().unwrap_or(Origin::Default)
     }

@@ -32,7 +32,7 @@ pub struct ContactPoint<N> {
     pub area: f64,
     /// Undeformed position of its node: that on side a, or the one on side b where it has none on side a (m).
     pub position: [f64; 3],
-    /// Where its force on side a acts, Σ weight·position over the nodes of side a (m).
+    /// Point at which its force on side a acts, Σ weight·position over the nodes of side a (m).
     pub force_point: [f64; 3],
     /// Tag of its node on side a; −1 where there are several, as the nodes of side b have the conditions (mortar).
     pub tag_a: i64,
@@ -43,7 +43,7 @@ pub struct ContactPoint<N> {
     pub law: Law,
 }
 
-/// What bounds the tangential force λ_t at a point, beside λ ≥ 0 for the normal one. Below the bound the sides
+/// The bound of the tangential force λ_t at a point, beside λ ≥ 0 for the normal one. Below the bound the sides
 /// stick; at it they slip, and λ_t opposes the increment of the tangential jump.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Law {

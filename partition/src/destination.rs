@@ -85,7 +85,7 @@ impl Destination {
     /// [`unfinished`] of the file.
     ///
     /// # Errors
-    /// What the system said.
+    /// The reason that the system gave.
     pub fn keep(&mut self) -> Result<(), OutputError> {
         if self.is_kept() {
             return Ok(());
@@ -129,7 +129,7 @@ impl Destination {
     /// Flushes the temporary file to the disk and gives it its name.
     ///
     /// # Errors
-    /// What the system said.
+    /// The reason that the system gave.
     pub fn commit(self) -> Result<(), OutputError> {
         let sync = |file: &Path| File::open(file).and_then(|file| file.sync_all());
         sync(&self.temporary).map_err(|error| failure(&self.path, error))?;

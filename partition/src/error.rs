@@ -1,4 +1,4 @@
-//! What can be wrong with what a user hands in.
+//! Errors of a user's input.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ impl InputError {
         }
     }
 
-    /// What makes an error of a reason: it begins with `what` is wrong.
+    /// The function that makes an error of a reason: it begins with `what` is wrong.
     pub fn about(what: &str) -> impl Fn(String) -> Self {
         move |reason| Self::new(format!("{what}: {reason}"))
     }

@@ -1,4 +1,4 @@
-//! What a problem file holds, for people.
+//! The content of a problem file, for people.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -14,7 +14,7 @@ use crate::problem::{Catalog, Problem, VERSION};
 /// Most lines about things of one kind.
 const MOST: usize = 20;
 
-/// What a problem file holds; its `Display` is what `contact-dd-partition --info` prints.
+/// The content of a problem file; its `Display` is what `contact-dd-partition --info` prints.
 #[derive(Clone, Debug)]
 pub struct Info {
     problem: Problem,

@@ -1,4 +1,4 @@
-//! How large and how small a number may be so that what is calculated with it stays a number, and how it is shown.
+//! Magnitudes of numbers with which results stay numbers, and numbers in words.
 
 /// The largest number, by its absolute value: its square is still far from overflow.
 pub const LARGEST: f64 = 1e120;
@@ -12,7 +12,7 @@ pub const SMALLEST_AREA: f64 = 1e-250;
 /// Checks that a number is finite and not beyond all measure.
 ///
 /// # Errors
-/// What was expected in its place.
+/// The expectation that a number misses.
 pub fn check(value: f64) -> Result<f64, String> {
     if !value.is_finite() {
         Err("a finite number".into())

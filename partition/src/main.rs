@@ -122,7 +122,7 @@ fn without_stdout<T>(work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// What the problem file is made from, and where it goes.
+/// Sources of the problem file, and its destination.
 struct Source {
     scene: Scene,
     mesh: Mesh,

@@ -1,4 +1,4 @@
-//! What a program says of itself: its help, its man page, completions for shells, and the answer to a
+//! The manual of a program: its help, its man page, completions for shells, and the answer to a
 //! command line that asks for no work.
 
 use std::io::{self, Write};
@@ -46,7 +46,7 @@ pub enum Document {
     CompleteFish,
 }
 
-/// What a program answers to a command line that asks for no work.
+/// The answer of a program to a command line that asks for no work.
 #[derive(Clone, Debug)]
 pub enum Answer {
     /// Text for stdout, with the codes of colours.

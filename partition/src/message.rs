@@ -1,4 +1,4 @@
-//! What both programs say: results on stdout, errors and warnings on stderr, in colour where a terminal shows them.
+//! Messages of both programs: results on stdout, errors and warnings on stderr, in colour where a terminal shows them.
 
 use std::io::{self, ErrorKind, Write, stderr};
 
@@ -22,7 +22,7 @@ pub fn say(text: &str) -> Result<(), OutputError> {
     heard((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
 }
 
-/// What becomes of something `said` on stdout, see [`say`].
+/// The result of having `said` something on stdout, see [`say`].
 ///
 /// # Errors
 /// It can't be written.

@@ -1,4 +1,4 @@
-//! What a scene means on its mesh: no names to look up any more, no expression to evaluate.
+//! The model: a scene on its mesh, with no names to look up any more, no expression to evaluate.
 //!
 //! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; nothing
 //! behind this point knows how they came about.
@@ -79,7 +79,7 @@ pub struct Model {
     pub steps: Vec<ModelStep>,
     /// Contacts in the order of the scene.
     pub contacts: Vec<Contact>,
-    /// What the contacts consist of that were found by themselves, in words, each with its name.
+    /// Description of the contacts that were found by themselves, each with its name.
     pub found: Vec<String>,
     /// The partition that the scene asks for, a subdomain for every cell.
     pub prescribed_subdomains: Option<Vec<u32>>,

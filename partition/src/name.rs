@@ -1,4 +1,4 @@
-//! What things may be called: names are printed in messages and name groups of the result file.
+//! Rules for names, which are printed in messages and name groups of the result file.
 
 /// Longest name (bytes).
 const LONGEST: usize = 255;
@@ -6,7 +6,7 @@ const LONGEST: usize = 255;
 /// Checks a name of a body, a material or a contact.
 ///
 /// # Errors
-/// What is wrong with it, as the end of a sentence that starts with the name.
+/// The fault of a name, as the end of a sentence that starts with the name.
 pub fn check(name: &str) -> Result<(), &'static str> {
     check_text(name)?;
     if name.trim().is_empty() {
@@ -21,7 +21,7 @@ pub fn check(name: &str) -> Result<(), &'static str> {
 /// Checks the name of a contact, which is that of a group in the result file as well.
 ///
 /// # Errors
-/// What is wrong with it, as the end of a sentence that starts with the name.
+/// The fault of a name, as the end of a sentence that starts with the name.
 pub fn check_contact(name: &str) -> Result<(), &'static str> {
     if name.contains('/') {
         Err("holds a '/'; a contact's name is that of a group in the result file")
@@ -35,7 +35,7 @@ pub fn check_contact(name: &str) -> Result<(), &'static str> {
 /// Checks a title or a remark, which is printed in a line of its own.
 ///
 /// # Errors
-/// What is wrong with it, as the end of a sentence that starts with the text.
+/// The fault of a name, as the end of a sentence that starts with the text.
 pub fn check_text(text: &str) -> Result<(), &'static str> {
     match text.chars().any(char::is_control) {
         true => Err("holds a control character; expected one line of text"),

@@ -1,4 +1,4 @@
-//! What a user writes: `scene.toml`.
+//! The scene as a user writes it: `scene.toml`.
 
 mod activation;
 pub mod condition;
@@ -81,7 +81,7 @@ pub struct Scene {
     pub step: Vec<LoadStep>,
     /// Groups of cells that are the subdomains; `None` to leave the partition to METIS.
     pub subdomains: Option<Names>,
-    /// How it is to be solved, where the command line doesn't say otherwise.
+    /// Settings of the solver, where the command line doesn't say otherwise.
     #[serde(default)]
     pub solver: SolverSettings,
 }
@@ -90,7 +90,7 @@ impl Scene {
     /// Reads a scene. Its mesh is looked for beside it.
     ///
     /// # Errors
-    /// What is wrong with it, with line and key.
+    /// A fault of the scene, with line and key.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let parsed = source::text(path, "a scene in TOML").and_then(|text| Self::parse(&text));
         let parsed =
@@ -112,7 +112,7 @@ impl Scene {
     /// Parses a scene.
     ///
     /// # Errors
-    /// What is wrong with it, with line and key.
+    /// A fault of the scene, with line and key.
     pub fn parse(text: &str) -> Result<Self, InputError> {
         let scene: Self = toml::from_str(text).map_err(|error| place::located(text, &error))?;
         match scene.fault() {

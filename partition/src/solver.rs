@@ -1,4 +1,4 @@
-//! How a problem is to be solved, as far as its author says so: `[solver]` of a scene, `/settings` of
+//! Settings of the solver that the author of a problem chose: `[solver]` of a scene, `/settings` of
 //! a problem file, and the options of contact-dd-mpi of the same names.
 
 use std::fmt;
@@ -7,7 +7,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
-/// How U is found on Γ.
+/// The method by which U is found on Γ.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize, schemars::JsonSchema,
 )]
@@ -80,7 +80,7 @@ pub fn truth(text: &str) -> Result<bool, String> {
     text.parse().map_err(|_| "expected true or false".into())
 }
 
-/// What the author of a problem may settle of its solution; what isn't said is `None`.
+/// Settings of the solver that the author of a problem chose; `None` for the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Args, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Solving")]

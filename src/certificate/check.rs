@@ -143,7 +143,7 @@ impl BlockCheck {
 }
 
 impl Most {
-    /// What is largest at the points of a contact `group` with these gaps left and these forces at its conditions, of
+    /// Largest violations at the points of a contact `group` with these gaps left and these forces at its conditions, of
     /// which these are `closed`.
     pub fn at_points(group: &ContactGroup, gaps: &[f64], forces: &[f64], closed: &[bool]) -> Self {
         let mut most = Self::default();

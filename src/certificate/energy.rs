@@ -7,7 +7,7 @@
 //! ½ (f_n + f)ᵀ Δu + ½ (r_n + r)ᵀ Δu = ΔE + ½ (λ_n + λ)ᵀ B Δu,    E = ½ uᵀ K u
 //! ```
 //!
-//! What friction dissipates, λ_tᵀ Δw, has the force at the end. The rest of the work of contacts is an error of finite
+//! Dissipated work of friction, λ_tᵀ Δw, has the force at the end. The rest of the work of contacts is an error of finite
 //! increments: forces that change while something slips, and pressure on the way of a gap that opens or closes. It
 //! vanishes as increments become small, but for what an interference fit brings in.
 
@@ -23,8 +23,8 @@ use crate::vector::{axpy, dot};
 /// Smallest error, relative to all terms of forces times displacements, that isn't round-off.
 const NOT_ROUND_OFF: f64 = 1e-12;
 
-/// Energy balance of a load step, with the mean of the forces at both ends of every increment (J, per metre of
-/// thickness in the plane); in a load step that activates or deactivates bodies or contacts, from unloaded bodies on.
+/// Balance of energy in a load step, with the mean of the forces at both ends of every increment (J, per
+/// metre of thickness in the plane); in a load step in which bodies or contacts come or go, on the way from unloaded bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EnergyBalance {
     /// Work of loads.
@@ -33,11 +33,11 @@ pub struct EnergyBalance {
     pub work_of_supports: f64,
     /// Change of the elastic energy ½ uᵀ K u.
     pub elastic_energy: f64,
-    /// What contacts take: `dissipated_work`, and an error of finite increments beyond it, which vanishes as these
+    /// Work of contacts: `dissipated_work`, and an error of finite increments beyond it, which vanishes as these
     /// become small; less than nothing where an interference fit brings energy in.
     pub work_of_contacts: f64,
-    /// Difference of the first two and the sum of the other two, relative to the largest of the four and of the elastic
-    /// energy.
+    /// Difference of the sum of the first two and that of the other two, relative to the largest of the four and of the
+    /// elastic energy.
     pub imbalance: f64,
     /// Whether that is more than round-off.
     #[serde(skip)]

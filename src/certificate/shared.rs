@@ -48,7 +48,7 @@ impl SharedCheck {
     }
 }
 
-/// What is largest at the nodes that `checks`, in the order of blocks, speak of: the residual and its scale, and the
+/// Largest values at the nodes of `checks`, in the order of blocks: the residual and its scale, and the
 /// jump of the displacement.
 pub fn at_shared_nodes<'a>(checks: impl Iterator<Item = &'a SharedCheck>) -> Most {
     let mut sums: HashMap<InterfaceDof, [f64; 2]> = HashMap::new();

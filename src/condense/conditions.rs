@@ -1,4 +1,4 @@
-//! What contact groups and clusters tell each other of contact conditions.
+//! Exchange of contact conditions between contact groups and clusters.
 
 use std::collections::BTreeMap;
 

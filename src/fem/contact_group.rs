@@ -204,7 +204,7 @@ impl ContactGroup {
         points.map(law).collect()
     }
 
-    /// How stiff the bodies are against a jump at a point, about (N/m).
+    /// Stiffness of the bodies against a jump at a point, about (N/m).
     pub fn stiffness_at(&self, point: usize) -> f64 {
         let width = self.width_at(point);
         let of_entry = |&(node, weight): &(u32, f64)| {
@@ -229,7 +229,7 @@ impl ContactGroup {
         }
     }
 
-    /// What displacements `u`, node by node, leave of the jumps that conditions allow: the gaps g − n·⟦u⟧, and the
+    /// Slack of conditions under displacements `u`, node by node: the gaps g − n·⟦u⟧, and the
     /// way back to where the sides stick (m).
     pub fn gaps_left(&self, loads: &GroupLoads, u: &[f64]) -> Vec<f64> {
         let left = |(condition, gap): (Condition, &f64)| {
@@ -283,8 +283,8 @@ impl ContactGroup {
         JumpRows(defining.into_iter().map(|j| rows[j].clone()).collect())
     }
 
-    /// What the jumps that are `closed` replace where all others are none; they keep their numbers among the `rows` of
-    /// all.
+    /// The unknowns that the `closed` jumps replace where all others are none; they keep their numbers among the `rows`
+    /// of all.
     ///
     /// # Errors
     /// One that no displacement of a node that is `eliminated` can be replaced for: its number among the closed ones.
@@ -339,7 +339,7 @@ impl ContactGroup {
         jumps.pivots.iter().map(replaced).collect()
     }
 
-    /// What contact `forces`, one a condition, make of Bᵀλ: on every node its parts.
+    /// Bᵀλ of contact `forces`, one a condition: on every node its parts.
     pub fn pushes(&self, forces: &[f64]) -> Vec<Vec<[f64; 3]>> {
         let mut pushes = vec![Vec::new(); self.nodes.len()];
         for (condition, force) in self.conditions().zip(forces) {

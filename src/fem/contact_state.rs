@@ -18,7 +18,7 @@ pub struct ContactState {
     pub slip: [f64; 3],
     /// Whether it slips in this load step.
     pub slipping: bool,
-    /// What friction dissipates in this load step, λ_t Δw (J, per metre of thickness in the plane).
+    /// Work that friction dissipates in this load step, λ_t Δw (J, per metre of thickness in the plane).
     pub dissipated: f64,
 }
 

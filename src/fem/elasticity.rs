@@ -215,7 +215,8 @@ impl ElementMatrix {
     }
 }
 
-/// How a cell's modes follow from the displacements of its nodes, −K_αα⁻¹ K_αu, and K_αu.
+/// Condensation of a cell's incompatible modes: −K_αα⁻¹ K_αu, by which they follow from the displacements of its nodes,
+/// and K_αu.
 struct Eliminated {
     coupling: DMatrix<f64>,
     amplitudes: DMatrix<f64>,
@@ -279,7 +280,7 @@ impl ElementMatrix {
         }
     }
 
-    /// How the modes behind so many dofs follow from these.
+    /// The condensation of the modes behind so many dofs.
     fn eliminated(&self, order: usize) -> Option<Eliminated> {
         let own = self.order - order;
         let stiffness = DMatrix::from_fn(own, own, |i, j| {

@@ -1,4 +1,4 @@
-//! What acts on a block in a load step.
+//! The loads on a block in a load step.
 
 use contact_dd_partition::model::Support;
 

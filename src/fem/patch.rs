@@ -12,7 +12,7 @@ use crate::vector::axpy;
 /// Entries of the lower triangle of the normal equations.
 const GRAM: usize = TERMS * (TERMS + 1) / 2;
 
-/// How near to a full turn the angles around a vertex within a body add up (rad).
+/// Largest difference from a full turn of the sum of angles around a vertex within a body (rad).
 const FULL_TURN: f64 = 1e-6;
 /// Pivot, relative to a unit diagonal, below which samples don't determine a polynomial.
 const DETERMINED: f64 = 1e-6;
@@ -100,7 +100,7 @@ impl PatchSum {
         self.has_quadratic = false;
     }
 
-    /// How many of `gram` and `load` there are in this dimension.
+    /// Number of entries of `gram` and `load` in this dimension.
     fn parts(&self) -> (usize, usize) {
         let terms = terms(self.dim);
         (terms * (terms + 1) / 2, terms * components(self.dim))

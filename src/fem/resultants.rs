@@ -49,12 +49,12 @@ pub struct ContactResultant {
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
-    /// What acts on side a.
+    /// Resultant on side a.
     #[serde(flatten)]
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
     pub largest_pressure: f64,
-    /// Its friction; `null` where it has none.
+    /// State and work of its friction; `null` where it has none.
     pub friction: Option<Friction>,
     /// Number of conditions about to open, which slip under a part of their cohesion.
     #[serde(skip)]
@@ -74,13 +74,13 @@ pub struct ContactResultant {
 pub struct Probed {
     /// Tag of the node that penetrates farthest.
     pub deepest: i64,
-    /// How far, over the largest displacement.
+    /// Depth, over the largest displacement.
     pub relative: f64,
     /// Number of nodes that touch the other side.
     pub touching: usize,
 }
 
-/// Friction in a load step.
+/// State and work of friction in a load step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Friction {
     /// Number of closed conditions with friction that stick.
@@ -176,12 +176,12 @@ fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
         && length(state.tangential_force) < bound - ROUND_OFF * cohesion * point.area
 }
 
-/// What a condition that prescribes displacements exerts on the bodies.
+/// Reaction of a condition that prescribes displacements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reaction {
     /// The condition: its kind, its number among those, where it holds, and which others hold a part of it.
     pub support: String,
-    /// What acts on the bodies.
+    /// Resultant on the bodies.
     #[serde(flatten)]
     pub resultant: Resultant,
 }
@@ -226,7 +226,7 @@ impl Resultants {
         }
     }
 
-    /// What friction does in all contacts; `None` where there is none.
+    /// State and work of friction in all contacts; `None` where there is none.
     pub fn friction(&self) -> Option<Friction> {
         let all = self.contacts.iter().filter_map(|contact| contact.friction);
         all.reduce(|mut sum, friction| {

@@ -1,4 +1,4 @@
-//! Who owns what: subtrees of the hierarchy are handed out by estimated cost.
+//! Owners: subtrees of the hierarchy are handed out by estimated cost.
 
 use contact_dd_partition::hierarchy::tree::Tree;
 

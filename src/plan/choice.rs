@@ -11,7 +11,7 @@ use super::memory::{CERTAIN, LIKELY, afford};
 use crate::comm::Comm;
 use crate::error::Failure;
 
-/// What a user asks for.
+/// Wishes of the user.
 #[derive(Clone, Copy, Debug)]
 pub struct Wishes {
     /// The method of the sweeps.
@@ -22,7 +22,7 @@ pub struct Wishes {
     pub second_start: bool,
 }
 
-/// What becomes of contact when Schur complements are merged, and why.
+/// The choice of a treatment of contact in the merging, and its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// The merging, which says what answers for contact conditions.
@@ -132,7 +132,7 @@ impl Choice {
 /// A choice for which there is too little memory.
 struct Refusal {
     failure: Failure,
-    /// What it needs (bytes).
+    /// Memory that it needs (bytes).
     needed: f64,
 }
 

@@ -5,7 +5,7 @@ use contact_dd_partition::hierarchy::tree::Tree;
 /// Most contact conditions in a cluster of several groups: its law is dense.
 const MAX_CONDITIONS: usize = 2_000;
 
-/// What becomes of groups in contact when Schur complements are merged.
+/// Treatment of contact groups in the merging of Schur complements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Merging {
     /// A cluster may hold groups: S_CON is that of the groups with what is around them.
@@ -14,7 +14,7 @@ pub enum Merging {
     Linear,
     /// Contact groups are merged each by itself, so that Γ is away from contact: S_CON is as smooth as it can be.
     Groups,
-    /// What has no contact is merged once, the rest for every active set anew.
+    /// Fronts without contact are merged once, the others for every active set anew.
     ActiveSet,
     /// Active sets are fixed, too, and fronts merged no further than to the clusters between which the iterative
     /// interface solver works.

@@ -1,4 +1,4 @@
-//! What a run will cost: memory and arithmetic of every rank, before either is spent.
+//! The cost of a run: memory and arithmetic of every rank, before either is spent.
 //!
 //! The constants of memory are measured: in the plane on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
 //! to 1000 subdomains, with up to 5000 contact conditions; in space on 7 of boxes and pins on 2 ranks, from 20 to 212
@@ -65,7 +65,7 @@ impl Plan {
         self.merging.has_active_set() && self.tree.nodes[v].conditions > 0
     }
 
-    /// What every one of `ranks` ranks needs.
+    /// The cost of every one of `ranks` ranks.
     pub fn cost_estimates(&self, catalog: &Catalog, ranks: usize) -> Vec<CostEstimate> {
         let mut estimates = vec![CostEstimate::default(); ranks];
         for (v, &owner) in self.node_owners.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How much memory this process has needed, how much it may have, and whether that will do.
+//! Memory of this process: its peak, its limit, and whether that will do.
 
 use std::collections::BTreeMap;
 use std::fs::read_to_string;
@@ -16,7 +16,7 @@ pub fn peak_memory_bytes() -> u64 {
         .unwrap_or(0)
 }
 
-/// What the machine has left, or what the control groups that this process is in allow, if that is
+/// Memory that the machine has left, or that the control groups of this process allow, if that is
 /// less (bytes); `None` where the system doesn't tell.
 pub fn available_memory_bytes() -> Option<u64> {
     let left = read_to_string("/proc/meminfo")
@@ -31,7 +31,7 @@ pub fn available_memory_bytes() -> Option<u64> {
     limits.chain(left).chain(address_space()).min()
 }
 
-/// What is left of the address space that this process may have (`ulimit -v`), where that is limited (bytes).
+/// Rest of the address space that this process may have (`ulimit -v`), where that is limited (bytes).
 fn address_space() -> Option<u64> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let limit = limit_of(&limits, "Max address space")?;

@@ -1,4 +1,4 @@
-//! What the analysis of rigid motions needs of bodies, from the ranks that have their subdomains.
+//! Bodies for the analysis of rigid motions, from the ranks that have their subdomains.
 
 use contact_dd_partition::element::geometry::{cross, difference, length};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;

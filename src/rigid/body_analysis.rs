@@ -106,11 +106,11 @@ struct Found {
     closing_motions: Vec<Vec<f64>>,
 }
 
-/// What is left of a length after a motion, relative to both, that is round-off: a body is stiff
+/// Rest of a length after a motion, relative to both, that is round-off: a body is stiff
 /// enough to make forces of it.
 const ROUND_OFF: f64 = 1e-14;
 
-/// What acts on the blocks once the bodies' closing motions is taken out of gaps and supports.
+/// The loads on the blocks without the bodies' closing motions in gaps and supports.
 pub fn without_closing_motions(
     context: &Context<'_>,
     mut loads: Loads,

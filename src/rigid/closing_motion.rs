@@ -26,7 +26,7 @@ const TOO_MANY: usize = 3000;
 const TOUCHING: f64 = 1e-12;
 /// Cosine between a motion and a condition's row below which the motion doesn't close it.
 const ALONG: f64 = 1e-12;
-/// How much lighter than the heaviest body one may be that falls as fast.
+/// Weight, relative to the heaviest body, down to which one falls as fast.
 const LIGHTEST: f64 = 1e-4;
 
 /// Which rigid motion each of `bodies` makes until contact `rows` balance the load: first what its
@@ -138,7 +138,7 @@ fn move_along(motions: &mut [Vec<f64>], kinematics: &Kinematics, y: &DVector<f64
     }
 }
 
-/// What is missing to the rigid motion that fits what the supports of a body prescribe best, from `start` on.
+/// Change from `start` to the rigid motion that fits best what the supports of a body prescribe.
 fn prescribed(dim: usize, body: &BodyState, start: &[f64]) -> Vec<f64> {
     let modes = BodyFrame::count(dim);
     let rows = &body.supports;
@@ -185,7 +185,7 @@ fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
     speed / fastest
 }
 
-/// Where many bodies come to rest, if that is found: they stay where they are if what touches balances the load.
+/// Rest position of many bodies, if that is found: they stay where they are if what touches balances the load.
 /// With friction nothing else is found.
 fn rest(
     kinematics: &Kinematics,
@@ -225,7 +225,7 @@ fn rest(
     with(sparse, &gaps, SPRINGS).map(|rest| DVector::from_vec(rest.motion))
 }
 
-/// How far to go along `load` within B y ≤ `left`: along what closed contacts leave of the load, until
+/// Descent along `load` within B y ≤ `left`: along what closed contacts leave of the load, until
 /// the next row closes. That drive becomes smaller with every row, so that this ends.
 fn fall(
     rows: &[RigidRow],

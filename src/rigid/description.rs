@@ -17,7 +17,7 @@ const BODIES: usize = 6;
 const NO_PART: f64 = 1e-6;
 
 impl Kinematics {
-    /// What moves in `motions`, a clause for each warning.
+    /// The parts that move in `motions`, a clause for each warning.
     pub(super) fn described(
         &self,
         bodies: &[BodyState],

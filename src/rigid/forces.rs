@@ -54,7 +54,7 @@ pub(super) struct Forces {
 }
 
 impl Forces {
-    /// Those of the conditions of `rows` where the contact of a normal one is `closed`; in space a prism stands for
+    /// The forces of the conditions of `rows` where the contact of a normal one is `closed`; in space a prism stands for
     /// what is bounded beside the cones, at most 8 % wider.
     pub fn new(rows: &[RigidRow], closed: impl Fn(usize) -> bool) -> Self {
         let mut tangents: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
@@ -167,9 +167,8 @@ impl Forces {
         self.generators.iter().map(|g| g.largest).collect()
     }
 
-    /// What these forces leave of a load, and the motion that proves that none balance it; a norm up to `nothing` is
-    /// balance. Circular cones get more forces until one or the
-    /// other is certain.
+    /// The part of a load that these forces don't balance, and the motion that proves that none balance it; a norm up
+    /// to `nothing` is balance. Circular cones get more forces until one or the other is certain.
     pub fn unbalanced(&mut self, loaded: &Loaded<'_>, nothing: f64) -> Unbalanced {
         let Loaded { b, load, .. } = *loaded;
         let in_span = self.in_span(b, load);
@@ -223,7 +222,7 @@ impl Forces {
         }
     }
 
-    /// What they leave of a load in what they span, and the motion along which it drives there.
+    /// The part of a load that they leave in their span, and the motion along which it drives there.
     fn in_span(
         &self,
         b: &DMatrix<f64>,

@@ -19,10 +19,10 @@ struct AtBound {
     bound: f64,
 }
 
-/// What resists rigid motions in a solution.
+/// Resistance to rigid motions in a solution.
 #[derive(Default)]
 struct Resistance {
-    /// What presses, and sticks under less than its bound.
+    /// Points that press, and stick under less than their bound.
     rows: Vec<RigidRow>,
     at_bound: Vec<AtBound>,
 }
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
     use crate::rigid::squares::{coulomb, scene, square};
 
-    /// What is said of a square on a floor below its corners, on each of which this presses and this is held.
+    /// The description of a square on a floor below its corners, on each of which this presses and this is held.
     fn said(forces: [[f64; 2]; 2], sticks: bool) -> Vec<String> {
         let body = square([0.0; 3]);
         let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];

@@ -9,7 +9,7 @@ use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::rigid::nonnegative::residual;
 
-/// How far obstacles may overlap, relative to the gaps and displacements that they prescribe.
+/// Largest overlap of obstacles, relative to the gaps and displacements that they prescribe.
 const OVERLAP: f64 = 1e-9;
 
 /// ‖r‖ up to which conditions count as contradictory; it is 1 where they leave most room.

@@ -18,14 +18,14 @@ use crate::vector::{axpy, dot, largest};
 pub(super) const MANY: usize = 100;
 /// ε by which bodies come to rest, where load and gaps are about 1.
 const SPRING: f64 = 1e-9;
-/// What may be left of load and gaps, and the products of gaps and forces: round-off of the load grows as
+/// Largest rest of load and gaps, and of the products of gaps and forces: round-off of the load grows as
 /// these vanish.
 const ENOUGH: [f64; 3] = [1e-10, 1e-12, 1e-13];
 /// Most steps; 6 to 20 are usual.
 const MOST_STEPS: usize = 60;
-/// How often a change is corrected by what it leaves of the load: high towers are badly conditioned.
+/// Refinements of a change by what it leaves of the load: high towers are badly conditioned.
 const REFINEMENTS: usize = 2;
-/// How near to the end of its positive part a variable may go in a step.
+/// Fraction of the way to the boundary of the positive variables in a step.
 const TO_THE_BOUNDARY: f64 = 0.995;
 /// Springs beside BᵀB, relative to the largest of it, that let inverse iteration find what nothing holds.
 const SHIFT: f64 = 1e-14;
@@ -40,13 +40,13 @@ pub(super) type SparseRow = Vec<(usize, f64)>;
 pub(super) struct ManyBodies {
     /// B, its unknowns in the order in which they are eliminated.
     rows: Vec<SparseRow>,
-    /// Where that order has every unknown.
+    /// The place of every unknown in that order.
     place: Vec<usize>,
     /// BᵀB's.
     pattern: LowerPattern,
 }
 
-/// How bodies come to rest.
+/// A rest position of bodies.
 #[derive(Debug)]
 pub(super) struct Rest {
     /// y.
@@ -91,7 +91,7 @@ impl ManyBodies {
     /// An orthonormal basis of the motions that none of the conditions holds, were they all closed, one after the other by
     /// inverse iteration, each pinned before the next is sought; nothing where a signal stopped that.
     ///
-    /// What a motion is held by is summed up from B itself: BᵀB has lost the half of its digits.
+    /// The hold on a motion is summed up from B itself: BᵀB has lost the half of its digits.
     pub fn unheld(&self) -> Option<Vec<Vec<f64>>> {
         let n = self.place.len();
         let gram = self.products(|_| 1.0, 0.0);
@@ -134,19 +134,19 @@ impl ManyBodies {
         Some(motions.into_iter().map(given).collect())
     }
 
-    /// How the bodies come to rest under `load` where the conditions have these `gaps`; nothing if that wasn't found.
+    /// The rest position under `load` where the conditions have these `gaps`; nothing if that wasn't found.
     pub fn rest(&self, load: &[f64], gaps: &[f64]) -> Option<Rest> {
         self.rest_on(SPRING, load, gaps)
     }
 
-    /// What is left of a `load` by the forces λ ≥ 0 that come nearest to balancing it; nothing if that wasn't found.
+    /// The part of a `load` left by the forces λ ≥ 0 that come nearest to balancing it; nothing if that wasn't found.
     ///
     /// It is the part of the load along the motions that the conditions allow, as which ε = 1 makes y (Moreau).
     pub fn residual(&self, load: &[f64]) -> Option<Rest> {
         self.rest_on(1.0, load, &vec![0.0; self.len()])
     }
 
-    /// How the bodies come to rest where ε is `spring`, by Mehrotra's predictor and corrector.
+    /// The rest position where ε is `spring`, by Mehrotra's predictor and corrector.
     fn rest_on(&self, spring: f64, load: &[f64], gaps: &[f64]) -> Option<Rest> {
         let n = load.len();
         let force = dot(load, load).sqrt() / (n as f64).sqrt();
@@ -207,7 +207,7 @@ impl ManyBodies {
         None
     }
 
-    /// How bodies rest at a point, where the load f is in units of `force` and gaps are in units of `length`.
+    /// The rest position at a point, where the load f is in units of `force` and gaps are in units of `length`.
     fn at_rest(&self, point: &Iterate, f: &[f64], force: f64, length: f64) -> Rest {
         let of_forces = self.actions(&point.lambda);
         let missing = |&at: &usize| force * (f[at] - of_forces[at]);
@@ -277,7 +277,7 @@ struct Iterate {
     lambda: Vec<f64>,
 }
 
-/// What a point leaves of f − ε y − Bᵀ λ = 0 and g − B y − s = 0.
+/// Residuals of a point in f − ε y − Bᵀ λ = 0 and g − B y − s = 0.
 struct Residual {
     load: Vec<f64>,
     gaps: Vec<f64>,

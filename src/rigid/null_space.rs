@@ -1,4 +1,4 @@
-//! What a matrix leaves: the x with B x = 0.
+//! The null space of a matrix: the x with B x = 0.
 
 use faer::Mat;
 use nalgebra::DMatrix;

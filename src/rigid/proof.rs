@@ -16,8 +16,8 @@ use crate::contact::friction::ForceBound;
 const MOST_FORCE: f64 = 1e2;
 /// Work relative to the terms that it is a sum of, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// How far from its limit, relative to what the motion may make there, a point is taken to be at it: the motion that
-/// is to be proof is known to some digits only.
+/// Distance from its limit, relative to what the motion may make there, within which a point is taken to be at it: the
+/// motion that is to be proof is known to some digits only.
 const AT_LIMIT: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
 /// Most updates of the directions of slip for a motion that is brought to their limits; they converge quadratically.
 const TURNS: usize = 5;
@@ -334,7 +334,7 @@ mod tests {
         (rows.collect(), b)
     }
 
-    /// What cones whose polygons have so many corners, `reach` times as far as the circle, leave of a load.
+    /// Part of a load that is left by cones whose polygons have so many corners, `reach` times as far as the circle.
     fn left(rows: &[RigidRow], b: &DMatrix<f64>, load: &DVector<f64>, reach: f64) -> f64 {
         let corners = 256;
         let mut columns = Vec::new();

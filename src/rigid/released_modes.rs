@@ -11,7 +11,7 @@ use super::projection::MotionProducts;
 use super::scene::{Friction, RigidRow, Scene};
 use crate::vector::largest;
 
-/// How many times what is missing to the equilibrium of a body a contact force may be that is no more than that.
+/// Largest contact force that counts as round-off, over what is missing to the equilibrium of a body.
 const IN_DOUBT: f64 = 4.0;
 
 /// A condition in a solution.
@@ -157,7 +157,7 @@ impl Scene {
 }
 
 impl ReleasedModes {
-    /// How much of each motion to take out of a displacement u to make it the smallest one that
+    /// Coefficients of the motions to take out of a displacement u to make it the smallest one that
     /// leaves no gap negative: min ‖u − Z c‖ subject to g − B u + B Z c ≥ 0, by Lawson and Hanson's
     /// least-distance programming.
     pub fn coefficients(&self, products: &MotionProducts) -> Vec<f64> {

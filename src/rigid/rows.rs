@@ -1,4 +1,4 @@
-//! What the analysis of rigid motions needs of contact conditions, from the ranks that have them.
+//! Contact conditions for the analysis of rigid motions, from the ranks that have them.
 
 use super::scene::{Friction, RigidRow};
 use crate::contact::friction::TangentialCondition;

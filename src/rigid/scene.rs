@@ -1,4 +1,4 @@
-//! What the rigid motions of a scene follow from: its bodies, and contact conditions against their motions.
+//! The scene of the analysis of rigid motions: its bodies, and contact conditions against their motions.
 
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +44,7 @@ pub struct RigidRow {
     pub bodies: Vec<(usize, Vec<f64>)>,
     /// g (m); a tangential one has none.
     pub gap: f64,
-    /// What bounds its force if that is tangential; a normal one presses.
+    /// The bound of its force if that is tangential; a normal one presses.
     pub friction: Option<Friction>,
 }
 
@@ -63,7 +63,7 @@ pub struct Scene {
     pub conditions: Vec<usize>,
 }
 
-/// What bounds the force of a tangential condition, in space that of both tangents of a point.
+/// The bound of the force of a tangential condition, in space that of both tangents of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Friction {
     /// The condition along the normal of the same point.

@@ -28,7 +28,7 @@ pub struct Merge {
     eliminated: usize,
     /// L_E above P.
     columns: Mat<f64>,
-    /// Where the boundary of every child is found among [E | K].
+    /// Places of the boundary of every child among [E | K].
     places: Vec<Vec<u32>>,
     /// Traces that normal jumps replace here.
     substitution: Substitution,
@@ -271,7 +271,7 @@ fn union_of_interface_dofs(
     })
 }
 
-/// Where a front has an unknown on Γ: among those that are `gone`, which come first, where one of the `pivots` that
+/// Place of an unknown on Γ in a front: among those that are `gone`, which come first, where one of the `pivots` that
 /// normal jumps replace is, or among those that are `kept`, from `first_kept` on.
 fn place_of(
     dof: &InterfaceDof,

@@ -8,7 +8,7 @@ use contact_dd_partition::manual::{Answer, Document, Manual};
 use contact_dd_partition::solver::SolverSettings;
 use serde::Serialize;
 
-/// What the manual says beside the options.
+/// Text of the manual beside the options.
 pub const MANUAL: Manual = Manual {
     examples: &[
         (
@@ -93,7 +93,7 @@ pub struct CommandLine {
     generate: Option<Document>,
 }
 
-/// What a user may settle of a run; what isn't said is `None`.
+/// Options of a run; `None` for those that aren't given.
 #[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct RunSettings {
     /// Result file [default: the problem's stem + .vtkhdf]
@@ -130,7 +130,7 @@ pub struct RunSettings {
     pub threads: Option<NonZeroU16>,
 }
 
-/// How the linear interface problem is solved.
+/// Solver of the linear interface problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum InterfaceMethod {
@@ -140,7 +140,7 @@ pub enum InterfaceMethod {
     Iterative,
 }
 
-/// What a run prints.
+/// Format of the log.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, schemars::JsonSchema,
 )]

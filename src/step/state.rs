@@ -63,7 +63,7 @@ impl StepState {
         }
     }
 
-    /// What acts at a moment after this state, without the closing motions of `analysis`: the sides stick where it leaves
+    /// The loads at a moment after this state, without the closing motions of `analysis`: the sides stick where it leaves
     /// them, and friction opposes the way from there.
     pub fn loads(
         &self,
@@ -125,7 +125,7 @@ impl StepState {
 /// Collective.
 ///
 /// # Errors
-/// What a step prescribes leaves no place for a node, or its load drives a motion that nothing holds.
+/// Prescribed displacements that leave no place for a node, or a load that drives a motion that nothing holds.
 pub fn analyse_steps(
     context: &Context<'_>,
     steps: Range<usize>,
@@ -145,7 +145,7 @@ pub fn analyse_steps(
 /// Collective.
 ///
 /// # Errors
-/// What is prescribed then leaves no place for a node, or the load drives a motion that nothing holds.
+/// Prescribed displacements that leave no place for a node, or a load that drives a motion that nothing holds.
 pub fn analyse(
     context: &Context<'_>,
     moment: LoadPoint,

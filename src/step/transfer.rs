@@ -13,7 +13,7 @@ use crate::bytes::Reals;
 use crate::context::Context;
 use crate::step::state::StepState;
 
-/// What passes from one stage to the next, by the places of contact points in the catalog of the whole problem; nothing
+/// Transfer from one stage to the next, by the places of contact points in the catalog of the whole problem; nothing
 /// before the first.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct StageTransfer {
@@ -37,8 +37,8 @@ pub struct StageEnd<'a> {
 }
 
 impl StageTransfer {
-    /// What passes from the last load step of a `stage`, which began with this and ended as `end` says, to the load steps
-    /// `next`; `whole` is the problem. Collective.
+    /// The transfer from the last load step of a `stage`, which began with this and ended as `end` says, to the load
+    /// steps `next`; `whole` is the problem. Collective.
     pub fn after(
         &self,
         context: &Context<'_>,

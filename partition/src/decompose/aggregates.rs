@@ -136,9 +136,8 @@ impl<'a> Aggregates<'a> {
             };
             self.half(&near.places, &aggregates[side], &cells[side], vertex_at)
         });
-        let all = self.all;
         let mut cells = cells.into_iter();
-        graphs.map(|graph| Self::new(all, graph, cells.next().unwrap_or_default()))
+        graphs.map(|graph| Self::new(self.all, graph, cells.next().unwrap_or_default()))
     }
 
     /// The graph of one side, made of `aggregates` or of those of their cells that are there; `vertex_at` tells the vertex

@@ -22,9 +22,9 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 pub(super) struct Aim {
     /// The part of the dofs that should be on the left.
     pub share: f64,
-    /// How far from it it may be.
+    /// Largest deviation from it.
     pub slack: f64,
-    /// What being that far costs, as a part of the flops under the cut.
+    /// Cost of that deviation, as a part of the flops under the cut.
     pub price: f64,
     /// Whether METIS is asked, too.
     pub with_metis: bool,
@@ -109,7 +109,7 @@ fn refined(
     cuts
 }
 
-/// What lies between the sides: some layers of vertices next to a cut, so few that neither side loses more than may be.
+/// The band between the sides: some layers of vertices next to a cut, so few that neither side loses more than may be.
 pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Region> {
     let most = aim.slack * graph.size();
     let mut distance = vec![u32::MAX; graph.len()];
@@ -239,7 +239,7 @@ fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
 /// Vertices between two lines, or planes, across a direction.
 struct Slab {
     direction: [f32; 3],
-    /// Where it starts, where both sides have their share, and where it ends.
+    /// Its start, the place where both sides have their share, and its end.
     bounds: [f32; 3],
 }
 
@@ -263,7 +263,7 @@ impl Slab {
         Self { direction, bounds }
     }
 
-    /// What the straight cut through its middle costs, as a sample of the vertices tells.
+    /// Cost of the straight cut through its middle, as a sample of the vertices tells.
     fn price(&self, graph: &Graph, sample: &[usize]) -> u64 {
         let is_left = |vertex| along(self.direction, graph.centres[vertex]) < self.bounds[1];
         let across = sample.iter().flat_map(|&vertex| {

@@ -11,7 +11,7 @@ const METIS_VERTICES: usize = 300_000;
 /// Graphs of more vertices are dissected by aggregates of them.
 const AGGREGATEED: usize = 40_000;
 
-/// How hard cuts are sought, and those of small sets of aggregates, of which there are many.
+/// Effort of the search for cuts, and for those of small sets of aggregates, of which there are many.
 const CAREFUL: Effort = Effort {
     directions: 4,
     sample: 1024,
@@ -23,13 +23,13 @@ const QUICK: Effort = Effort {
     layers: 3,
 };
 
-/// How much larger than with pieces left whole the largest of a number of sets may become by a cut through them.
+/// Largest growth of the largest of a number of sets by a cut through pieces, over that with pieces left whole.
 const CROOKED: f64 = 1.2;
 
 /// Levels that many ranks can work on side by side.
 const PARALLEL_LEVELS: usize = 4;
 
-/// How far from its share of the dofs a side may be, and what being that far costs as a part of the flops under a
+/// Largest deviation of a side from its share of the dofs, and the cost of that deviation as a part of the flops under a
 /// cut: where the user says how many subdomains there should be, on levels with work for many ranks, and below.
 const EXACT: (f64, f64) = (0.03, 1.0);
 const ABOVE: (f64, f64) = (0.08, 0.1);
@@ -215,7 +215,7 @@ fn branch(set: Set, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
     Branch::Inner(sides, is_joined)
 }
 
-/// What is wanted of the halves of a graph of which so much is wanted.
+/// Requirements on the halves of a graph, from those on the whole.
 fn wanted_of_halves(wanted: Wanted, of_a: &Graph, of_b: &Graph) -> [Wanted; 2] {
     match wanted {
         Wanted::Sets(count) => {
@@ -283,7 +283,7 @@ fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     }
 }
 
-/// How many of `count` sets each of several pieces gets: one, and then always one more the piece whose sets are
+/// Number of the `count` sets that each of several pieces gets: one, and then always one more the piece whose sets are
 /// the largest.
 fn allotted(sizes: &[f64], count: usize) -> Vec<usize> {
     let mut shares = vec![1; sizes.len()];

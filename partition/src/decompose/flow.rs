@@ -22,10 +22,10 @@ struct Arc {
 
 /// The vertices between the sides.
 struct Network {
-    /// Where the arcs of every vertex start, and where the last one's end.
+    /// Start of the arcs of every vertex, and the end of the last one's.
     starts: Vec<u32>,
     arcs: Vec<Arc>,
-    /// What may flow yet from the left side to every vertex, and from there to the right side.
+    /// Residual capacity from the left side to every vertex, and from there to the right side.
     supply: Vec<u32>,
     demand: Vec<u32>,
 }
@@ -105,7 +105,7 @@ impl Network {
         self.starts[vertex] as usize..self.starts[vertex + 1] as usize
     }
 
-    /// What can be reached from the vertices that `starts`, along arcs or, `backwards`, against them.
+    /// The vertices that can be reached from those that `starts`, along arcs or, `backwards`, against them.
     fn reached(&self, starts: impl Fn(&Self, usize) -> bool, backwards: bool) -> Vec<bool> {
         let mut reached: Vec<bool> = (0..self.supply.len()).map(|v| starts(self, v)).collect();
         let mut stack: Vec<usize> = (0..reached.len()).filter(|&v| reached[v]).collect();

@@ -11,7 +11,7 @@ use crate::model::Model;
 pub(super) struct Edge {
     /// The vertex at its other end.
     pub to: u32,
-    /// What cutting it costs, and whether it is a facet in the lowest bit.
+    /// Cost of cutting it, and whether it is a facet in the lowest bit.
     packed: u32,
 }
 
@@ -35,7 +35,7 @@ impl Edge {
         Self::new(self.to, self.weight() + other.weight(), is_facet)
     }
 
-    /// What cutting it costs: [`NODE`] for every node that both sides share then.
+    /// Cost of cutting it: [`NODE`] for every node that both sides share then.
     pub fn weight(self) -> u32 {
         self.packed >> 1
     }
@@ -51,7 +51,7 @@ impl Edge {
 pub(super) struct Graph {
     /// Dimension of space, and the number of dofs of a node.
     pub dim: usize,
-    /// What is a vertex here: the number of a cell, or of a subdomain.
+    /// The number of the cell, or of the subdomain, of each vertex.
     pub ids: Vec<u32>,
     /// Dofs of every vertex; nodes are shared out among the cells around them.
     pub dofs: Vec<f32>,
@@ -350,7 +350,7 @@ fn edges_of(model: &Model) -> Lists<Edge> {
     edges
 }
 
-/// What it costs to cut a facet of a cell: its nodes, each shared with the facets around it on the surface of the cut,
+/// Cost of cutting a facet of a cell: its nodes, each shared with the facets around it on the surface of the cut,
 /// those on an edge with one, those at a corner with five triangles or three quadrilaterals, or with one line.
 fn facet_weight(model: &Model, cell: usize) -> u32 {
     let facets = model.mesh.cells.kind(cell).facets();

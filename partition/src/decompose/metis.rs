@@ -16,7 +16,7 @@ const LARGEST_SUM: f64 = (1 << 30) as f64;
 /// The weight of a dof, where the sum allows.
 const WEIGHT_OF_DOF: f64 = 16.0;
 
-/// How much heavier than it should be a side may be, in thousandths.
+/// Largest excess weight of a side, in thousandths.
 const SLACK: i32 = 60;
 
 /// Cuts a graph in two so that the edges across weigh little and `share` of its dofs are on the left: whether

@@ -1,4 +1,4 @@
-//! What is worth knowing about a decomposition.
+//! Summary of a decomposition.
 
 use std::fmt;
 
@@ -34,7 +34,7 @@ impl Summary<'_> {
         largest.unwrap_or(0) as f64 * count as f64 / cells.sum::<usize>().max(1) as f64
     }
 
-    /// How the sides of each contact are paired, as its points show.
+    /// The discretization of each contact, as its points show.
     fn pairings(&self) -> Vec<&'static str> {
         let mut pairings = vec![""; self.0.catalog.contacts.len()];
         for point in &self.0.catalog.points {
@@ -49,7 +49,7 @@ impl Summary<'_> {
         pairings
     }
 
-    /// How many subdomains contact groups have, in words.
+    /// Number of subdomains of contact groups, in words.
     fn sizes_of_groups(&self) -> String {
         let sizes = self.groups();
         let words = [

@@ -1,4 +1,4 @@
-//! What ties cells to each other that share no facet: contact points, and nodes at which pieces hang together.
+//! Ties between cells that share no facet: contact points, and nodes at which pieces hang together.
 
 use crate::lists::Lists;
 use crate::model::Model;

@@ -1,4 +1,4 @@
-//! What defines a reference element: the domain that it fills, nodes, shape functions, facets and rules.
+//! The definition of a reference element: the domain that it fills, nodes, shape functions, facets and rules.
 
 use super::kind::ElementKind;
 

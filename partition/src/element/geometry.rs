@@ -144,7 +144,7 @@ impl ReferenceElement {
         }
     }
 
-    /// Where the line x + s·`direction` (a unit vector) crosses the inside of a facet: s (m), in the plane the one
+    /// Intersection of the line x + s·`direction` (a unit vector) with the inside of a facet: s (m), in the plane the one
     /// nearest to x where there are two. `None` where it passes by, or along it.
     pub fn crossing(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let aside = |p: [f64; 3]| {

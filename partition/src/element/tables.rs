@@ -1,4 +1,4 @@
-//! What is tabulated of a reference element: shape functions at points of rules, gradients where its Jacobian is sampled.
+//! Tables of a reference element: shape functions at points of rules, gradients where its Jacobian is sampled.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +17,7 @@ pub struct TabulatedPoint {
     pub gradients: Vec<[f64; 3]>,
 }
 
-/// Where the Jacobian is sampled: places that cut each direction of the unit square or cube into equal parts,
+/// Sampling points of the Jacobian: places that cut each direction of the unit square or cube into equal parts,
 /// as many as it has degrees there.
 #[derive(Debug)]
 pub(super) struct Lattice {

@@ -22,7 +22,7 @@ pub(super) struct Cube {
     is_curved: bool,
     /// Groups of the faces at the start and the end of each axis. A face without a group is glued to the face
     /// without a group that has the same corners; a face with a group, such as that of a contact, never is.
-    /// Where tetrahedra are wanted both have to run the same ways.
+    /// For tetrahedra both have to run the same ways.
     sides: [[Option<String>; 2]; 3],
 }
 

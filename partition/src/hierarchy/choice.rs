@@ -24,9 +24,9 @@ const FEW_CONDITIONS: usize = 600;
 const FEW_WITH_FRICTION: usize = 3000;
 /// Iterations that an active set takes in all, about.
 const ITERATIONS: f64 = 60.0;
-/// What an entry of S of a cluster takes in an iteration, in flops: it and its factor are read from memory.
+/// Flops that an entry of S of a cluster takes in an iteration: it and its factor are read from memory.
 const PER_ENTRY: f64 = 24.0;
-/// What the part of a cluster in the preconditioner takes, over the cube of its size.
+/// Flops of the part of a cluster in the preconditioner, over the cube of its size.
 const PER_CUBE: f64 = 0.3;
 /// Flops that the coarse problem takes, over the square of its size, in space.
 const PER_COARSE_PAIR: f64 = 12.0;
@@ -54,7 +54,7 @@ pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
     of_class.sum()
 }
 
-/// What answers for the statuses of contact conditions.
+/// The operator for given statuses of contact conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
     /// A dense matrix of all conditions.
@@ -72,7 +72,7 @@ pub struct OperatorTimes {
     pub all: Vec<(Operator, f64)>,
     /// The time of the coarse problem, a part of that of iterations.
     pub coarse: f64,
-    /// What is left for want of memory.
+    /// The choice that is left for want of memory.
     last_resort: Option<Operator>,
     /// Why others are left out.
     left_out: Vec<String>,

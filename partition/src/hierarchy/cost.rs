@@ -1,4 +1,4 @@
-//! What the nodes of the tree cost: their fronts, and estimates of flops and time.
+//! The cost of the nodes of the tree: their fronts, and estimates of flops and time.
 
 use super::tree::Tree;
 use crate::flops::{Front, condensation};

@@ -1,4 +1,4 @@
-//! What a tree costs.
+//! The cost of a tree.
 
 use super::choice::{Operator, OperatorTimes, iteration_flops};
 use super::tree::Tree;
@@ -17,11 +17,11 @@ pub struct Work {
     pub speed_up: f64,
 }
 
-/// What doubling the number of ranks must gain.
+/// Least gain of doubling the number of ranks.
 const GAIN: f64 = 0.2;
 
 impl Work {
-    /// What the hierarchy of `catalog` costs; the speed-up is that over all active sets where these are fixed, and that
+    /// The cost of the hierarchy of `catalog`; the speed-up is that over all active sets where these are fixed, and that
     /// of iterations between clusters where these take less time.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);

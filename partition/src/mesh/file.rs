@@ -8,7 +8,7 @@ use crate::error::InputError;
 /// Reads a mesh: a deck of Abaqus or CalculiX where its name ends with `.inp`, else Gmsh's format.
 ///
 /// # Errors
-/// What is wrong with the file and where.
+/// The fault of the file, and its place.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
     match path.extension() {
         Some(ending) if ending.eq_ignore_ascii_case("inp") => abaqus::read(path),

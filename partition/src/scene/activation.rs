@@ -8,7 +8,7 @@ use super::step::LoadStep;
 use super::{Scene, suggest};
 
 impl LoadStep {
-    /// What comes in this step, then what goes, with the key of each.
+    /// Names that come in this step, then names that go, with the key of each.
     fn changes(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let all = [("add", &self.add), ("remove", &self.remove)];
         let named = all.into_iter();
@@ -34,7 +34,7 @@ impl Scene {
         all
     }
 
-    /// What is added before it was ever removed.
+    /// Names that are added before they were ever removed.
     fn absent_at_first(&self) -> BTreeSet<&str> {
         let (mut seen, mut absent) = (BTreeSet::new(), BTreeSet::new());
         for (key, name) in self.step.iter().flat_map(LoadStep::changes) {

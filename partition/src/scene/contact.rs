@@ -54,7 +54,7 @@ pub struct Contact {
     pub side_a: Names,
     /// Partner of side a.
     pub partner: Partner,
-    /// How conditions are made of two sides; `None` to let their nodes decide.
+    /// The discretization of two sides; `None` to let their nodes decide.
     pub pairing: Option<Pairing>,
     /// The gap in place of the geometric one (m).
     pub gap: Option<Number>,
@@ -84,7 +84,7 @@ pub enum Partner {
     Obstacle(Obstacle),
 }
 
-/// How the conditions of a contact are made of its two sides.
+/// The discretization of a contact: conditions between its two sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pairing {

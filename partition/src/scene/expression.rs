@@ -72,7 +72,7 @@ impl Expression {
     /// abs, sign, min, max, atan2, hypot.
     ///
     /// # Errors
-    /// What can't be read, and at which of its characters.
+    /// Text that can't be read, and the first character that is wrong.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut parser = Parser {
             text,

@@ -1,4 +1,4 @@
-//! What is wrong between the keys of a scene, each of which is right by itself.
+//! Contradictions between the keys of a scene, each of which is right by itself.
 
 use std::collections::HashMap;
 

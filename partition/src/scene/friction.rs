@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error};
 use super::number::Number;
 use crate::contact_point::Law;
 
-/// What bounds tangential forces; numbers of at least 0, or expressions of position.
+/// The bound of tangential forces; numbers of at least 0, or expressions of position.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Friction {
     /// `tresca`: a given bound (Pa).

@@ -1,4 +1,4 @@
-//! What acts on a scene in a load step: what the step says, else what the scene does.
+//! The loading of a scene in a load step: that of the step, else that of the scene.
 
 use super::Scene;
 use super::condition::{Displacement, Force, Names, Pressure, Traction};
@@ -73,12 +73,12 @@ impl Loading<'_> {
         }
     }
 
-    /// What entry `index` of its tractions is called in messages.
+    /// Name of entry `index` of its tractions in messages.
     pub fn traction_label(&self, index: usize, on: &Names) -> String {
         self.label("traction", |step| step.traction.is_some(), index, on)
     }
 
-    /// What entry `index` of its pressures is called in messages.
+    /// Name of entry `index` of its pressures in messages.
     pub fn pressure_label(&self, index: usize, on: &Names) -> String {
         self.label("pressure", |step| step.pressure.is_some(), index, on)
     }
@@ -88,7 +88,7 @@ impl Loading<'_> {
         self.label("force", |step| step.force.is_some(), index, on)
     }
 
-    /// What entry `index` of its displacements is called in messages.
+    /// Name of entry `index` of its displacements in messages.
     pub fn displacement_label(&self, index: usize, on: &Names) -> String {
         self.label(
             "displacement",

@@ -66,7 +66,8 @@ impl PlaneState {
         }
     }
 
-    /// What a unit of length or area at `x` stands for: one metre of thickness, or all around the axis 2πx; 1 in space.
+    /// Extent that a unit of length or area at `x` stands for: one metre of thickness, or all around the axis 2πx; 1 in
+    /// space.
     pub fn thickness(plane: Option<Self>, x: [f64; 3]) -> f64 {
         match plane {
             Some(Self::Axisymmetric) => 2.0 * PI * x[0],

@@ -184,7 +184,7 @@ impl Vector {
     }
 }
 
-/// What to do about 'plane' where a value is one of space.
+/// Advice on 'plane' where a value is one of space.
 pub(super) const OR_IN_SPACE: &str = "; where the mesh is one of space, 'plane' is left out";
 
 /// Expectation of a vector, in words.

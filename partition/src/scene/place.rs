@@ -1,4 +1,4 @@
-//! Where in the text of a scene, or of settings, something stands: line and key.
+//! Places in the text of a scene, or of settings: line and key.
 
 use std::ops::Range;
 
@@ -38,7 +38,7 @@ pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
     compose(text, found, path, message)
 }
 
-/// What `toml` or `serde` found in `text`, with line and key.
+/// The fault that `toml` or `serde` found in `text`, with line and key.
 pub fn located(text: &str, error: &Error) -> InputError {
     let start = error.span().map(|span| span.start);
     if let (Some(start), Err(_)) = (start, DeTable::parse(text)) {
@@ -79,7 +79,7 @@ const OF_SCENE: [(&str, &str); 5] = [
     ("subdomains", "[…]"),
 ];
 
-/// Where the first table stands, and its head.
+/// The place of the first table, and its head.
 fn first_table(text: &str) -> Option<(usize, &str)> {
     let mut start = 0;
     for line in text.split_inclusive('\n') {
@@ -91,7 +91,7 @@ fn first_table(text: &str) -> Option<(usize, &str)> {
     None
 }
 
-/// Where a key of the scene itself belongs; nothing for a key of a table, to which `path` leads.
+/// The place that a key of the scene itself belongs to; nothing for a key of a table, to which `path` leads.
 fn above(text: &str, key: &str, path: &[Step]) -> String {
     if path.is_empty() && ["materials", "bodies"].contains(&key) {
         return format!("; expected a table [{key}.NAME] for each");
@@ -107,7 +107,7 @@ fn above(text: &str, key: &str, path: &[Step]) -> String {
     format!("; expected {key} = {value}{place}")
 }
 
-/// What `serde` said of the value at `path`, with the nearest known word for one that isn't known, and
+/// The fault that `serde` found in the value at `path`, with the nearest known word for one that isn't known, and
 /// brackets for a table that should be a list.
 fn with_advice(text: &str, message: &str, path: &[Step]) -> String {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();

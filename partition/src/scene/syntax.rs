@@ -1,4 +1,4 @@
-//! What is wrong in a line that isn't TOML: toml's own words, and advice for the slips of those who
+//! Messages of a line that isn't TOML: toml's own words, and advice for the slips of those who
 //! don't know TOML.
 
 use toml::de::Error;
@@ -18,7 +18,7 @@ const LISTS: [&str; 8] = [
 /// Longest line that is shown.
 const LONGEST: usize = 200;
 
-/// What `toml` says of `text`, advice, and the line with a caret below it.
+/// The message of `toml` on `text`, advice, and the line with a caret below it.
 pub(super) fn described(text: &str, start: usize, error: &Error) -> String {
     let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
     let line = text[from..].lines().next().unwrap_or_default();

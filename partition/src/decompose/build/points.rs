@@ -1,4 +1,4 @@
-//! What the catalog says of the nodes of contact points.
+//! The nodes of contact points in the catalog.
 
 use std::collections::HashMap;
 

@@ -13,7 +13,7 @@ pub(super) const SHAPE: Shape = Shape::Cubes {
 
 /// Height of the block (m).
 const HEIGHT: f64 = 10.0;
-/// Where the left crack starts and ends, and the right one ends and starts: across and up (m).
+/// Start and end of the left crack, end and start of the right one: across and up (m).
 const LINE: [[f64; 2]; 4] = [[0.0, 6.5], [3.0, 5.0], [7.0, 5.0], [10.0, 6.5]];
 /// Along the depth: the plane of symmetry, the end of the cracks, the end of the block (m).
 const DEPTHS: [f64; 3] = [0.0, 3.0, 5.0];

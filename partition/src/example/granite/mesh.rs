@@ -24,7 +24,7 @@ const COLUMNS: [usize; 3] = [12, 16, 12];
 /// Rows of the coarse and of the fine band on each side of the line.
 const ROWS: (usize, usize) = (15, 7);
 
-/// Where the coarse band ends and the fine one starts, as fractions of the way to the line.
+/// End of the coarse band and start of the fine one, as fractions of the way to the line.
 const BANDS: (f64, f64) = (0.768, 0.818);
 
 fn squares() -> Vec<Square> {

@@ -1,4 +1,4 @@
-//! What an MSH file holds, whatever its version and encoding.
+//! The content of an MSH file, whatever its version and encoding.
 
 use std::collections::{BTreeMap, HashMap};
 

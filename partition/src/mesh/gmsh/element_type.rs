@@ -5,7 +5,7 @@ use crate::element::ElementKind;
 /// The kind of element `element`, which Gmsh numbers `number`.
 ///
 /// # Errors
-/// What to say of one that isn't supported.
+/// The message of an unsupported element type.
 pub(super) fn kind(element: i64, number: i64) -> Result<ElementKind, String> {
     if let Some(kind) = ElementKind::ALL.into_iter().find(|&k| code(k) == number) {
         return Ok(kind);
@@ -43,7 +43,7 @@ pub(super) fn code(kind: ElementKind) -> i64 {
     }
 }
 
-/// Where Gmsh has the nodes of `kind`, one after the other; `None` where it orders them as VTK does.
+/// Gmsh's places of the nodes of `kind`, one after the other; `None` where it orders them as VTK does.
 pub(super) fn order(kind: ElementKind) -> Option<&'static [usize]> {
     const TETRAHEDRON: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
     const HEXAHEDRON: &[usize; 27] = &[

@@ -26,7 +26,7 @@ pub fn write(mesh: &Mesh, path: &Path) -> Result<(), OutputError> {
 /// Writes what [`write()`] writes.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write_to(out: &mut dyn Write, mesh: &Mesh) -> io::Result<()> {
     let plan = Plan::new(mesh);
     writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
