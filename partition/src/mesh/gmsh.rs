@@ -90,9 +90,8 @@ fn contents(bytes: &[u8]) -> Result<Content, InputError> {
                 )));
             }
             ("PhysicalNames", _) => content.names = names::read(&mut cursor)?,
-            ("Entities", Some(Version::V4)) => version4::entities(&mut cursor, &mut content)?,
-            ("PartitionedEntities", Some(Version::V4)) => {
-                version4::partitioned_entities(&mut cursor, &mut content)?;
+            (name @ ("Entities" | "PartitionedEntities"), Some(Version::V4)) => {
+                version4::entities(&mut cursor, &mut content, name != "Entities")?;
             }
             ("Nodes", Some(Version::V4)) => version4::nodes(&mut cursor, &mut content)?,
             ("Elements", Some(Version::V4)) => version4::elements(&mut cursor, &mut content)?,

@@ -5,50 +5,39 @@ use super::cursor::Cursor;
 use super::element_type;
 use crate::error::InputError;
 
-/// Reads the body of `$Entities`.
-pub(super) fn entities(cursor: &mut Cursor, content: &mut Content) -> Result<(), InputError> {
-    let counts = entity_counts(cursor)?;
-    for (dim, &count) in counts.iter().enumerate() {
-        for _ in 0..count {
-            let tag = cursor.int("the tag of an entity")?;
-            entity(cursor, content, dim, tag)?;
-        }
-    }
-    Ok(())
-}
-
-/// Reads the body of `$PartitionedEntities`, which stand beside those of `$Entities`.
-pub(super) fn partitioned_entities(
+/// Reads the body of `$Entities`, or that of `$PartitionedEntities`, which stand beside those.
+pub(super) fn entities(
     cursor: &mut Cursor,
     content: &mut Content,
+    are_partitioned: bool,
 ) -> Result<(), InputError> {
-    cursor.size("the number of partitions")?;
-    for _ in 0..cursor.count("the number of ghost entities", 2)? {
-        cursor.int("the tag of a ghost entity")?;
-        cursor.int("a partition")?;
+    if are_partitioned {
+        cursor.size("the number of partitions")?;
+        for _ in 0..cursor.count("the number of ghost entities", 2)? {
+            cursor.int("the tag of a ghost entity")?;
+            cursor.int("a partition")?;
+        }
     }
-    let counts = entity_counts(cursor)?;
-    for (dim, &count) in counts.iter().enumerate() {
+    let counts = [
+        cursor.count("the number of points", 5)?,
+        cursor.count("the number of curves", 9)?,
+        cursor.count("the number of surfaces", 9)?,
+        cursor.count("the number of volumes", 9)?,
+    ];
+    for (dim, count) in counts.into_iter().enumerate() {
         for _ in 0..count {
             let tag = cursor.int("the tag of an entity")?;
-            cursor.int("the dimension of the parent entity")?;
-            cursor.int("the tag of the parent entity")?;
-            for _ in 0..cursor.count("the number of partitions", 1)? {
-                cursor.int("a partition")?;
+            if are_partitioned {
+                cursor.int("the dimension of the parent entity")?;
+                cursor.int("the tag of the parent entity")?;
+                for _ in 0..cursor.count("the number of partitions", 1)? {
+                    cursor.int("a partition")?;
+                }
             }
             entity(cursor, content, dim, tag)?;
         }
     }
     Ok(())
-}
-
-fn entity_counts(cursor: &mut Cursor) -> Result<[usize; 4], InputError> {
-    Ok([
-        cursor.count("the number of points", 5)?,
-        cursor.count("the number of curves", 9)?,
-        cursor.count("the number of surfaces", 9)?,
-        cursor.count("the number of volumes", 9)?,
-    ])
 }
 
 /// Reads an entity from its coordinates on.
