@@ -17,6 +17,14 @@ pub const MANUAL: Manual = Manual {
             "makes a problem file of a scene and its mesh",
         ),
         (
+            "contact-dd-partition part.inp -o problem.h5",
+            "makes a problem file of a deck of Abaqus or CalculiX",
+        ),
+        (
+            "contact-dd-partition part.inp --write-scene my-scene",
+            "writes the scene and the mesh that the deck means",
+        ),
+        (
             "contact-dd-partition --example granite --write-scene my-scene",
             "writes a scene and its mesh to start from",
         ),
@@ -61,10 +69,10 @@ pub const MANUAL: Manual = Manual {
 /// Splits a scene into subdomains and writes the problem file that contact-dd-mpi solves
 #[derive(Clone, Debug, Parser)]
 #[command(name = "contact-dd-partition", version, max_term_width = 100,
-          override_usage = "contact-dd-partition [OPTIONS] SCENE.toml\n       contact-dd-partition [OPTIONS] --example NAME\n       contact-dd-partition --info FILE.h5",
+          override_usage = "contact-dd-partition [OPTIONS] SCENE.toml\n       contact-dd-partition [OPTIONS] DECK.inp\n       contact-dd-partition [OPTIONS] --example NAME\n       contact-dd-partition --info FILE.h5",
           after_help = MANUAL.in_short(), after_long_help = MANUAL.at_length())]
 pub struct CommandLine {
-    /// The scene
+    /// The scene, or a deck of Abaqus or CalculiX, whose name ends with .inp
     #[arg(value_name = "SCENE.toml", value_hint = ValueHint::FilePath,
           required_unless_present_any = ["example", "list_examples", "info", "generate"])]
     pub scene: Option<PathBuf>,
@@ -127,11 +135,10 @@ pub struct CommandLine {
           value_parser = elements(), help_heading = "Built-in scenes")]
     pub element: Option<ElementKind>,
 
-    /// Write scene.toml and mesh.msh of the built-in scene into DIR, to start from
+    /// Write scene.toml and mesh.msh of the deck or the built-in scene into DIR, to start from
     ///
     /// The problem file is then written only with -o.
-    #[arg(long, value_name = "DIR", requires = "example", conflicts_with = "scene",
-          help_heading = "Built-in scenes", value_hint = ValueHint::DirPath)]
+    #[arg(long, value_name = "DIR", help_heading = "Problem file", value_hint = ValueHint::DirPath)]
     pub write_scene: Option<PathBuf>,
 
     /// Print the man page or completions for a shell

@@ -10,6 +10,7 @@ use std::ptr::null_mut;
 use clap::{CommandFactory, Parser};
 use contact_dd_partition::allocator::Allocator;
 use contact_dd_partition::command_line::{CommandLine, MANUAL};
+use contact_dd_partition::deck;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
@@ -132,7 +133,14 @@ struct Source {
 
 /// Reads or makes scene and mesh; `None` where nothing but these was asked for.
 fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
+    if let Some(path) = args.scene.as_ref().filter(|path| deck::is_one(path)) {
+        return read_deck(args, path);
+    }
     if let Some(path) = &args.scene {
+        if args.write_scene.is_some() {
+            let message = "is a scene already; expected a deck, or --example, beside --write-scene";
+            return Err(InputError::new(message).in_file(path).into());
+        }
         let scene = Scene::read(path)?;
         let stem = path.file_stem().unwrap_or(path.as_os_str());
         let output = output(args, Path::new(stem));
@@ -154,16 +162,7 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
     };
     if let Some(directory) = &args.write_scene {
         let scene = example.write(&mesh, directory)?;
-        if let Some(output) = &args.output {
-            keep(&scene, output)?;
-            keep(&directory.join(example::MESH), output)?;
-        }
-        say(&format!("scene         {}", scene.display()))?;
-        if args.output.is_none() {
-            say(&format!(
-                "next          contact-dd-partition {}",
-                scene.display()
-            ))?;
+        if !goes_on(args, &scene)? {
             return Ok(None);
         }
     }
@@ -173,6 +172,53 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
         subdomains: (args.subdomains).or((args.refine == 0).then_some(example.subdomains)),
         output: output(args, Path::new(example.name)),
     }))
+}
+
+/// Reads a deck, whose scene and mesh are written where that was asked for.
+fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure> {
+    let translation = deck::read(path)?;
+    if let Some(directory) = &args.write_scene {
+        if !translation.mesh.has_modes.is_empty() {
+            let message = "has elements with incompatible modes, for which Gmsh's format has no word; expected C3D8, CPE4 \
+                           or CPS4 beside --write-scene";
+            return Err(InputError::new(message).in_file(path).into());
+        }
+        let scene = translation.write(directory)?;
+        if !goes_on(args, &scene)? {
+            return Ok(None);
+        }
+    }
+    let output = output(
+        args,
+        Path::new(path.file_stem().unwrap_or(path.as_os_str())),
+    );
+    for file in &translation.files {
+        keep(file, &output)?;
+    }
+    let scene = Scene::parse(&translation.scene).map_err(|error| {
+        let message = format!("as a scene, which --write-scene writes: {error}");
+        InputError::new(message).in_file(path)
+    })?;
+    Ok(Some(Source {
+        scene,
+        mesh: translation.mesh.along_curve(),
+        subdomains: args.subdomains,
+        output,
+    }))
+}
+
+/// Says where a scene was written and, where no problem file was asked for beside it, what to do with it; whether one was.
+fn goes_on(args: &CommandLine, scene: &Path) -> Result<bool, Failure> {
+    if let Some(output) = &args.output {
+        keep(scene, output)?;
+        keep(&scene.with_file_name(example::MESH), output)?;
+    }
+    let scene = scene.display();
+    say(&format!("scene         {scene}"))?;
+    if args.output.is_none() {
+        say(&format!("next          contact-dd-partition {scene}"))?;
+    }
+    Ok(args.output.is_some())
 }
 
 /// Refuses to write over what the problem file is made from.

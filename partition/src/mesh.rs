@@ -1,6 +1,6 @@
 //! A mesh: points, cells, facets, and the physical groups that name them.
 
-mod abaqus;
+pub(crate) mod abaqus;
 pub mod bounding_box;
 mod curve;
 pub mod facets;

@@ -23,9 +23,15 @@ use std::path::{Path, PathBuf};
 use super::Mesh;
 use crate::error::InputError;
 
+pub(crate) use self::assembly::Whole;
+pub(crate) use self::blocks::{Block, Data, LinePlace, Source};
+pub(crate) use self::deck::{Deck, Face};
+pub(crate) use self::import::mesh;
+pub(crate) use self::members::Of;
+
 /// A deck and the files that it includes; the deck alone where it can't be read, which is told who reads it.
 pub fn files(path: &Path) -> Vec<PathBuf> {
-    match blocks::Source::read(path) {
+    match Source::read(path) {
         Ok(source) => source.paths().map(Path::to_path_buf).collect(),
         Err(_) => vec![path.to_path_buf()],
     }
@@ -36,7 +42,17 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
 /// # Errors
 /// What is wrong with the deck, with file and line.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
-    let source = blocks::Source::read(path)?;
-    let (deck, warnings) = assembly::Assembly::read(&source)?;
-    import::mesh(&deck, warnings).map_err(|error| error.in_file(path))
+    let source = Source::read(path)?;
+    let Whole {
+        deck,
+        mut warnings,
+        left_out,
+    } = Whole::read(&source)?;
+    if !left_out.is_empty() {
+        warnings.push(format!(
+            "of the deck the mesh alone is read; left out are {}",
+            left_out.join(", ")
+        ));
+    }
+    mesh(&deck, warnings).map_err(|error| error.in_file(path))
 }

@@ -35,9 +35,28 @@ const LARGEST_TAG: i64 = 1 << 60;
 /// Instances whose numbers are told one by one.
 const TOLD: usize = 20;
 
+/// A deck whose parts are instances of one whole.
+pub(crate) struct Whole {
+    pub(crate) deck: Deck,
+    /// What to warn of.
+    pub(crate) warnings: Vec<String>,
+    /// Keywords that say nothing of the mesh.
+    pub(crate) left_out: Vec<String>,
+}
+
+impl Whole {
+    /// Reads the mesh of a deck.
+    ///
+    /// # Errors
+    /// What is wrong with it, with file and line.
+    pub(crate) fn read(source: &Source) -> Result<Self, InputError> {
+        Assembly::read(source)
+    }
+}
+
 /// A deck on its way into one mesh.
 #[derive(Default)]
-pub(super) struct Assembly<'a> {
+struct Assembly<'a> {
     whole: Deck,
     /// What belongs to no part and no instance.
     own: Scope<'a>,
@@ -72,8 +91,7 @@ impl Open<'_> {
 }
 
 impl<'a> Assembly<'a> {
-    /// The whole deck, and what to warn of.
-    pub(super) fn read(source: &'a Source) -> Result<(Deck, Vec<String>), InputError> {
+    fn read(source: &'a Source) -> Result<Whole, InputError> {
         let mut assembly = Self::default();
         for block in &source.blocks {
             assembly.add(source, block)?;
@@ -88,7 +106,11 @@ impl<'a> Assembly<'a> {
         }
         assembly.own.read(source, &mut assembly.whole)?;
         let warnings = assembly.warnings(source);
-        Ok((assembly.whole, warnings))
+        Ok(Whole {
+            deck: assembly.whole,
+            warnings,
+            left_out: assembly.skipped.into_iter().collect(),
+        })
     }
 
     fn add(&mut self, source: &'a Source, block: &'a Block) -> Result<(), InputError> {
@@ -208,12 +230,6 @@ impl<'a> Assembly<'a> {
             warnings.push(format!(
                 "of the deck's elements are read {}",
                 list(&taken_as)
-            ));
-        }
-        if !self.skipped.is_empty() {
-            warnings.push(format!(
-                "of the deck the mesh alone is read; left out are {}",
-                list(&self.skipped)
             ));
         }
         let mut notes = source.notes.clone();

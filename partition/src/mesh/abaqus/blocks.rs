@@ -29,41 +29,41 @@ const WITH_INPUT: [&str; 4] = ["NODE", "ELEMENT", "NSET", "ELSET"];
 
 /// A line of a file.
 #[derive(Clone, Copy)]
-pub(super) struct LinePlace {
+pub(crate) struct LinePlace {
     file: usize,
     line: usize,
 }
 
 /// A line of data.
-pub(super) struct Data {
-    pub(super) place: LinePlace,
+pub(crate) struct Data {
+    pub(crate) place: LinePlace,
     text: Range<usize>,
 }
 
 /// A keyword and its data.
-pub(super) struct Block {
+pub(crate) struct Block {
     /// In capitals, with single blanks.
-    pub(super) keyword: String,
+    pub(crate) keyword: String,
     /// Names in capitals, and values.
     parameters: Vec<(String, String)>,
-    pub(super) place: LinePlace,
-    pub(super) data: Vec<Data>,
+    pub(crate) place: LinePlace,
+    pub(crate) data: Vec<Data>,
 }
 
 impl Block {
     /// The value of a parameter, empty where it has none.
-    pub(super) fn parameter(&self, name: &str) -> Option<&str> {
+    pub(crate) fn parameter(&self, name: &str) -> Option<&str> {
         let found = self.parameters.iter().find(|(key, _)| key == name);
         found.map(|(_, value)| value.as_str())
     }
 }
 
 /// All files of a deck.
-pub(super) struct Source {
+pub(crate) struct Source {
     files: Vec<(PathBuf, String)>,
-    pub(super) blocks: Vec<Block>,
+    pub(crate) blocks: Vec<Block>,
     /// What isn't read of the text itself.
-    pub(super) notes: Notes,
+    pub(crate) notes: Notes,
     inclusions: usize,
     /// Bytes that were read before.
     repeated: usize,
@@ -71,7 +71,7 @@ pub(super) struct Source {
 
 impl Source {
     /// Reads a deck and what it includes.
-    pub(super) fn read(path: &Path) -> Result<Self, InputError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, InputError> {
         let mut source = Self {
             files: Vec::new(),
             blocks: Vec::new(),
@@ -91,24 +91,24 @@ impl Source {
     }
 
     /// All files.
-    pub(super) fn paths(&self) -> impl Iterator<Item = &Path> {
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files.iter().map(|(path, _)| path.as_path())
     }
 
     /// An error at a line.
-    pub(super) fn error(&self, at: LinePlace, message: impl std::fmt::Display) -> InputError {
+    pub(crate) fn error(&self, at: LinePlace, message: impl std::fmt::Display) -> InputError {
         InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)
     }
 
     /// What stands between the commas of a line of data, but nothing behind the last one.
-    pub(super) fn items(&self, data: &Data) -> impl Iterator<Item = &str> {
+    pub(crate) fn items(&self, data: &Data) -> impl Iterator<Item = &str> {
         let text = self.files[data.place.file].1[data.text.clone()].trim();
         let text = text.strip_suffix(',').unwrap_or(text);
         text.split(',').map(|item| unquoted(item.trim()))
     }
 
     /// A number of an element or node.
-    pub(super) fn tag(&self, at: LinePlace, item: &str, what: &str) -> Result<i64, InputError> {
+    pub(crate) fn tag(&self, at: LinePlace, item: &str, what: &str) -> Result<i64, InputError> {
         let number = item.parse().ok();
         number
             .filter(|tag| (1..=LARGEST_TAG).contains(tag))
@@ -122,7 +122,7 @@ impl Source {
     }
 
     /// A real number, with `e` or Fortran's `d` or nothing before the exponent, as in `5.-1`; nothing at all is 0.
-    pub(super) fn real(&self, at: LinePlace, item: &str, what: &str) -> Result<f64, InputError> {
+    pub(crate) fn real(&self, at: LinePlace, item: &str, what: &str) -> Result<f64, InputError> {
         let item = if item.is_empty() { "0" } else { item };
         let shown = || name::shown(item);
         let value = real(item).ok_or_else(|| {
@@ -137,7 +137,7 @@ impl Source {
     }
 
     /// The value of a parameter that has to be there.
-    pub(super) fn required<'a>(&self, block: &'a Block, name: &str) -> Result<&'a str, InputError> {
+    pub(crate) fn required<'a>(&self, block: &'a Block, name: &str) -> Result<&'a str, InputError> {
         let value = block.parameter(name).filter(|value| !value.is_empty());
         value.ok_or_else(|| {
             self.error(
@@ -148,7 +148,7 @@ impl Source {
     }
 
     /// The line of a place in words, with the file where it isn't the deck itself.
-    pub(super) fn place(&self, at: LinePlace) -> String {
+    pub(crate) fn place(&self, at: LinePlace) -> String {
         match at.file {
             0 => format!("line {}", at.line),
             file => format!("{}, line {}", self.files[file].0.display(), at.line),

@@ -12,7 +12,7 @@ use crate::name;
 
 /// A part of a surface.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Face {
+pub(crate) enum Face {
     /// The face of an element, by Abaqus' number.
     Of(u32, usize),
     /// The faces of an element that belong to no other.
@@ -21,39 +21,39 @@ pub(super) enum Face {
 
 /// Nodes, elements, sets and surfaces.
 #[derive(Clone, Default)]
-pub(super) struct Deck {
-    pub(super) node_tags: Vec<i64>,
-    pub(super) points: Vec<[f64; 3]>,
-    pub(super) node_of: HashMap<i64, u32>,
-    pub(super) elements: Elements,
-    pub(super) element_tags: Vec<i64>,
+pub(crate) struct Deck {
+    pub(crate) node_tags: Vec<i64>,
+    pub(crate) points: Vec<[f64; 3]>,
+    pub(crate) node_of: HashMap<i64, u32>,
+    pub(crate) elements: Elements,
+    pub(crate) element_tags: Vec<i64>,
     /// Elements that can be sides only.
-    pub(super) is_side: Vec<bool>,
+    pub(crate) is_side: Vec<bool>,
     /// Elements with incompatible modes.
-    pub(super) has_modes: Vec<bool>,
-    pub(super) element_of: HashMap<i64, u32>,
+    pub(crate) has_modes: Vec<bool>,
+    pub(crate) element_of: HashMap<i64, u32>,
     /// The tags of elements that are left out, as they are neither cells nor sides.
     left_out: HashSet<i64>,
-    pub(super) node_sets: Sets<u32>,
-    pub(super) element_sets: Sets<u32>,
-    pub(super) surfaces: Sets<Face>,
+    pub(crate) node_sets: Sets<u32>,
+    pub(crate) element_sets: Sets<u32>,
+    pub(crate) surfaces: Sets<Face>,
     /// Surfaces that are told by their nodes.
-    pub(super) node_surfaces: Sets<u32>,
+    pub(crate) node_surfaces: Sets<u32>,
     /// What is added to the tags of an instance, by its name in capitals, and under an empty one to those of
     /// the assembly itself.
-    pub(super) instances: BTreeMap<String, Offsets>,
+    pub(crate) instances: BTreeMap<String, Offsets>,
     /// The highest tags.
-    pub(super) highest: Offsets,
+    pub(crate) highest: Offsets,
     /// Types that are read as others of the same shape, in words.
-    pub(super) taken_as: BTreeSet<String>,
-    pub(super) notes: Notes,
+    pub(crate) taken_as: BTreeSet<String>,
+    pub(crate) notes: Notes,
 }
 
 /// Tags of nodes and elements, or what is added to those of an instance so that all of a deck differ.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Offsets {
-    pub(super) nodes: i64,
-    pub(super) elements: i64,
+pub(crate) struct Offsets {
+    pub(crate) nodes: i64,
+    pub(crate) elements: i64,
 }
 
 /// An element on its way into the deck.
@@ -65,7 +65,7 @@ struct Listed {
 
 impl Deck {
     /// `*NODE`: tag and coordinates a line.
-    pub(super) fn add_nodes(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+    pub(crate) fn add_nodes(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
         if let Some(system) = block
             .parameter("SYSTEM")
             .filter(|s| !s.eq_ignore_ascii_case("R"))
@@ -112,7 +112,7 @@ impl Deck {
     }
 
     /// Appends a node.
-    pub(super) fn push_node(&mut self, tag: i64, point: [f64; 3]) -> u32 {
+    pub(crate) fn push_node(&mut self, tag: i64, point: [f64; 3]) -> u32 {
         let node = self.points.len() as u32;
         self.node_of.insert(tag, node);
         self.node_tags.push(tag);
@@ -122,7 +122,7 @@ impl Deck {
     }
 
     /// `*ELEMENT`: tag and nodes of each, on as many lines as it takes.
-    pub(super) fn add_elements(
+    pub(crate) fn add_elements(
         &mut self,
         source: &Source,
         block: &Block,
@@ -245,7 +245,7 @@ impl Deck {
     }
 
     /// Whether there is an element of this tag that is left out.
-    pub(super) fn leaves_out(&self, tag: i64) -> bool {
+    pub(crate) fn leaves_out(&self, tag: i64) -> bool {
         self.left_out.contains(&tag)
     }
 
@@ -289,7 +289,7 @@ impl Deck {
 
     /// Gives the element that was appended last its tag, and says whether it is a side, and whether it has incompatible
     /// modes.
-    pub(super) fn push_tag(&mut self, tag: i64, is_side: bool, has_modes: bool) -> u32 {
+    pub(crate) fn push_tag(&mut self, tag: i64, is_side: bool, has_modes: bool) -> u32 {
         let element = self.element_tags.len() as u32;
         self.element_of.insert(tag, element);
         self.element_tags.push(tag);
@@ -304,7 +304,7 @@ impl Deck {
 ///
 /// # Errors
 /// What it mustn't hold, with the line.
-pub(super) fn check_name(source: &Source, at: LinePlace, name: &str) -> Result<(), InputError> {
+pub(crate) fn check_name(source: &Source, at: LinePlace, name: &str) -> Result<(), InputError> {
     name::check_text(name)
         .map_err(|reason| source.error(at, format!("'{}' {reason}", name::shown(name))))
 }

@@ -14,7 +14,7 @@ use crate::mesh::{Group, Mesh, name_of_dim};
 use crate::name;
 
 /// The mesh of a deck.
-pub(super) fn mesh(deck: &Deck, warnings: Vec<String>) -> Result<Mesh, InputError> {
+pub(crate) fn mesh(deck: &Deck, warnings: Vec<String>) -> Result<Mesh, InputError> {
     let cells = (0..deck.elements.len()).filter(|&element| !deck.is_side[element]);
     let Some(dim) = cells.map(|cell| deck.elements.kind(cell).dim()).max() else {
         return Err(InputError::new(format!(

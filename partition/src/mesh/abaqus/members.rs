@@ -11,7 +11,7 @@ use crate::name;
 
 /// Kinds of items in a set's data.
 #[derive(Clone, Copy)]
-enum Of {
+pub(crate) enum Of {
     Nodes,
     Elements,
 }
@@ -34,7 +34,7 @@ enum Meaning<'a> {
 
 impl Deck {
     /// The name of a set or surface that a block names and that isn't there.
-    pub(super) fn lacks<'a>(&self, source: &'a Source, block: &'a Block) -> Option<&'a str> {
+    pub(crate) fn lacks<'a>(&self, source: &'a Source, block: &'a Block) -> Option<&'a str> {
         let instance = block.parameter("INSTANCE");
         let of = match block.keyword.as_str() {
             "SURFACE" if block.parameter("COMBINE").is_some() => {
@@ -55,7 +55,7 @@ impl Deck {
     }
 
     /// `*NSET` and `*ELSET`: tags and names of other sets, or with `GENERATE` first, last and increment.
-    pub(super) fn add_set(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+    pub(crate) fn add_set(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
         let of = match block.keyword.as_str() {
             "NSET" => Of::Nodes,
             _ => Of::Elements,
@@ -175,7 +175,7 @@ impl Deck {
     }
 
     /// The nodes or elements that an item of the set `set` means; what isn't there is left out.
-    fn members(
+    pub(crate) fn members(
         &mut self,
         source: &Source,
         at: LinePlace,
@@ -209,7 +209,7 @@ impl Deck {
     }
 
     /// `*SURFACE`: elements or sets of them with a face each, nodes, or other surfaces.
-    pub(super) fn add_surface(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+    pub(crate) fn add_surface(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
         let name = source.required(block, "NAME")?;
         check_name(source, block.place, name)?;
         let internal = block.parameter("INTERNAL").is_some();

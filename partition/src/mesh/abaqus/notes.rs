@@ -14,11 +14,11 @@ struct Tally {
 
 /// Kinds of what is left out, in words, and what is of each.
 #[derive(Clone, Default)]
-pub(super) struct Notes(BTreeMap<String, Tally>);
+pub(crate) struct Notes(BTreeMap<String, Tally>);
 
 impl Notes {
     /// Notes a thing; one that is noted already counts once.
-    pub(super) fn add(&mut self, what: &str, thing: String) {
+    pub(crate) fn add(&mut self, what: &str, thing: String) {
         let tally = self.0.entry(what.to_owned()).or_default();
         if tally.first.contains(&thing) {
             return;
@@ -30,7 +30,7 @@ impl Notes {
     }
 
     /// Adds other notes.
-    pub(super) fn join(&mut self, other: &Self) {
+    pub(crate) fn join(&mut self, other: &Self) {
         for (what, more) in &other.0 {
             let tally = self.0.entry(what.clone()).or_default();
             tally.count += more.count;
@@ -45,7 +45,7 @@ impl Notes {
     }
 
     /// A warning for each kind.
-    pub(super) fn warnings(&self) -> impl Iterator<Item = String> {
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|(what, tally)| {
             let more = match tally.count - tally.first.len() {
                 0 => String::new(),

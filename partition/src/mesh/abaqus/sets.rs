@@ -7,7 +7,7 @@ const FEW: usize = 64;
 
 /// Members of a set: those that came last may be there twice, but never more than half of them.
 #[derive(Clone)]
-pub(super) struct Members<T> {
+pub(crate) struct Members<T> {
     list: Vec<T>,
     /// How many there were when each was there once.
     distinct: usize,
@@ -24,7 +24,7 @@ impl<T> Default for Members<T> {
 
 impl<T: Copy + Ord> Members<T> {
     /// Adds members.
-    pub(super) fn extend(&mut self, more: impl IntoIterator<Item = T>) {
+    pub(crate) fn extend(&mut self, more: impl IntoIterator<Item = T>) {
         self.list.extend(more);
         if self.list.len() > 2 * self.distinct.max(FEW) {
             self.list.sort_unstable();
@@ -34,24 +34,24 @@ impl<T: Copy + Ord> Members<T> {
     }
 
     /// All of them, some perhaps twice.
-    pub(super) fn list(&self) -> &[T] {
+    pub(crate) fn list(&self) -> &[T] {
         &self.list
     }
 }
 
 /// A set.
 #[derive(Clone)]
-pub(super) struct Set<T> {
+pub(crate) struct Set<T> {
     /// Name as the deck first writes it.
-    pub(super) name: String,
-    pub(super) members: Members<T>,
+    pub(crate) name: String,
+    pub(crate) members: Members<T>,
     /// Made by a program for itself, not by its user.
-    pub(super) internal: bool,
+    pub(crate) internal: bool,
 }
 
 /// Sets by name.
 #[derive(Clone)]
-pub(super) struct Sets<T>(BTreeMap<String, Set<T>>);
+pub(crate) struct Sets<T>(BTreeMap<String, Set<T>>);
 
 impl<T> Default for Sets<T> {
     fn default() -> Self {
@@ -61,7 +61,7 @@ impl<T> Default for Sets<T> {
 
 impl<T: Copy + Ord> Sets<T> {
     /// Adds to a set, which is made where it isn't there.
-    pub(super) fn extend(
+    pub(crate) fn extend(
         &mut self,
         name: &str,
         internal: bool,
@@ -75,11 +75,11 @@ impl<T: Copy + Ord> Sets<T> {
         set.members.extend(members);
     }
 
-    pub(super) fn get(&self, name: &str) -> Option<&Set<T>> {
+    pub(crate) fn get(&self, name: &str) -> Option<&Set<T>> {
         self.0.get(&name.to_uppercase())
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = &Set<T>> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Set<T>> {
         self.0.values()
     }
 }

@@ -1,0 +1,84 @@
+//! `*AMPLITUDE`: a factor over time.
+
+use super::axes::numbers;
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, Source};
+use crate::name;
+
+/// A factor over time, linear between its points.
+#[derive(Clone)]
+pub(super) struct Amplitude {
+    points: Vec<(f64, f64)>,
+    /// Whether its time is that of the whole deck, not that of a step.
+    pub(super) is_total: bool,
+}
+
+/// A moment, by both times.
+#[derive(Clone, Copy)]
+pub(super) struct Moment {
+    pub(super) in_step: f64,
+    pub(super) total: f64,
+}
+
+impl Amplitude {
+    pub(super) fn read(source: &Source, block: &Block) -> Result<Self, InputError> {
+        let definition = block
+            .parameter("DEFINITION")
+            .unwrap_or("TABULAR")
+            .to_uppercase();
+        let value = block
+            .parameter("VALUE")
+            .unwrap_or("RELATIVE")
+            .to_uppercase();
+        let is_read = ["TABULAR", "SMOOTH STEP"].contains(&definition.as_str());
+        if !is_read || value != "RELATIVE" || block.parameter("USER").is_some() {
+            let message = format!(
+                "*AMPLITUDE of DEFINITION={}, VALUE={} isn't read; expected a table of times and relative values",
+                name::shown(&definition),
+                name::shown(&value)
+            );
+            return Err(source.error(block.place, message));
+        }
+        let mut row = Vec::new();
+        for data in &block.data {
+            row.extend(numbers(source, data, "a time or a value of the amplitude")?);
+        }
+        if row.is_empty() || row.len() % 2 == 1 {
+            let message = format!(
+                "*AMPLITUDE has {} numbers; expected pairs of a time and a value",
+                row.len()
+            );
+            return Err(source.error(block.place, message));
+        }
+        let points: Vec<(f64, f64)> = row.chunks(2).map(|pair| (pair[0], pair[1])).collect();
+        if let Some(pair) = points.windows(2).find(|pair| pair[1].0 < pair[0].0) {
+            let message = format!(
+                "the time {} comes after {}; expected times that grow",
+                pair[1].0, pair[0].0
+            );
+            return Err(source.error(block.place, message));
+        }
+        let is_total = block
+            .parameter("TIME")
+            .is_some_and(|time| time.to_uppercase().starts_with("TOTAL"));
+        Ok(Self { points, is_total })
+    }
+
+    /// Its value at a moment: before its first point and behind its last that of these.
+    pub(super) fn at(&self, moment: Moment) -> f64 {
+        let time = if self.is_total {
+            moment.total
+        } else {
+            moment.in_step
+        };
+        let next = self.points.partition_point(|(at, _)| *at <= time);
+        match (
+            next.checked_sub(1).map(|last| self.points[last]),
+            self.points.get(next),
+        ) {
+            (Some((t0, a0)), Some((t1, a1))) => a0 + (a1 - a0) * (time - t0) / (t1 - t0),
+            (Some((_, last)), None) => last,
+            (None, first) => first.map_or(0.0, |(_, value)| *value),
+        }
+    }
+}

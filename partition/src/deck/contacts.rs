@@ -1,0 +1,273 @@
+//! `*CONTACT PAIR`, `*SURFACE INTERACTION` and what stands behind it, and general contact.
+
+use std::collections::BTreeMap;
+
+use super::loads::item;
+use super::place::Places;
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, LinePlace};
+use crate::name;
+
+/// The law between two surfaces.
+#[derive(Default)]
+struct Interaction {
+    friction: f64,
+    /// What is taken as hard contact though it isn't, in words.
+    soft: Option<String>,
+}
+
+/// A pair of surfaces, by name in capitals.
+pub(super) struct Pair {
+    pub(super) slave: String,
+    pub(super) master: String,
+    interaction: String,
+    pub(super) place: LinePlace,
+    /// Which nodes of the slave are moved onto the master, as the deck says it.
+    pub(super) adjust: Option<String>,
+    pub(super) gap: Option<f64>,
+}
+
+/// Contact wherever bodies touch.
+struct General {
+    place: LinePlace,
+    interaction: Option<String>,
+}
+
+/// All contacts of a deck.
+#[derive(Default)]
+pub(super) struct Contacts {
+    interactions: BTreeMap<String, Interaction>,
+    /// The interaction that is read, by name in capitals.
+    open: Option<String>,
+    pub(super) pairs: Vec<Pair>,
+    general: Option<General>,
+}
+
+/// Parameters of `*FRICTION` that are another law than that of Coulomb.
+const FRICTION: [&str; 6] = [
+    "ROUGH",
+    "TAUMAX",
+    "EXPONENTIAL DECAY",
+    "USER",
+    "LAGRANGE",
+    "ANISOTROPIC",
+];
+
+impl Contacts {
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.pairs.is_empty() && self.general.is_none()
+    }
+
+    /// Reads a block of contacts.
+    pub(super) fn read(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let source = places.source;
+        match block.keyword.as_str() {
+            "SURFACE INTERACTION" => {
+                let name = source.required(block, "NAME")?.to_uppercase();
+                self.interactions
+                    .insert(name.clone(), Interaction::default());
+                self.open = Some(name);
+            }
+            "SURFACE BEHAVIOR" => {
+                let soft = soft(places, block)?;
+                self.interaction(places, block)?.soft = soft;
+            }
+            "FRICTION" => {
+                let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
+                if let Some(key) = refused {
+                    let message = format!(
+                        "*FRICTION with {key} isn't read; expected a coefficient of Coulomb's law"
+                    );
+                    return Err(source.error(block.place, message));
+                }
+                let friction = match block.data.first() {
+                    Some(data) => source.real(
+                        data.place,
+                        item(source, data, 0),
+                        "a coefficient of friction",
+                    )?,
+                    None => 0.0,
+                };
+                self.interaction(places, block)?.friction = friction;
+            }
+            "CONTACT PAIR" => self.pairs(places, block)?,
+            "CLEARANCE" => self.clearance(places, block)?,
+            "CONTACT" => {
+                self.general = Some(General {
+                    place: block.place,
+                    interaction: None,
+                })
+            }
+            "CONTACT INCLUSIONS" if block.parameter("ALL EXTERIOR").is_none() => {
+                let message = "*CONTACT INCLUSIONS of surfaces isn't read; expected ALL EXTERIOR, or a *CONTACT PAIR";
+                return Err(source.error(block.place, message));
+            }
+            "CONTACT PROPERTY ASSIGNMENT" => {
+                let data = block.data.last();
+                let interaction = data.map(|data| item(source, data, 2).to_uppercase());
+                let surfaces = data.is_some_and(|data| !item(source, data, 0).is_empty());
+                if surfaces || block.data.len() > 1 {
+                    let message = "an interaction of certain surfaces isn't read; expected one for all: , , INTERACTION";
+                    return Err(source.error(block.place, message));
+                }
+                if let Some(general) = &mut self.general {
+                    general.interaction = interaction;
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The interaction to which a block belongs.
+    fn interaction(
+        &mut self,
+        places: &Places,
+        block: &Block,
+    ) -> Result<&mut Interaction, InputError> {
+        let open = self
+            .open
+            .as_ref()
+            .and_then(|name| self.interactions.get_mut(name));
+        open.ok_or_else(|| {
+            let message = format!(
+                "*{} belongs to nothing; expected *SURFACE INTERACTION before it",
+                block.keyword
+            );
+            places.source.error(block.place, message)
+        })
+    }
+
+    fn pairs(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let source = places.source;
+        let interaction = source.required(block, "INTERACTION")?.to_uppercase();
+        if block.parameter("TIED").is_some() {
+            let message = "a *CONTACT PAIR with TIED isn't supported yet; instead give the bodies the same nodes";
+            return Err(source.error(block.place, message));
+        }
+        for data in &block.data {
+            let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
+            if master.is_empty() || slave == master {
+                let message = format!(
+                    "the contact of '{}' with itself isn't read; expected two surfaces, the slave's first",
+                    name::shown(&slave)
+                );
+                return Err(source.error(data.place, message));
+            }
+            places.check_surface(data.place, &slave)?;
+            places.check_surface(data.place, &master)?;
+            self.pairs.push(Pair {
+                slave,
+                master,
+                interaction: interaction.clone(),
+                place: data.place,
+                adjust: block.parameter("ADJUST").map(str::to_owned),
+                gap: None,
+            });
+        }
+        Ok(())
+    }
+
+    /// `*CLEARANCE`: the gap of a pair.
+    fn clearance(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let source = places.source;
+        let value = source.required(block, "VALUE")?;
+        let gap = source.real(block.place, value, "the clearance")?;
+        let [slave, master] =
+            ["SLAVE", "MASTER"].map(|key| block.parameter(key).unwrap_or_default().to_uppercase());
+        let pair = self
+            .pairs
+            .iter_mut()
+            .find(|pair| pair.slave == slave && pair.master == master);
+        match pair {
+            Some(pair) => pair.gap = Some(gap),
+            None => {
+                let message = "there is no *CONTACT PAIR of this SLAVE and MASTER before this line";
+                return Err(source.error(block.place, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// The coefficient of friction of a pair, and with `warnings` what its law was taken for.
+    pub(super) fn friction(
+        &self,
+        places: &Places,
+        pair: &Pair,
+        warnings: &mut Vec<String>,
+    ) -> Result<f64, InputError> {
+        self.law(places, pair.place, &pair.interaction, warnings)
+    }
+
+    /// The coefficient of friction of general contact; `None` without any.
+    pub(super) fn general(
+        &self,
+        places: &Places,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<f64>, InputError> {
+        let Some(general) = &self.general else {
+            return Ok(None);
+        };
+        match &general.interaction {
+            Some(name) => self.law(places, general.place, name, warnings).map(Some),
+            None => Ok(Some(0.0)),
+        }
+    }
+
+    fn law(
+        &self,
+        places: &Places,
+        at: LinePlace,
+        name: &str,
+        warnings: &mut Vec<String>,
+    ) -> Result<f64, InputError> {
+        let Some(interaction) = self.interactions.get(name) else {
+            let message = format!("there is no *SURFACE INTERACTION '{}'", name::shown(name));
+            return Err(places.source.error(at, message));
+        };
+        if let Some(soft) = interaction
+            .soft
+            .as_ref()
+            .filter(|soft| !warnings.contains(soft))
+        {
+            warnings.push(soft.clone());
+        }
+        Ok(interaction.friction)
+    }
+}
+
+/// What of a `*SURFACE BEHAVIOR` is softer than hard contact, in words.
+fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
+    let source = places.source;
+    let law = block
+        .parameter("PRESSURE-OVERCLOSURE")
+        .unwrap_or("HARD")
+        .to_uppercase();
+    let number = |place| {
+        let data = block.data.first();
+        data.map_or("", |data| item(source, data, place)).to_owned()
+    };
+    let softness = match law.as_str() {
+        "HARD" => return Ok(None),
+        "LINEAR" => format!("K = {}: there sides overlap by p/K", number(0)),
+        "EXPONENTIAL" => format!("p0 = {} at no clearance, 0 at {}", number(1), number(0)),
+        "TABULAR" => "a table of pressures over overclosures".into(),
+        "TIED" => {
+            let message = "PRESSURE-OVERCLOSURE=TIED isn't supported yet; instead give the bodies the same nodes";
+            return Err(source.error(block.place, message));
+        }
+        _ => {
+            let message = format!(
+                "PRESSURE-OVERCLOSURE={} isn't read; expected HARD or LINEAR",
+                name::shown(&law)
+            );
+            return Err(source.error(block.place, message));
+        }
+    };
+    Ok(Some(format!(
+        "{}: the {} law of contact ({softness}) is taken as hard contact, whose sides don't overlap",
+        source.place(block.place),
+        law.to_lowercase()
+    )))
+}

@@ -1,0 +1,64 @@
+//! The text of a `scene.toml`.
+
+/// A scene on its way.
+#[derive(Default)]
+pub(super) struct Document(String);
+
+impl Document {
+    /// A line that begins a table, after a blank one.
+    pub(super) fn table(&mut self, head: &str) {
+        if !self.0.is_empty() {
+            self.0.push('\n');
+        }
+        self.0 += &format!("{head}\n");
+    }
+
+    /// A key and its value.
+    pub(super) fn key(&mut self, key: &str, value: impl std::fmt::Display) {
+        self.0 += &format!("{key} = {value}\n");
+    }
+
+    pub(super) fn text(self) -> String {
+        self.0
+    }
+}
+
+/// A text in quotes.
+pub(super) fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// A vector of as many components as the mesh has dimensions.
+pub(super) fn vector(components: &[f64; 3], dim: usize) -> String {
+    format!("{:?}", &components[..dim])
+}
+
+/// A force that is linear in the position, c + M x.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(super) struct Linear {
+    pub(super) constant: [f64; 3],
+    pub(super) slope: [[f64; 3]; 3],
+}
+
+impl Linear {
+    /// As a vector of numbers and expressions.
+    pub(super) fn shown(&self, dim: usize) -> String {
+        let component = |i: usize| {
+            let mut text = format!("{:?}", self.constant[i]);
+            for (slope, axis) in self.slope[i][..dim].iter().zip("xyz".chars()) {
+                if *slope != 0.0 {
+                    text += &format!(" + {slope:?}*{axis}");
+                }
+            }
+            if text.contains('*') {
+                quoted(&text)
+            } else {
+                text
+            }
+        };
+        format!(
+            "[{}]",
+            (0..dim).map(component).collect::<Vec<_>>().join(", ")
+        )
+    }
+}

@@ -1,0 +1,330 @@
+//! What each keyword of a deck means here: read, not needed for the answer, or refused, with what to do instead.
+
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, Source};
+use crate::name;
+use crate::scene::suggest::nearest;
+
+/// Keywords that are read.
+const READ: [&str; 43] = [
+    "NODE",
+    "ELEMENT",
+    "NSET",
+    "ELSET",
+    "SURFACE",
+    "PART",
+    "END PART",
+    "ASSEMBLY",
+    "END ASSEMBLY",
+    "INSTANCE",
+    "END INSTANCE",
+    "MATERIAL",
+    "ELASTIC",
+    "EXPANSION",
+    "DENSITY",
+    "SOLID SECTION",
+    "ORIENTATION",
+    "TRANSFORM",
+    "AMPLITUDE",
+    "INITIAL CONDITIONS",
+    "BOUNDARY",
+    "CLOAD",
+    "DLOAD",
+    "DSLOAD",
+    "TEMPERATURE",
+    "SURFACE INTERACTION",
+    "SURFACE BEHAVIOR",
+    "FRICTION",
+    "CONTACT PAIR",
+    "CLEARANCE",
+    "CONTACT",
+    "CONTACT INCLUSIONS",
+    "CONTACT PROPERTY ASSIGNMENT",
+    "STEP",
+    "END STEP",
+    "STATIC",
+    // Their tables say nothing of elasticity, but stand behind a material or an interaction.
+    "CONDUCTIVITY",
+    "SPECIFIC HEAT",
+    "GAP CONDUCTANCE",
+    "GAP HEAT GENERATION",
+    "PHYSICAL CONSTANTS",
+    "DAMPING",
+    "HEADING",
+];
+
+/// Keywords that don't matter to the answer.
+const NOT_NEEDED: [&str; 31] = [
+    "PREPRINT",
+    "RESTART",
+    "OUTPUT",
+    "NODE OUTPUT",
+    "ELEMENT OUTPUT",
+    "CONTACT OUTPUT",
+    "ENERGY OUTPUT",
+    "NODE PRINT",
+    "EL PRINT",
+    "ELEMENT PRINT",
+    "CONTACT PRINT",
+    "FACE PRINT",
+    "SECTION PRINT",
+    "ENERGY PRINT",
+    "NODE FILE",
+    "EL FILE",
+    "CONTACT FILE",
+    "ENERGY FILE",
+    "FILE FORMAT",
+    "FILTER",
+    "MONITOR",
+    "PRINT",
+    "TIME POINTS",
+    "CONTROLS",
+    "CONTACT CONTROLS",
+    "SECTION CONTROLS",
+    "DIAGNOSTICS",
+    "VISUALIZATION",
+    "NO ANALYSIS",
+    "PARAMETER",
+    "SURFACE SMOOTHING",
+];
+
+const NOT_LINEAR: &str = "bodies are linear elastic here";
+const NOT_STATIC: &str = "loads are static here: expected *STATIC";
+const NOT_YET: &str = "isn't supported yet";
+
+/// Keywords that would change the answer: what is said of them, and what to do instead.
+const REFUSED: [(&[&str], &str, &str); 22] = [
+    (
+        &[
+            "PLASTIC",
+            "CREEP",
+            "VISCOELASTIC",
+            "HYPERELASTIC",
+            "HYPERFOAM",
+            "CYCLIC HARDENING",
+            "DEFORMATION PLASTICITY",
+            "MOHR COULOMB",
+            "DRUCKER PRAGER",
+            "CAP PLASTICITY",
+            "USER MATERIAL",
+            "DEPVAR",
+            "RATE DEPENDENT",
+            "POTENTIAL",
+            "DAMAGE INITIATION",
+            "CONCRETE",
+            "COHESIVE BEHAVIOR",
+            "NO COMPRESSION",
+            "NO TENSION",
+            "HYPOELASTIC",
+            "POROUS ELASTIC",
+        ],
+        NOT_LINEAR,
+        "leave it out, and look whether stresses stay where the material is elastic",
+    ),
+    (
+        &[
+            "DYNAMIC",
+            "MODAL DYNAMIC",
+            "STEADY STATE DYNAMICS",
+            "FREQUENCY",
+            "COMPLEX FREQUENCY",
+            "BUCKLE",
+            "VISCO",
+            "CFD",
+            "ELECTROMAGNETICS",
+            "SENSITIVITY",
+            "GREEN",
+            "SUBSTRUCTURE GENERATE",
+            "COUPLED TEMPERATURE-DISPLACEMENT",
+            "UNCOUPLED TEMPERATURE-DISPLACEMENT",
+            "CRACK PROPAGATION",
+            "FEASIBLE DIRECTION",
+            "ROBUST DESIGN",
+            "DESIGN VARIABLES",
+            "DESIGN RESPONSE",
+        ],
+        NOT_STATIC,
+        "make a deck of the steps that are static",
+    ),
+    (
+        &["HEAT TRANSFER", "FILM", "RADIATE", "CFLUX", "DFLUX"],
+        NOT_STATIC,
+        "give the temperatures that result, by *TEMPERATURE",
+    ),
+    (
+        &["TIE"],
+        NOT_YET,
+        "give bodies that hang together the same nodes, or a *CONTACT PAIR if nothing pulls",
+    ),
+    (
+        &["EQUATION", "MPC"],
+        NOT_YET,
+        "hold a plane of symmetry by *BOUNDARY",
+    ),
+    (
+        &[
+            "RIGID BODY",
+            "COUPLING",
+            "KINEMATIC",
+            "DISTRIBUTING",
+            "KINEMATIC COUPLING",
+            "DISTRIBUTING COUPLING",
+        ],
+        NOT_YET,
+        "move the nodes by *BOUNDARY, or load their faces by *DSLOAD",
+    ),
+    (
+        &["PRE-TENSION SECTION"],
+        NOT_YET,
+        "shrink the bolt by *TEMPERATURE",
+    ),
+    (
+        &["SPRING", "DASHPOT", "CONNECTOR SECTION", "GAP"],
+        NOT_YET,
+        "leave it out: bodies may be without supports",
+    ),
+    (
+        &["CYCLIC SYMMETRY MODEL", "SELECT CYCLIC SYMMETRY MODES"],
+        NOT_YET,
+        "make a deck of the whole ring",
+    ),
+    (
+        &["SHELL SECTION", "MEMBRANE SECTION", "SHELL GENERAL SECTION"],
+        "shells and membranes have no stiffness here",
+        "mesh the part by solids",
+    ),
+    (
+        &[
+            "BEAM SECTION",
+            "BEAM GENERAL SECTION",
+            "FRAME SECTION",
+            "TRUSS SECTION",
+            "FLUID SECTION",
+        ],
+        "beams and trusses aren't computed",
+        "mesh the part by solids",
+    ),
+    (
+        &["MASS", "ROTARY INERTIA", "USER ELEMENT"],
+        "such elements aren't computed",
+        "load the body by *DSLOAD",
+    ),
+    (
+        &["MODEL CHANGE"],
+        NOT_YET,
+        "convert the deck, and say in the scene's [[step]] what is added and removed",
+    ),
+    (
+        &[
+            "CHANGE FRICTION",
+            "CHANGE SURFACE BEHAVIOR",
+            "CHANGE CONTACT TYPE",
+            "CHANGE MATERIAL",
+            "CHANGE SOLID SECTION",
+        ],
+        "laws are the same in all steps here",
+        "make a deck of each",
+    ),
+    (
+        &["CONTACT INTERFERENCE"],
+        NOT_YET,
+        "give a negative *CLEARANCE",
+    ),
+    (
+        &[
+            "CONTACT EXCLUSIONS",
+            "CONTACT DAMPING",
+            "CONTACT STABILIZATION",
+        ],
+        NOT_YET,
+        "name the sides by *CONTACT PAIR",
+    ),
+    (
+        &["SUBMODEL", "GLOBAL"],
+        "submodels aren't read",
+        "give the displacements by *BOUNDARY",
+    ),
+    (
+        &["BASE MOTION", "BOUNDARYF", "INERTIA RELIEF"],
+        NOT_STATIC,
+        "leave it out",
+    ),
+    (
+        &["SURFACE INTERACTION DAMPING", "VALUES AT INFINITY"],
+        NOT_STATIC,
+        "leave it out",
+    ),
+    (
+        &["RESTRAINT", "RELEASE", "NORMAL"],
+        "shells and beams aren't computed",
+        "mesh the part by solids",
+    ),
+    (
+        &[
+            "SYSTEM", "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY",
+        ],
+        "isn't read",
+        "list all nodes and elements, in Cartesian coordinates",
+    ),
+    (
+        &["DISTRIBUTION", "DISTRIBUTION TABLE", "FIELD"],
+        "isn't read",
+        "give numbers by sets",
+    ),
+];
+
+/// What is to be done with a block.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meaning {
+    Read,
+    NotNeeded,
+}
+
+/// The meaning of a block by its keyword.
+///
+/// # Errors
+/// A keyword that would change the answer or isn't known, with its line.
+pub(super) fn meaning(source: &Source, block: &Block) -> Result<Meaning, InputError> {
+    let keyword = block.keyword.as_str();
+    if READ.contains(&keyword) {
+        return Ok(Meaning::Read);
+    }
+    if NOT_NEEDED.contains(&keyword) {
+        return Ok(Meaning::NotNeeded);
+    }
+    let shown = name::shown(keyword);
+    let refused = REFUSED.iter().find(|(names, ..)| names.contains(&keyword));
+    let message = match refused {
+        Some((_, why, instead)) if why.starts_with("isn't") => {
+            format!("*{shown} {why}; instead {instead}")
+        }
+        Some((_, why, instead)) => format!("*{shown} isn't read: {why}; instead {instead}"),
+        None => {
+            let others = REFUSED.iter().flat_map(|(names, ..)| *names);
+            let known = READ.iter().chain(&NOT_NEEDED).chain(others).copied();
+            let near = nearest(keyword, known).filter(|near| near.get(..2) == keyword.get(..2));
+            let hint = near.map_or_else(String::new, |near| format!("; did you mean *{near}?"));
+            format!("the keyword *{shown} isn't known, and may change the answer{hint}")
+        }
+    };
+    Err(source.error(block.place, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_keyword_has_one_meaning() {
+        let refused = REFUSED.iter().flat_map(|(names, ..)| *names);
+        let mut all: Vec<&str> = READ
+            .iter()
+            .chain(&NOT_NEEDED)
+            .chain(refused)
+            .copied()
+            .collect();
+        all.sort_unstable();
+        let twice: Vec<&[&str]> = all.windows(2).filter(|pair| pair[0] == pair[1]).collect();
+        assert!(twice.is_empty(), "{twice:?}");
+    }
+}

@@ -1,0 +1,260 @@
+//! What acts in a step: supports, forces and temperatures as the steps before have left them and it changes them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::place::Places;
+use super::supports::NodeAxis;
+use super::table::{Origin, Table};
+use crate::element::geometry::length;
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, Data, LinePlace, Of, Source};
+use crate::name;
+
+/// A load on the volume of elements: per volume, or per mass.
+#[derive(Clone)]
+pub(super) struct BodyLoad {
+    pub(super) elements: Vec<u32>,
+    pub(super) kind: BodyKind,
+    pub(super) place: LinePlace,
+}
+
+/// A field of forces of magnitude 1.
+#[derive(Clone)]
+pub(super) enum BodyKind {
+    /// Per volume, along an axis.
+    Along(usize),
+    /// Per mass, in a direction.
+    Gravity([f64; 3]),
+    /// Per mass, away from an axis through a point in a direction.
+    Centrifugal([f64; 3], [f64; 3]),
+}
+
+/// Elements and the kind of a load on them, in capitals: what replaces such a load.
+pub(super) type BodyKey = (String, String);
+
+/// All that acts.
+#[derive(Default)]
+pub(super) struct Loads {
+    pub(super) supports: Table<NodeAxis>,
+    pub(super) forces: Table<NodeAxis>,
+    /// Pressures on faces of elements.
+    pub(super) faces: Table<(u32, usize)>,
+    /// Pressures and tractions on surfaces, by name in capitals; tractions have the number of their direction.
+    pub(super) surfaces: Table<String>,
+    pub(super) tractions: Table<(String, usize)>,
+    pub(super) directions: Vec<[f64; 3]>,
+    pub(super) bodies: Table<BodyKey>,
+    pub(super) of_bodies: BTreeMap<BodyKey, BodyLoad>,
+    pub(super) temperatures: Table<u32>,
+    /// What of it isn't needed, in words.
+    pub(super) notes: BTreeSet<String>,
+}
+
+impl Loads {
+    /// Reads a block of loads; with `OP=NEW` what came before of its kind ends.
+    pub(super) fn read(
+        &mut self,
+        places: &mut Places,
+        block: &Block,
+        origin: &Origin,
+    ) -> Result<(), InputError> {
+        let is_new = block
+            .parameter("OP")
+            .is_some_and(|op| op.eq_ignore_ascii_case("NEW"));
+        let step = origin.step;
+        match block.keyword.as_str() {
+            "BOUNDARY" => {
+                if is_new {
+                    self.supports.begin(step);
+                }
+                self.boundary(places, block, origin)
+            }
+            "CLOAD" => {
+                if is_new {
+                    self.forces.begin(step);
+                }
+                self.concentrated(places, block, origin)
+            }
+            "DLOAD" => {
+                if is_new {
+                    self.faces.begin(step);
+                    self.bodies.begin(step);
+                }
+                (block.data.iter()).try_for_each(|data| self.distributed(places, data, origin))
+            }
+            "DSLOAD" => {
+                if is_new {
+                    self.surfaces.begin(step);
+                    self.tractions.begin(step);
+                }
+                (block.data.iter()).try_for_each(|data| self.on_surface(places, data, origin))
+            }
+            _ => {
+                if is_new {
+                    self.temperatures.begin(step);
+                }
+                (block.data.iter()).try_for_each(|data| self.temperature(places, data, origin))
+            }
+        }
+    }
+
+    /// A line of `*DLOAD`: elements, the kind of the load, its magnitude.
+    fn distributed(
+        &mut self,
+        places: &mut Places,
+        data: &Data,
+        origin: &Origin,
+    ) -> Result<(), InputError> {
+        let source = places.source;
+        let target = item(source, data, 0);
+        let label = item(source, data, 1).to_uppercase();
+        let elements = places.members(data.place, Of::Elements, target)?;
+        let value = source.real(data.place, item(source, data, 2), "the magnitude of a load")?;
+        let origin = Origin {
+            place: data.place,
+            ..origin.clone()
+        };
+        if let Some(number) = label
+            .strip_prefix('P')
+            .and_then(|number| number.parse::<usize>().ok())
+        {
+            for &element in &elements {
+                let faces = places.deck.elements.kind(element as usize).facets().len();
+                if !places.is_cell(element, places.dim()) || !(1..=faces).contains(&number) {
+                    let tag = places.deck.element_tags[element as usize];
+                    let message = format!(
+                        "element {tag} has no face {label}; expected P1 to P{faces} of a solid"
+                    );
+                    return Err(source.error(data.place, message));
+                }
+                self.faces.add((element, number), value, &origin);
+            }
+            return Ok(());
+        }
+        let kind = match label.as_str() {
+            "BX" | "BY" | "BZ" => BodyKind::Along(usize::from(label.as_bytes()[1] - b'X')),
+            "GRAV" => BodyKind::Gravity(vector(source, data, 3, "a direction")?),
+            "CENTRIF" => BodyKind::Centrifugal(
+                vector(source, data, 3, "a point on the axis")?,
+                vector(source, data, 6, "the direction of the axis")?,
+            ),
+            _ => {
+                let message = format!(
+                    "a load {} of *DLOAD isn't read; expected P1 to P6, GRAV, CENTRIF, BX, BY or BZ",
+                    name::shown(&label)
+                );
+                return Err(source.error(data.place, message));
+            }
+        };
+        let kind = kind.normalized().ok_or_else(|| {
+            source.error(
+                data.place,
+                format!("{label} has no direction; expected one that isn't zero"),
+            )
+        })?;
+        let key = (target.to_uppercase(), label);
+        self.bodies.add(key.clone(), value, &origin);
+        let place = data.place;
+        self.of_bodies.insert(
+            key,
+            BodyLoad {
+                elements,
+                kind,
+                place,
+            },
+        );
+        Ok(())
+    }
+
+    /// A line of `*DSLOAD`: a surface, `P` or `TRVEC`, the magnitude, and of a traction its direction.
+    fn on_surface(
+        &mut self,
+        places: &mut Places,
+        data: &Data,
+        origin: &Origin,
+    ) -> Result<(), InputError> {
+        let source = places.source;
+        let surface = item(source, data, 0).to_uppercase();
+        let label = item(source, data, 1).to_uppercase();
+        places.check_surface(data.place, &surface)?;
+        let value = source.real(data.place, item(source, data, 2), "the magnitude of a load")?;
+        let origin = Origin {
+            place: data.place,
+            ..origin.clone()
+        };
+        match label.as_str() {
+            "P" => self.surfaces.add(surface, value, &origin),
+            "TRVEC" => {
+                let direction = vector(source, data, 3, "a direction")?;
+                let Some(direction) = unit(direction) else {
+                    let message = "TRVEC has no direction; expected one that isn't zero";
+                    return Err(source.error(data.place, message));
+                };
+                let number = self.directions.iter().position(|known| *known == direction);
+                let number = number.unwrap_or_else(|| {
+                    self.directions.push(direction);
+                    self.directions.len() - 1
+                });
+                self.tractions.add((surface, number), value, &origin);
+            }
+            _ => {
+                let message = format!(
+                    "a load {} of *DSLOAD isn't read; expected P or TRVEC",
+                    name::shown(&label)
+                );
+                return Err(source.error(data.place, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// A line of `*TEMPERATURE`: a node or set, and its temperature.
+    fn temperature(
+        &mut self,
+        places: &mut Places,
+        data: &Data,
+        origin: &Origin,
+    ) -> Result<(), InputError> {
+        let source = places.source;
+        let nodes = places.members(data.place, Of::Nodes, item(source, data, 0))?;
+        let value = source.real(data.place, item(source, data, 1), "a temperature")?;
+        let origin = Origin {
+            place: data.place,
+            ..origin.clone()
+        };
+        nodes
+            .into_iter()
+            .for_each(|node| self.temperatures.set(node, value, &origin));
+        Ok(())
+    }
+}
+
+impl BodyKind {
+    /// With directions of length 1; `None` where one has none.
+    fn normalized(self) -> Option<Self> {
+        Some(match self {
+            Self::Along(axis) => Self::Along(axis),
+            Self::Gravity(direction) => Self::Gravity(unit(direction)?),
+            Self::Centrifugal(point, axis) => Self::Centrifugal(point, unit(axis)?),
+        })
+    }
+}
+
+fn unit(direction: [f64; 3]) -> Option<[f64; 3]> {
+    let norm = length(direction);
+    (norm > 0.0).then(|| direction.map(|component| component / norm))
+}
+
+/// An item of a line of data, empty where there is none.
+pub(super) fn item<'a>(source: &'a Source, data: &'a Data, place: usize) -> &'a str {
+    source.items(data).nth(place).unwrap_or_default()
+}
+
+/// Three numbers of a line, from the item `from` on.
+fn vector(source: &Source, data: &Data, from: usize, what: &str) -> Result<[f64; 3], InputError> {
+    let mut vector = [0.0; 3];
+    for (place, component) in (from..).zip(&mut vector) {
+        *component = source.real(data.place, item(source, data, place), what)?;
+    }
+    Ok(vector)
+}

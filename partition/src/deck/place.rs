@@ -1,0 +1,126 @@
+//! What the names and numbers of a block mean: nodes and elements of the whole deck.
+
+use std::collections::BTreeMap;
+
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, Deck, LinePlace, Of, Source};
+use crate::name;
+
+/// The part or instance in which a block stands, by its name in capitals.
+enum Scope {
+    Whole,
+    Part(String),
+    Instance(String),
+}
+
+/// The deck's mesh, and where in it the blocks are read.
+pub(super) struct Places<'a> {
+    pub(super) source: &'a Source,
+    pub(super) deck: Deck,
+    scope: Scope,
+    /// Instances by their part's name in capitals.
+    instances: BTreeMap<String, Vec<String>>,
+}
+
+impl<'a> Places<'a> {
+    pub(super) fn new(source: &'a Source, deck: Deck) -> Self {
+        let mut instances: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for block in source
+            .blocks
+            .iter()
+            .filter(|block| block.keyword == "INSTANCE")
+        {
+            let [name, part] =
+                ["NAME", "PART"].map(|key| block.parameter(key).unwrap_or_default().to_uppercase());
+            instances.entry(part).or_default().push(name);
+        }
+        Self {
+            source,
+            deck,
+            scope: Scope::Whole,
+            instances,
+        }
+    }
+
+    /// Enters or leaves a part or an instance.
+    pub(super) fn enter(&mut self, block: &Block) {
+        let name = || block.parameter("NAME").unwrap_or_default().to_uppercase();
+        match block.keyword.as_str() {
+            "PART" => self.scope = Scope::Part(name()),
+            "INSTANCE" => self.scope = Scope::Instance(name()),
+            "END PART" | "END INSTANCE" => self.scope = Scope::Whole,
+            _ => {}
+        }
+    }
+
+    /// The nodes or elements that an item means, each once.
+    ///
+    /// # Errors
+    /// There are none of that number or name.
+    pub(super) fn members(
+        &mut self,
+        at: LinePlace,
+        of: Of,
+        item: &str,
+    ) -> Result<Vec<u32>, InputError> {
+        let instances: Vec<Option<String>> = match &self.scope {
+            Scope::Whole => vec![None],
+            Scope::Instance(name) => vec![Some(name.clone())],
+            Scope::Part(name) => {
+                let instances = self.instances.get(name);
+                instances.into_iter().flatten().cloned().map(Some).collect()
+            }
+        };
+        let mut found = Vec::new();
+        for instance in instances {
+            found.extend(self.deck.members(
+                self.source,
+                at,
+                of,
+                instance.as_deref(),
+                item,
+                item,
+            )?);
+        }
+        if found.is_empty() && item.parse::<i64>().is_ok() {
+            let what = match of {
+                Of::Nodes => "node",
+                Of::Elements => "element of a body",
+            };
+            return Err(self
+                .source
+                .error(at, format!("there is no {what} {}", name::shown(item))));
+        }
+        found.sort_unstable();
+        found.dedup();
+        Ok(found)
+    }
+
+    /// Whether there is a surface.
+    pub(super) fn check_surface(&self, at: LinePlace, name: &str) -> Result<(), InputError> {
+        let is_there =
+            self.deck.surfaces.get(name).is_some() || self.deck.node_surfaces.get(name).is_some();
+        match is_there {
+            true => Ok(()),
+            false => Err(self
+                .source
+                .error(at, format!("there is no surface '{}'", name::shown(name)))),
+        }
+    }
+
+    /// The dimension of the cells, 0 without.
+    pub(super) fn dim(&self) -> usize {
+        let elements = 0..self.deck.elements.len();
+        let cells = elements.filter(|&element| !self.deck.is_side[element]);
+        cells
+            .map(|cell| self.deck.elements.kind(cell).dim())
+            .max()
+            .unwrap_or_default()
+    }
+
+    /// Whether an element is a cell, in a mesh of dimension `dim`.
+    pub(super) fn is_cell(&self, element: u32, dim: usize) -> bool {
+        let element = element as usize;
+        !self.deck.is_side[element] && self.deck.elements.kind(element).dim() == dim
+    }
+}

@@ -1,0 +1,517 @@
+//! From what a deck says to the scene that means the same.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Content;
+use super::document::{Document, Linear, quoted, vector};
+use super::elastic::Elastic;
+use super::groups::Groups;
+use super::loads::{BodyKey, BodyKind, BodyLoad};
+use super::material::Material;
+use super::place::Places;
+use super::sections::{self, Body, Section};
+use super::steps::LoadStep;
+use crate::error::InputError;
+use crate::mesh::abaqus::Source;
+use crate::name;
+use crate::scene::material::PlaneState;
+
+/// A modulus below which lengths are taken for millimetres: it decides what messages and pictures call the units.
+const OF_MILLIMETRES: f64 = 1e8;
+
+/// Values of something in all steps, as bits, so that places with the same ones come together.
+type Course<V> = Vec<Option<V>>;
+
+/// A load on a group of the mesh: its table, what it is on, its key, and its value in each step.
+struct OnGroup {
+    list: &'static str,
+    on: String,
+    /// Key and value.
+    values: Course<Vec<(&'static str, String)>>,
+}
+
+/// The text of the scene; sets that it needs are added to the deck.
+pub(super) fn text(
+    places: &mut Places,
+    content: &Content,
+    warnings: &mut Vec<String>,
+) -> Result<String, InputError> {
+    let source = places.source;
+    let plane = plane(places)?;
+    let bodies = content.bodies(places)?;
+    let thickness = match plane {
+        Some(PlaneState::Strain | PlaneState::Stress) => {
+            sections::thickness(places, &content.sections)?
+        }
+        _ => 1.0,
+    };
+    let mut loads = Loads {
+        content,
+        dim: places.dim(),
+        thickness,
+        groups: Groups::new(places),
+    };
+    let names: Vec<String> = (bodies.iter())
+        .map(|body| {
+            loads
+                .groups
+                .of_cells(&body.cells, &content.sections[body.section].set)
+        })
+        .collect();
+    let on_groups = loads.on_groups(source)?;
+    let sides: Vec<[String; 2]> = (content.contacts.pairs.iter())
+        .map(|pair| [&pair.slave, &pair.master].map(|side| loads.groups.of_surface(side)))
+        .collect();
+    let dim = loads.dim;
+    let mut document = Document::default();
+    if let Some(title) = &content.title {
+        document.key("title", quoted(title));
+    }
+    document.key("mesh", quoted(super::MESH));
+    if let Some(plane) = plane {
+        document.key("plane", quoted(plane.name()));
+    }
+    let materials = content.materials(source, &bodies, &mut document, plane)?;
+    for ((body, name), material) in bodies.iter().zip(&names).zip(&materials) {
+        content.body(source, body, (name, material), dim, &mut document)?;
+    }
+    for load in &on_groups {
+        load.write(0, "", &mut document);
+    }
+    content.contact(places, &sides, &mut document, warnings)?;
+    if content.steps.done.len() > 1 {
+        for number in 0..content.steps.done.len() {
+            content.step(
+                source,
+                number,
+                (&bodies, &names, &on_groups),
+                dim,
+                &mut document,
+            )?;
+        }
+    }
+    Ok(document.text())
+}
+
+/// The plane state that the types of elements say; `None` in space.
+fn plane(places: &Places) -> Result<Option<PlaneState>, InputError> {
+    if places.dim() != 2 {
+        return Ok(None);
+    }
+    let mut found: Option<PlaneState> = None;
+    for block in places
+        .source
+        .blocks
+        .iter()
+        .filter(|block| block.keyword == "ELEMENT")
+    {
+        let kind = block.parameter("TYPE").unwrap_or_default().to_uppercase();
+        let plane = match kind.get(..3) {
+            Some("CPE") => PlaneState::Strain,
+            Some("CPS") => PlaneState::Stress,
+            Some("CAX") => PlaneState::Axisymmetric,
+            _ => continue,
+        };
+        if found.is_some_and(|found| found != plane) {
+            let message = format!(
+                "elements of type {} stand beside others of another plane state; expected one of CPE, CPS and CAX",
+                name::shown(&kind)
+            );
+            return Err(places.source.error(block.place, message));
+        }
+        found = Some(plane);
+    }
+    Ok(found)
+}
+
+impl Content {
+    fn bodies(&self, places: &Places) -> Result<Vec<Body>, InputError> {
+        let expands = |section: &Section| {
+            (self.materials.get(&section.material))
+                .is_some_and(|material| material.expansion != 0.0)
+        };
+        let steps = (&self.steps.loads, &self.steps.done[..]);
+        sections::bodies(places, &self.sections, expands, steps, &self.temperatures)
+    }
+
+    fn material(&self, source: &Source, section: &Section) -> Result<&Material, InputError> {
+        self.materials.get(&section.material).ok_or_else(|| {
+            let message = format!("there is no *MATERIAL '{}'", name::shown(&section.material));
+            source.error(section.place, message)
+        })
+    }
+
+    /// Writes the units and the materials; returns what that of each body is called.
+    fn materials(
+        &self,
+        source: &Source,
+        bodies: &[Body],
+        document: &mut Document,
+        plane: Option<PlaneState>,
+    ) -> Result<Vec<String>, InputError> {
+        let mut found: BTreeMap<String, Elastic> = BTreeMap::new();
+        let mut names = Vec::new();
+        for body in bodies {
+            let section = &self.sections[body.section];
+            let material = self.material(source, section)?;
+            let elastic = material.elastic(source)?;
+            let (name, elastic) = match (&section.orientation, elastic) {
+                (Some(orientation), Elastic::Anisotropic(_)) => {
+                    let axes = self.orientation(source, section, orientation)?;
+                    (
+                        format!("{}, {orientation}", material.name),
+                        elastic.along(&axes),
+                    )
+                }
+                _ => (material.name.clone(), elastic.clone()),
+            };
+            found.insert(name.clone(), elastic);
+            names.push(name);
+        }
+        let stiffest = found.values().map(Elastic::modulus).fold(0.0, f64::max);
+        if stiffest < OF_MILLIMETRES {
+            document.key("units", quoted("mm"));
+        }
+        for (name, elastic) in found {
+            document.table(&format!("[materials.{}]", quoted(&name)));
+            elastic
+                .keys(plane)
+                .into_iter()
+                .for_each(|(key, value)| document.key(key, value));
+        }
+        Ok(names)
+    }
+
+    /// Writes a body.
+    fn body(
+        &self,
+        source: &Source,
+        body: &Body,
+        (name, material): (&str, &str),
+        dim: usize,
+        document: &mut Document,
+    ) -> Result<(), InputError> {
+        document.table(&format!("[bodies.{}]", quoted(name)));
+        document.key("material", quoted(material));
+        if !body.loads.is_empty() {
+            let force = self.body_force(source, body, &self.steps.done[0])?;
+            document.key("body_force", force.shown(dim));
+        }
+        if body.warmth.iter().any(|&warmth| warmth != 0.0) {
+            let expansion = self
+                .material(source, &self.sections[body.section])?
+                .expansion;
+            let warmth = body.warmth[0];
+            document.key(
+                "thermal",
+                format!("{{ expansion = {expansion:?}, temperature = {warmth:?} }}"),
+            );
+        }
+        Ok(())
+    }
+
+    /// The force per volume on a body in a step.
+    fn body_force(
+        &self,
+        source: &Source,
+        body: &Body,
+        step: &LoadStep,
+    ) -> Result<Linear, InputError> {
+        let mut force = Linear::default();
+        let of_bodies = &self.steps.loads.of_bodies;
+        let acting = body
+            .loads
+            .iter()
+            .filter_map(|key: &BodyKey| Some((key, step.bodies.get(key)?, of_bodies.get(key)?)));
+        for ((_, label), &magnitude, BodyLoad { kind, place, .. }) in acting {
+            let section = &self.sections[body.section];
+            let density = || {
+                self.material(source, section)?
+                    .density(source, *place, label)
+            };
+            match *kind {
+                BodyKind::Along(axis) => force.constant[axis] += magnitude,
+                BodyKind::Gravity(direction) => {
+                    let weight = magnitude * density()?;
+                    (0..3).for_each(|i| force.constant[i] += weight * direction[i]);
+                }
+                BodyKind::Centrifugal(point, axis) => {
+                    let factor = magnitude * density()?;
+                    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                        let slope = factor * (f64::from(u8::from(i == j)) - axis[i] * axis[j]);
+                        force.slope[i][j] += slope;
+                        force.constant[i] -= slope * point[j];
+                    }
+                }
+            }
+        }
+        Ok(force)
+    }
+
+    /// Writes the contacts.
+    fn contact(
+        &self,
+        places: &Places,
+        sides: &[[String; 2]],
+        document: &mut Document,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        let mut taken = BTreeSet::new();
+        for (pair, [slave, master]) in self.contacts.pairs.iter().zip(sides) {
+            let friction = self.contacts.friction(places, pair, warnings)?;
+            let plain = format!("{slave} on {master}").replace('/', " ");
+            let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
+            let mut names = std::iter::once(plain.clone()).chain(numbered);
+            let name = names
+                .find(|name| taken.insert(name.clone()))
+                .unwrap_or_default();
+            document.table("[[contact]]");
+            document.key("name", quoted(&name));
+            document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
+            if let Some(gap) = pair.gap {
+                document.key("gap", format!("{gap:?}"));
+            }
+            if friction != 0.0 {
+                document.key("friction", format!("{friction:?}"));
+            }
+        }
+        if let Some(friction) = self.contacts.general(places, warnings)? {
+            document.table("[[contact]]");
+            document.key("name", quoted("contact"));
+            document.key("between", quoted("all"));
+            if friction != 0.0 {
+                document.key("friction", format!("{friction:?}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a load step: all that it has in place of the scene's loads.
+    fn step(
+        &self,
+        source: &Source,
+        number: usize,
+        (bodies, names, on_groups): (&[Body], &[String], &[OnGroup]),
+        dim: usize,
+        document: &mut Document,
+    ) -> Result<(), InputError> {
+        let step = &self.steps.done[number];
+        document.table("[[step]]");
+        if let Some(name) = &step.name {
+            document.key("name", quoted(name));
+        }
+        document.key("time", format!("{:?}", step.time));
+        for list in ["displacement", "pressure", "traction", "force"] {
+            let mut of_list = on_groups.iter().filter(|load| load.list == list).peekable();
+            let acts = on_groups
+                .iter()
+                .any(|load| load.list == list && load.values[number].is_some());
+            if of_list.peek().is_some() && !acts {
+                // Those of the scene are replaced by none.
+                document.key(list, "[]");
+            }
+        }
+        let loaded: Vec<_> = bodies
+            .iter()
+            .zip(names)
+            .filter(|(body, _)| !body.loads.is_empty())
+            .collect();
+        if !loaded.is_empty() {
+            document.table("[step.body_force]");
+        }
+        for (body, name) in loaded {
+            document.key(
+                &quoted(name),
+                self.body_force(source, body, step)?.shown(dim),
+            );
+        }
+        let warm = |body: &Body| body.warmth.iter().any(|&warmth| warmth != 0.0);
+        let warmed: Vec<_> = bodies
+            .iter()
+            .zip(names)
+            .filter(|(body, _)| warm(body))
+            .collect();
+        if !warmed.is_empty() {
+            document.table("[step.temperature]");
+        }
+        for (body, name) in warmed {
+            document.key(&quoted(name), format!("{:?}", body.warmth[number]));
+        }
+        for load in on_groups {
+            load.write(number, "step.", document);
+        }
+        Ok(())
+    }
+}
+
+impl OnGroup {
+    /// Writes what it is in a step.
+    fn write(&self, step: usize, within: &str, document: &mut Document) {
+        let Some(values) = &self.values[step] else {
+            return;
+        };
+        document.table(&format!("[[{within}{}]]", self.list));
+        document.key("on", quoted(&self.on));
+        values
+            .iter()
+            .for_each(|(key, value)| document.key(key, value));
+    }
+}
+
+/// Loads and supports on their way to groups of the mesh.
+struct Loads<'a, 'b, 'c> {
+    content: &'a Content,
+    dim: usize,
+    /// Of plane sections: forces of the scene are per thickness.
+    thickness: f64,
+    groups: Groups<'b, 'c>,
+}
+
+impl Loads<'_, '_, '_> {
+    fn on_groups(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
+        let content = self.content;
+        let steps = &content.steps.done;
+        let mut all = self.supports(source)?;
+        for (faces, course) in
+            together(steps.iter().map(|step| &step.faces), |&value| number(value))
+        {
+            let on = self.groups.of_faces(&faces);
+            all.push(OnGroup {
+                list: "pressure",
+                on,
+                values: of_key(course, "value"),
+            });
+        }
+        let surfaces: BTreeSet<&String> =
+            steps.iter().flat_map(|step| step.surfaces.keys()).collect();
+        for surface in surfaces {
+            let course = steps
+                .iter()
+                .map(|step| step.surfaces.get(surface).and_then(|&value| number(value)));
+            let on = self.groups.of_surface(surface);
+            all.push(OnGroup {
+                list: "pressure",
+                on,
+                values: of_key(course.collect(), "value"),
+            });
+        }
+        let tractions: BTreeSet<&(String, usize)> = steps
+            .iter()
+            .flat_map(|step| step.tractions.keys())
+            .collect();
+        for key in tractions {
+            let direction = content.steps.loads.directions[key.1];
+            let course = steps.iter().map(|step| {
+                let value = step
+                    .tractions
+                    .get(key)
+                    .copied()
+                    .filter(|&value| value != 0.0)?;
+                Some(vector(
+                    &direction.map(|component| value * component),
+                    self.dim,
+                ))
+            });
+            let course = of_key(course.collect(), "value");
+            let on = self.groups.of_surface(&key.0);
+            all.push(OnGroup {
+                list: "traction",
+                on,
+                values: course,
+            });
+        }
+        let (dim, thickness) = (self.dim, self.thickness);
+        let force = |force: &[f64; 3]| {
+            let is_there = force.iter().any(|&component| component != 0.0);
+            is_there.then(|| vector(&force.map(|component| component / thickness), dim))
+        };
+        for (nodes, course) in together(steps.iter().map(|step| &step.forces), force) {
+            if let Some(on) = self.groups.of_nodes(&nodes, "force") {
+                all.push(OnGroup {
+                    list: "force",
+                    on,
+                    values: of_key(course, "each"),
+                });
+            }
+        }
+        Ok(all)
+    }
+
+    /// Prescribed displacements.
+    ///
+    /// # Errors
+    /// Steps hold different nodes, or along different axes.
+    fn supports(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
+        let steps = &self.content.steps.done;
+        let axes = |held: &[Option<f64>; 3]| held.map(|value| value.is_some());
+        let mut all = Vec::new();
+        let shown = |held: &[Option<f64>; 3]| {
+            let keys = ["x", "y", "z"].into_iter().zip(held);
+            let keys =
+                keys.filter_map(|(key, value)| Some((key, format!("{:?}", (*value)? + 0.0))));
+            Some((axes(held), keys.collect::<Vec<_>>()))
+        };
+        for (nodes, course) in together(steps.iter().map(|step| &step.supports), shown) {
+            let Some(on) = self.groups.of_nodes(&nodes, "support") else {
+                continue;
+            };
+            let held = |of_step: &Option<([bool; 3], _)>| of_step.as_ref().map(|(axes, _)| *axes);
+            if let Some(other) = course
+                .iter()
+                .position(|of_step| held(of_step) != held(&course[0]))
+            {
+                let message = format!(
+                    "supports come or go in this step, on {} nodes ({on}), which isn't supported yet; expected the same \
+                     degrees of freedom in every step",
+                    nodes.len()
+                );
+                return Err(source.error(steps[other].place, message));
+            }
+            let values = course
+                .into_iter()
+                .map(|of_step| of_step.map(|(_, values)| values));
+            all.push(OnGroup {
+                list: "displacement",
+                on,
+                values: values.collect(),
+            });
+        }
+        Ok(all)
+    }
+}
+
+/// A number that isn't zero, as text.
+fn number(value: f64) -> Option<String> {
+    (value != 0.0).then(|| format!("{value:?}"))
+}
+
+fn of_key(course: Course<String>, key: &'static str) -> Course<Vec<(&'static str, String)>> {
+    let values = course.into_iter();
+    values
+        .map(|value| value.map(|value| vec![(key, value)]))
+        .collect()
+}
+
+/// Places that have the same values in all steps, those of the smallest place first; places without any are left out.
+fn together<'a, K: Ord + Clone + 'a, V: 'a, T: Ord>(
+    steps: impl Iterator<Item = &'a BTreeMap<K, V>> + Clone,
+    shown: impl Fn(&V) -> Option<T>,
+) -> Vec<(Vec<K>, Course<T>)> {
+    let keys: BTreeSet<&K> = steps.clone().flat_map(|step| step.keys()).collect();
+    let mut found: BTreeMap<Course<T>, Vec<K>> = BTreeMap::new();
+    for key in keys {
+        let course: Course<T> = steps
+            .clone()
+            .map(|step| step.get(key).and_then(&shown))
+            .collect();
+        if course.iter().any(Option::is_some) {
+            found.entry(course).or_default().push(key.clone());
+        }
+    }
+    let mut classes: Vec<(Vec<K>, Course<T>)> = found
+        .into_iter()
+        .map(|(course, keys)| (keys, course))
+        .collect();
+    classes.sort_by(|(one, _), (other, _)| one[0].cmp(&other[0]));
+    classes
+}

@@ -1,0 +1,204 @@
+//! `*SOLID SECTION`: bodies, of elements with one material that the same loads act on in all steps.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::loads::{BodyKey, Loads, item};
+use super::place::Places;
+use super::steps::LoadStep;
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, LinePlace, Of};
+use crate::name;
+
+/// A section.
+pub(super) struct Section {
+    elements: Vec<u32>,
+    pub(super) set: String,
+    /// Names in capitals.
+    pub(super) material: String,
+    pub(super) orientation: Option<String>,
+    /// Thickness of plane elements; 1 where it isn't given.
+    pub(super) thickness: f64,
+    pub(super) place: LinePlace,
+}
+
+impl Section {
+    pub(super) fn read(places: &mut Places, block: &Block) -> Result<Self, InputError> {
+        let source = places.source;
+        if block.parameter("COMPOSITE").is_some() {
+            return Err(source.error(block.place, "a composite isn't read; expected MATERIAL=…"));
+        }
+        let set = source.required(block, "ELSET")?.to_owned();
+        let elements = places.members(block.place, Of::Elements, &set)?;
+        let thickness = match block.data.first() {
+            Some(data) => source.real(data.place, item(source, data, 0), "the thickness")?,
+            None => 0.0,
+        };
+        Ok(Self {
+            elements,
+            set,
+            material: source.required(block, "MATERIAL")?.to_uppercase(),
+            orientation: block.parameter("ORIENTATION").map(str::to_uppercase),
+            thickness: if thickness > 0.0 { thickness } else { 1.0 },
+            place: block.place,
+        })
+    }
+}
+
+/// A body of the scene.
+pub(super) struct Body {
+    pub(super) cells: Vec<u32>,
+    pub(super) section: usize,
+    /// The loads that act on it in some step.
+    pub(super) loads: BTreeSet<BodyKey>,
+    /// Its temperature in every step, above that at the beginning.
+    pub(super) warmth: Vec<f64>,
+}
+
+/// Classes of elements, which become finer with every property that tells them apart.
+struct Classes(Vec<Option<u32>>);
+
+impl Classes {
+    /// Tells elements of a class apart whose `value` differs.
+    fn refine(&mut self, mut value: impl FnMut(u32) -> u64) {
+        let mut known: HashMap<(u32, u64), u32> = HashMap::new();
+        for (element, class) in (0..).zip(&mut self.0) {
+            if let Some(class) = class {
+                let fresh = known.len() as u32;
+                *class = *known.entry((*class, value(element))).or_insert(fresh);
+            }
+        }
+    }
+}
+
+/// The bodies of a deck.
+///
+/// # Errors
+/// An element without a section; temperatures that differ within an element that expands.
+pub(super) fn bodies(
+    places: &Places,
+    sections: &[Section],
+    expands: impl Fn(&Section) -> bool,
+    (loads, steps): (&Loads, &[LoadStep]),
+    initial: &BTreeMap<u32, f64>,
+) -> Result<Vec<Body>, InputError> {
+    let dim = places.dim();
+    let mut section_of: Vec<Option<u32>> = vec![None; places.deck.elements.len()];
+    for (number, section) in (0..).zip(sections) {
+        for &element in section
+            .elements
+            .iter()
+            .filter(|&&element| places.is_cell(element, dim))
+        {
+            section_of[element as usize] = Some(number);
+        }
+    }
+    let mut elements = 0..section_of.len() as u32;
+    if let Some(bare) =
+        elements.find(|&e| places.is_cell(e, dim) && section_of[e as usize].is_none())
+    {
+        let tag = places.deck.element_tags[bare as usize];
+        return Err(InputError::new(format!(
+            "element {tag} has no *SOLID SECTION; expected one for each element"
+        )));
+    }
+    let mut classes = Classes(section_of.clone());
+    let keys: BTreeSet<&BodyKey> = steps.iter().flat_map(|step| step.bodies.keys()).collect();
+    let mut acting: HashMap<u32, Vec<&BodyKey>> = HashMap::new();
+    for key in keys {
+        let members = loads
+            .of_bodies
+            .get(key)
+            .map_or(&[][..], |load| &load.elements);
+        let members: BTreeSet<u32> = members.iter().copied().collect();
+        classes.refine(|element| members.contains(&element).into());
+        members
+            .into_iter()
+            .for_each(|element| acting.entry(element).or_default().push(key));
+    }
+    let mut warmth: HashMap<u32, Vec<f64>> = HashMap::new();
+    for step in steps {
+        let mut of_step = vec![0.0; section_of.len()];
+        for (element, section) in (0..).zip(&section_of) {
+            let Some(section) = section.map(|section| &sections[section as usize]) else {
+                continue;
+            };
+            if expands(section) {
+                of_step[element as usize] = warmth_of(places, element, step, initial)?;
+            }
+        }
+        classes.refine(|element| of_step[element as usize].to_bits());
+        for (element, value) in (0..)
+            .zip(of_step)
+            .filter(|(e, _)| section_of[*e as usize].is_some())
+        {
+            warmth.entry(element).or_default().push(value);
+        }
+    }
+    let mut members: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (element, class) in (0..).zip(&classes.0) {
+        if let Some(class) = class {
+            members.entry(*class).or_default().push(element);
+        }
+    }
+    let body = |cells: Vec<u32>| {
+        let first = cells[0];
+        let loads = acting
+            .get(&first)
+            .into_iter()
+            .flatten()
+            .map(|key| (*key).clone());
+        Body {
+            section: section_of[first as usize].unwrap_or_default() as usize,
+            loads: loads.collect(),
+            warmth: warmth.remove(&first).unwrap_or_default(),
+            cells,
+        }
+    };
+    Ok(members.into_values().map(body).collect())
+}
+
+/// The temperature of an element above that at the beginning.
+fn warmth_of(
+    places: &Places,
+    element: u32,
+    step: &LoadStep,
+    initial: &BTreeMap<u32, f64>,
+) -> Result<f64, InputError> {
+    let warmth = |node: &u32| {
+        let before = initial.get(node).copied().unwrap_or_default();
+        step.temperatures.get(node).copied().unwrap_or(before) - before
+    };
+    let nodes = places.deck.elements.nodes_of(element as usize);
+    let first = warmth(&nodes[0]);
+    match nodes.iter().map(warmth).find(|&other| other != first) {
+        None => Ok(first + 0.0),
+        Some(other) => {
+            let tag = places.deck.element_tags[element as usize];
+            let message = format!(
+                "the nodes of element {tag} are warmer than at the beginning by {first} and by {other} at the end of the \
+                 step, which isn't supported yet; expected one temperature for each body, or convert the deck and give \
+                 an expression of x, y and z"
+            );
+            Err(places.source.error(step.place, message))
+        }
+    }
+}
+
+/// The thickness of the plane sections.
+///
+/// # Errors
+/// They have several.
+pub(super) fn thickness(places: &Places, sections: &[Section]) -> Result<f64, InputError> {
+    let first = sections.first().map_or(1.0, |section| section.thickness);
+    match sections.iter().find(|section| section.thickness != first) {
+        None => Ok(first),
+        Some(other) => {
+            let message = format!(
+                "the section of '{}' is {} thick, others {first}; expected one thickness, by which forces are divided",
+                name::shown(&other.set),
+                other.thickness
+            );
+            Err(places.source.error(other.place, message))
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! `*STEP`: what acts at the end of each, along the axes of the scene.
+
+use std::collections::BTreeMap;
+
+use super::amplitude::Moment;
+use super::axes::{System, numbers};
+use super::loads::{BodyKey, Loads};
+use super::place::Places;
+use super::supports::NodeAxis;
+use super::table::{Amplitudes, Origin, Table};
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, LinePlace};
+
+/// What acts at the end of a step.
+pub(super) struct LoadStep {
+    pub(super) name: Option<String>,
+    pub(super) place: LinePlace,
+    /// Time since the deck's beginning.
+    pub(super) time: f64,
+    pub(super) supports: BTreeMap<u32, [Option<f64>; 3]>,
+    pub(super) forces: BTreeMap<u32, [f64; 3]>,
+    pub(super) faces: BTreeMap<(u32, usize), f64>,
+    pub(super) surfaces: BTreeMap<String, f64>,
+    pub(super) tractions: BTreeMap<(String, usize), f64>,
+    pub(super) bodies: BTreeMap<BodyKey, f64>,
+    pub(super) temperatures: BTreeMap<u32, f64>,
+}
+
+/// The steps of a deck, and what the step that is read adds to them.
+#[derive(Default)]
+pub(super) struct Steps {
+    pub(super) loads: Loads,
+    pub(super) done: Vec<LoadStep>,
+    pub(super) amplitudes: Amplitudes,
+    /// Local systems of nodes.
+    pub(super) systems: BTreeMap<u32, System>,
+    open: Option<Open>,
+    total_time: f64,
+}
+
+/// A step that isn't at its end.
+struct Open {
+    name: Option<String>,
+    place: LinePlace,
+    is_static: bool,
+    period: f64,
+}
+
+impl Steps {
+    /// Whether a step is read.
+    pub(super) fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// `*STEP`.
+    pub(super) fn begin(
+        &mut self,
+        places: &Places,
+        block: &Block,
+        has_contact: bool,
+    ) -> Result<(), InputError> {
+        let source = places.source;
+        if self.is_open() {
+            return Err(source.error(
+                block.place,
+                "*STEP within a step; expected *END STEP before it",
+            ));
+        }
+        if block.parameter("PERTURBATION").is_some() && has_contact {
+            let message = "a step with PERTURBATION keeps the contacts as they are, which isn't read; expected *STEP";
+            return Err(source.error(block.place, message));
+        }
+        self.open = Some(Open {
+            name: block
+                .parameter("NAME")
+                .filter(|name| !name.is_empty())
+                .map(str::to_owned),
+            place: block.place,
+            is_static: false,
+            period: 1.0,
+        });
+        Ok(())
+    }
+
+    /// `*STATIC`, whose second number is the time of the step.
+    pub(super) fn statics(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let source = places.source;
+        if block.parameter("RIKS").is_some() {
+            return Err(source.error(
+                block.place,
+                "*STATIC, RIKS isn't read; expected *STATIC: loads are given here",
+            ));
+        }
+        let row = match block.data.first() {
+            Some(data) => numbers(source, data, "a time")?,
+            None => Vec::new(),
+        };
+        let Some(open) = &mut self.open else {
+            return Err(source.error(
+                block.place,
+                "*STATIC stands in no step; expected *STEP before it",
+            ));
+        };
+        open.is_static = true;
+        open.period = row
+            .get(1)
+            .copied()
+            .filter(|&period| period > 0.0)
+            .unwrap_or(1.0);
+        Ok(())
+    }
+
+    /// A block of supports or loads.
+    pub(super) fn read(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
+        let amplitude = block.parameter("AMPLITUDE").map(str::to_uppercase);
+        if let Some(name) = amplitude
+            .as_ref()
+            .filter(|name| !self.amplitudes.contains_key(*name))
+        {
+            let message = format!(
+                "there is no amplitude '{}' before this line",
+                crate::name::shown(name)
+            );
+            return Err(places.source.error(block.place, message));
+        }
+        if !self.is_open() && block.keyword != "BOUNDARY" {
+            let message = format!(
+                "*{} stands in no step; expected it behind *STEP",
+                block.keyword
+            );
+            return Err(places.source.error(block.place, message));
+        }
+        let step = if self.is_open() {
+            self.done.len() + 1
+        } else {
+            0
+        };
+        let origin = Origin {
+            place: block.place,
+            step,
+            amplitude,
+        };
+        self.loads.read(places, block, &origin)
+    }
+
+    /// `*END STEP`.
+    pub(super) fn end(&mut self, places: &Places) -> Result<(), InputError> {
+        let Some(open) = self.open.take() else {
+            return Ok(());
+        };
+        if !open.is_static {
+            return Err(places
+                .source
+                .error(open.place, "the step has no *STATIC; expected it"));
+        }
+        let end = Moment {
+            in_step: open.period,
+            total: self.total_time + open.period,
+        };
+        self.total_time = end.total;
+        let loads = &mut self.loads;
+        let amplitudes = &self.amplitudes;
+        let local = Local {
+            places,
+            systems: &self.systems,
+        };
+        self.done.push(LoadStep {
+            name: open.name,
+            place: open.place,
+            time: end.total,
+            supports: local.supports(&loads.supports, &loads.supports.at(amplitudes, end))?,
+            forces: local.forces(&loads.forces.at(amplitudes, end)),
+            faces: loads.faces.at(amplitudes, end),
+            surfaces: loads.surfaces.at(amplitudes, end),
+            tractions: loads.tractions.at(amplitudes, end),
+            bodies: loads.bodies.at(amplitudes, end),
+            temperatures: loads.temperatures.at(amplitudes, end),
+        });
+        loads.supports.hold(amplitudes, end);
+        loads.forces.hold(amplitudes, end);
+        loads.faces.hold(amplitudes, end);
+        loads.surfaces.hold(amplitudes, end);
+        loads.tractions.hold(amplitudes, end);
+        loads.bodies.hold(amplitudes, end);
+        loads.temperatures.hold(amplitudes, end);
+        Ok(())
+    }
+}
+
+/// Nodes with axes of their own.
+struct Local<'a> {
+    places: &'a Places<'a>,
+    systems: &'a BTreeMap<u32, System>,
+}
+
+impl Local<'_> {
+    /// Displacements along the scene's axes.
+    ///
+    /// # Errors
+    /// Some of a node's components are along local axes that aren't those of the scene.
+    fn supports(
+        &self,
+        table: &Table<NodeAxis>,
+        values: &BTreeMap<NodeAxis, f64>,
+    ) -> Result<BTreeMap<u32, [Option<f64>; 3]>, InputError> {
+        let dim = self.places.dim();
+        let mut by_node: BTreeMap<u32, [Option<f64>; 3]> = BTreeMap::new();
+        for (&(node, axis), &value) in values {
+            by_node.entry(node).or_default()[axis] = Some(value);
+        }
+        for (&node, held) in &mut by_node {
+            let Some(system) = self.systems.get(&node) else {
+                continue;
+            };
+            let axes = system.at(self.places.deck.points[node as usize]);
+            if held[..dim].iter().all(Option::is_some) {
+                *held = [0, 1, 2].map(|i| {
+                    let along = (0..dim).map(|p| axes[p][i] * held[p].unwrap_or_default());
+                    (i < dim).then(|| along.sum())
+                });
+                continue;
+            }
+            let mut global = [None; 3];
+            for (p, value) in held
+                .iter()
+                .enumerate()
+                .filter_map(|(p, value)| Some((p, (*value)?)))
+            {
+                let Some(i) = (0..3).find(|&i| axes[p][i].abs() > 1.0 - 1e-12) else {
+                    let tag = self.places.deck.node_tags[node as usize];
+                    let message = format!(
+                        "the node {tag} is held along an axis of *TRANSFORM that isn't one of x, y and z, which isn't \
+                         supported; convert the deck, and hold the side by [[bilateral]], which is without displacement \
+                         along its normal"
+                    );
+                    let place = table.place(&(node, p));
+                    return Err(match place {
+                        Some(place) => self.places.source.error(place, message),
+                        None => InputError::new(message),
+                    });
+                };
+                global[i] = Some(value * axes[p][i].signum());
+            }
+            *held = global;
+        }
+        Ok(by_node)
+    }
+
+    /// Forces along the scene's axes.
+    fn forces(&self, values: &BTreeMap<NodeAxis, f64>) -> BTreeMap<u32, [f64; 3]> {
+        let mut by_node: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+        for (&(node, axis), &value) in values.iter().filter(|(_, value)| **value != 0.0) {
+            let force = by_node.entry(node).or_default();
+            let direction = match self.systems.get(&node) {
+                Some(system) => system.at(self.places.deck.points[node as usize])[axis],
+                None => [0, 1, 2].map(|k| f64::from(u8::from(k == axis))),
+            };
+            (0..3).for_each(|k| force[k] += value * direction[k]);
+        }
+        by_node
+    }
+}
