@@ -34,7 +34,7 @@ use self::sections::Section;
 use self::steps::Steps;
 use crate::destination;
 use crate::error::{InputError, OutputError};
-use crate::mesh::abaqus::{self, Block, Of, Source, Whole};
+use crate::mesh::abaqus::{self, Block, LinePlace, Of, Source, Whole};
 use crate::mesh::{Mesh, gmsh};
 use crate::name;
 
@@ -96,7 +96,8 @@ pub fn read(path: &Path) -> Result<Translation, InputError> {
 }
 
 fn translate(path: &Path) -> Result<Translation, InputError> {
-    let source = Source::read(path)?;
+    let mut source = Source::read(path)?;
+    keyword::spell(&mut source.blocks);
     // What can't be computed is said before what is wrong with the mesh.
     let mut not_needed = BTreeSet::new();
     for block in &source.blocks {
@@ -109,10 +110,20 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
     } = Whole::read(&source)?;
     let mut places = Places::new(&source, deck);
     let mut content = Content::default();
+    // Amplitudes may stand behind what names them.
+    for block in source
+        .blocks
+        .iter()
+        .filter(|block| block.keyword == "AMPLITUDE")
+    {
+        let name = source.required(block, "NAME")?.to_uppercase();
+        (content.steps.amplitudes).insert(name, Amplitude::read(&source, block)?);
+    }
     for block in &source.blocks {
         content.read(&mut places, block)?;
     }
     content.steps.end(&places)?;
+    content.check_path(&places)?;
     if content.steps.done.is_empty() {
         return Err(InputError::new(
             "the deck has no step; expected *STEP with *STATIC, or a scene in TOML whose key 'mesh' names the deck",
@@ -123,7 +134,12 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
         let list = not_needed.into_iter().collect::<Vec<_>>().join(", ");
         warnings.push(format!("not needed, and left out: {list}"));
     }
-    warnings.append(&mut content.warnings.clone());
+    if let Some(place) = content.nlgeom {
+        let place = source.place(place);
+        warnings.push(format!(
+            "{place}: NLGEOM is left out: displacements and strains are taken as small, and nodes keep what they face"
+        ));
+    }
     let scene = scene::text(&mut places, &content, &mut warnings)?;
     let files = source.paths().map(Path::to_path_buf).collect();
     let mesh = abaqus::mesh(&places.deck, warnings)?;
@@ -144,7 +160,8 @@ struct Content {
     temperatures: BTreeMap<u32, f64>,
     contacts: Contacts,
     steps: Steps,
-    warnings: Vec<String>,
+    /// The first step that asks for large displacements.
+    nlgeom: Option<LinePlace>,
 }
 
 impl Content {
@@ -198,19 +215,10 @@ impl Content {
             }
             "SOLID SECTION" => self.sections.push(Section::read(places, block)?),
             "INITIAL CONDITIONS" => self.initial(places, block)?,
-            "AMPLITUDE" => {
-                let name = source.required(block, "NAME")?.to_uppercase();
-                self.steps
-                    .amplitudes
-                    .insert(name, Amplitude::read(source, block)?);
-            }
             "STEP" => {
-                if let Some(value) = block
-                    .parameter("NLGEOM")
-                    .filter(|value| !value.eq_ignore_ascii_case("NO"))
-                {
-                    let _ = value;
-                    self.small(source, block);
+                let nlgeom = block.parameter("NLGEOM");
+                if nlgeom.is_some_and(|value| !value.eq_ignore_ascii_case("NO")) {
+                    self.nlgeom.get_or_insert(block.place);
                 }
                 self.steps.begin(places, block, !self.contacts.is_empty())?;
             }
@@ -224,14 +232,15 @@ impl Content {
         Ok(())
     }
 
-    /// Warns that strains are taken as small.
-    fn small(&mut self, source: &Source, block: &Block) {
-        let warning = format!(
-            "{}: NLGEOM is left out: displacements and strains are taken as small, and nodes keep what they face",
-            source.place(block.place)
-        );
-        if self.warnings.is_empty() {
-            self.warnings.push(warning);
+    /// Refuses loads that come on a path which one load step for each step doesn't follow, where friction makes it matter.
+    fn check_path(&self, places: &Places) -> Result<(), InputError> {
+        match self.steps.bend.filter(|_| self.contacts.have_friction()) {
+            None => Ok(()),
+            Some(place) => Err(places.source.error(
+                place,
+                "the amplitude isn't linear within the step, which with friction changes the answer; expected a step that \
+                 ends at each of its points",
+            )),
         }
     }
 

@@ -1,4 +1,4 @@
-"""The command `contact-dd`: pictures, pages and tables of results, error bars, and meshes that adapt."""
+"""The command `contact-dd`: runs of decks and scenes, pictures, pages and tables of results, error bars, and meshes that adapt."""
 
 import argparse
 import signal
@@ -8,10 +8,10 @@ from pathlib import Path
 
 import matplotlib
 
-from contact_dd import files
+from contact_dd import files, programs
 from contact_dd.adaptivity import adapt as solve_adapted
 from contact_dd.comparison import Compared, compare
-from contact_dd.errors import ContactError, InputError
+from contact_dd.errors import ContactError, InputError, OutputError
 from contact_dd.manual import KINDS, Generate, version
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
@@ -32,7 +32,7 @@ def main() -> None:
 
 
 def parser() -> argparse.ArgumentParser:
-    what = "Draws and reports results of contact-dd-mpi, and adapts meshes."
+    what = "Runs decks and scenes, draws and reports results of contact-dd-mpi, and adapts meshes."
     top = argparse.ArgumentParser(prog="contact-dd", description=what)
     top.add_argument("-V", "--version", action="version", version=f"contact-dd {version()}", help="print the version")
     top.add_argument(
@@ -40,6 +40,20 @@ def parser() -> argparse.ArgumentParser:
         help="print the man page or completions for a shell: " + ", ".join(KINDS),
     )
     commands = top.add_subparsers(required=True, metavar="COMMAND")
+
+    what = "Partitions and solves a deck of Abaqus or CalculiX, or a scene, and writes the result."
+    solved = commands.add_parser("run", help="solve a deck or a scene", description=what)
+    solved.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene")
+    solved.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
+    solved.add_argument("--subdomains", type=int, help="how many there are (default: by size)")
+    solved.add_argument("--folder", type=Path, default=Path(), help="of problem file and result (default: this one)")
+    solved.set_defaults(command=run)
+
+    what = "Writes the scene and the mesh that a deck of Abaqus or CalculiX means, to go on from there."
+    converted = commands.add_parser("convert", help="make a scene of a deck", description=what)
+    converted.add_argument("deck", type=Path, metavar="DECK.inp", help="deck")
+    converted.add_argument("folder", type=Path, nargs="?", help="of scene.toml and mesh.msh (default: the deck's stem)")
+    converted.set_defaults(command=convert)
 
     drawn = commands.add_parser("plot", help="draw pictures of a result", description="Draws pictures of a result.")
     drawn.add_argument("result", type=Path, help="result file of contact-dd-mpi")
@@ -93,6 +107,21 @@ def factor(text: str) -> float | None:
     if not 0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"'{text}' is no enlargement; expected 'auto' or a number above 0")
     return value
+
+
+def run(arguments: argparse.Namespace) -> None:
+    source, folder = arguments.source, arguments.folder
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: can't be made: {error.strerror}") from error
+    problem = folder / (source.stem + ".h5")
+    programs.partition(source, arguments.subdomains, True, problem=problem)
+    print(programs.solve(problem, arguments.ranks, (), True).path)
+
+
+def convert(arguments: argparse.Namespace) -> None:
+    programs.convert(arguments.deck, arguments.folder or Path(arguments.deck.stem))
 
 
 def plot(arguments: argparse.Namespace) -> None:

@@ -60,9 +60,11 @@ def launcher(ranks: int) -> list[str]:
     return [found, "-n", str(ranks)]
 
 
-def partition(scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str) -> Path:
-    """Writes the problem file beside a scene. Messages are `worded`."""
-    problem = scene.with_suffix(".h5")
+def partition(
+    scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str, problem: Path | None = None
+) -> Path:
+    """Writes the problem file of a scene or a deck, beside it unless it is named. Messages are `worded`."""
+    problem = problem or scene.with_suffix(".h5")
     number = [] if subdomains is None else ["-n", str(subdomains)]
 
     def hear(line: str) -> None:
@@ -74,6 +76,11 @@ def partition(scene: Path, subdomains: int | None, progress: Progress, worded: W
 
     run([find("contact-dd-partition"), str(scene), "-o", str(problem), *number], hear, worded)
     return problem
+
+
+def convert(deck: Path, folder: Path) -> None:
+    """Writes the scene and the mesh that a deck means, and prints what the program says of them."""
+    run([find("contact-dd-partition"), str(deck), "--write-scene", str(folder)], print, str)
 
 
 def solve(

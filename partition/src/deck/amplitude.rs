@@ -81,4 +81,22 @@ impl Amplitude {
             (None, first) => first.map_or(0.0, |(_, value)| *value),
         }
     }
+
+    /// Whether it isn't linear from one moment to another of the same step.
+    pub(super) fn bends(&self, from: Moment, to: Moment) -> bool {
+        let time = |moment: Moment| {
+            if self.is_total {
+                moment.total
+            } else {
+                moment.in_step
+            }
+        };
+        let (start, end) = (self.at(from), self.at(to));
+        let (from, to) = (time(from), time(to));
+        let within = self.points.iter().filter(|(at, _)| from < *at && *at < to);
+        let chord = |at: f64| start + (end - start) * (at - from) / (to - from);
+        within
+            .into_iter()
+            .any(|&(at, value)| (value - chord(at)).abs() > 1e-9 * (start.abs() + end.abs()))
+    }
 }

@@ -22,8 +22,8 @@ pub(super) struct Pair {
     pub(super) master: String,
     interaction: String,
     pub(super) place: LinePlace,
-    /// Which nodes of the slave are moved onto the master, as the deck says it.
-    pub(super) adjust: Option<String>,
+    /// Whether nodes of the slave should be moved onto the master.
+    pub(super) adjust: bool,
     pub(super) gap: Option<f64>,
 }
 
@@ -57,6 +57,21 @@ impl Contacts {
     /// Whether there is none.
     pub(super) fn is_empty(&self) -> bool {
         self.pairs.is_empty() && self.general.is_none()
+    }
+
+    /// Whether friction acts somewhere.
+    pub(super) fn have_friction(&self) -> bool {
+        let general = self
+            .general
+            .iter()
+            .filter_map(|general| general.interaction.as_ref());
+        let named = self
+            .pairs
+            .iter()
+            .map(|pair| &pair.interaction)
+            .chain(general);
+        let mut laws = named.filter_map(|name| self.interactions.get(name));
+        laws.any(|interaction| interaction.friction != 0.0)
     }
 
     /// Reads a block of contacts.
@@ -162,7 +177,7 @@ impl Contacts {
                 master,
                 interaction: interaction.clone(),
                 place: data.place,
-                adjust: block.parameter("ADJUST").map(str::to_owned),
+                adjust: block.parameter("ADJUST").is_some(),
                 gap: None,
             });
         }

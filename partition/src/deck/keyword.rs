@@ -1,12 +1,14 @@
 //! What each keyword of a deck means here: read, not needed for the answer, or refused, with what to do instead.
 
+use std::collections::HashMap;
+
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 43] = [
+const READ: [&str; 37] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -43,18 +45,18 @@ const READ: [&str; 43] = [
     "STEP",
     "END STEP",
     "STATIC",
-    // Their tables say nothing of elasticity, but stand behind a material or an interaction.
+    "HEADING",
+];
+
+/// Keywords that don't matter to the answer.
+const NOT_NEEDED: [&str; 38] = [
     "CONDUCTIVITY",
+    "ELECTRICAL CONDUCTIVITY",
     "SPECIFIC HEAT",
     "GAP CONDUCTANCE",
     "GAP HEAT GENERATION",
     "PHYSICAL CONSTANTS",
     "DAMPING",
-    "HEADING",
-];
-
-/// Keywords that don't matter to the answer.
-const NOT_NEEDED: [&str; 31] = [
     "PREPRINT",
     "RESTART",
     "OUTPUT",
@@ -93,7 +95,7 @@ const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the answer: what is said of them, and what to do instead.
-const REFUSED: [(&[&str], &str, &str); 22] = [
+const REFUSED: [(&[&str], &str, &str); 23] = [
     (
         &[
             "PLASTIC",
@@ -139,6 +141,11 @@ const REFUSED: [(&[&str], &str, &str); 22] = [
             "UNCOUPLED TEMPERATURE-DISPLACEMENT",
             "CRACK PROPAGATION",
             "FEASIBLE DIRECTION",
+            "FLUID CONSTANTS",
+            "SPECIFIC GAS CONSTANT",
+            "OBJECTIVE",
+            "CONSTRAINT",
+            "MATRIX ASSEMBLE",
             "ROBUST DESIGN",
             "DESIGN VARIABLES",
             "DESIGN RESPONSE",
@@ -267,11 +274,145 @@ const REFUSED: [(&[&str], &str, &str); 22] = [
         "list all nodes and elements, in Cartesian coordinates",
     ),
     (
-        &["DISTRIBUTION", "DISTRIBUTION TABLE", "FIELD"],
+        &["REFINE MESH", "USE REFINED MESH"],
+        "isn't read",
+        "give the mesh as fine as it is to be",
+    ),
+    (
+        &[
+            "DISTRIBUTION",
+            "DISTRIBUTION TABLE",
+            "FIELD",
+            "INITIAL STRAIN INCREASE",
+        ],
         "isn't read",
         "give numbers by sets",
     ),
 ];
+
+/// Parameters of keywords that are read, be it to say that they change nothing; others are refused.
+const PARAMETERS: [(&str, &[&str]); 24] = [
+    ("MATERIAL", &["NAME", "RTOL"]),
+    ("ELASTIC", &["TYPE", "MODULI"]),
+    ("EXPANSION", &["TYPE", "ZERO"]),
+    ("DENSITY", &[]),
+    (
+        "SOLID SECTION",
+        &["ELSET", "MATERIAL", "ORIENTATION", "CONTROLS", "COMPOSITE"],
+    ),
+    ("ORIENTATION", &["NAME", "SYSTEM"]),
+    ("TRANSFORM", &["NSET", "TYPE"]),
+    (
+        "AMPLITUDE",
+        &["NAME", "TIME", "VALUE", "DEFINITION", "USER"],
+    ),
+    ("INITIAL CONDITIONS", &["TYPE"]),
+    (
+        "BOUNDARY",
+        &[
+            "OP",
+            "AMPLITUDE",
+            "TYPE",
+            "FIXED",
+            "USER",
+            "SUBMODEL",
+            "LOAD CASE",
+            "STEP",
+            "DATA SET",
+            "REGION TYPE",
+        ],
+    ),
+    ("CLOAD", &["OP", "AMPLITUDE", "REGION TYPE"]),
+    ("DLOAD", &["OP", "AMPLITUDE"]),
+    ("DSLOAD", &["OP", "AMPLITUDE"]),
+    ("TEMPERATURE", &["OP", "AMPLITUDE"]),
+    ("SURFACE INTERACTION", &["NAME"]),
+    (
+        "SURFACE BEHAVIOR",
+        &[
+            "PRESSURE-OVERCLOSURE",
+            "PENALTY",
+            "DIRECT",
+            "AUGMENTED LAGRANGE",
+        ],
+    ),
+    (
+        "FRICTION",
+        &[
+            "SLIP TOLERANCE",
+            "ROUGH",
+            "TAUMAX",
+            "EXPONENTIAL DECAY",
+            "USER",
+            "LAGRANGE",
+            "ANISOTROPIC",
+        ],
+    ),
+    (
+        "CONTACT PAIR",
+        &[
+            "INTERACTION",
+            "TYPE",
+            "SMALL SLIDING",
+            "ADJUST",
+            "TIED",
+            "EXTENSION ZONE",
+            "HCRIT",
+            "NO THICKNESS",
+            "SMOOTH",
+            "SUPPLEMENTARY CONSTRAINTS",
+            "CPSET",
+            "GEOMETRIC CORRECTION",
+            "TRACKING",
+            "SLIDING TRANSITION",
+            "MECHANICAL CONSTRAINT",
+        ],
+    ),
+    ("CLEARANCE", &["MASTER", "SLAVE", "VALUE"]),
+    ("CONTACT", &["OP"]),
+    ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),
+    ("CONTACT PROPERTY ASSIGNMENT", &[]),
+    (
+        "STEP",
+        &[
+            "NAME",
+            "NLGEOM",
+            "INC",
+            "INCR",
+            "INCF",
+            "PERTURBATION",
+            "AMPLITUDE",
+            "EXTRAPOLATION",
+            "UNSYMM",
+            "CONVERT SDI",
+        ],
+    ),
+    (
+        "STATIC",
+        &[
+            "DIRECT",
+            "SOLVER",
+            "RIKS",
+            "STABILIZE",
+            "ALLSDTOL",
+            "CONTINUE",
+            "FACTOR",
+        ],
+    ),
+];
+
+/// Gives blocks their keywords as the tables here spell them: blanks don't tell keywords apart.
+pub(super) fn spell(blocks: &mut [Block]) {
+    let letters = |word: &str| word.replace(' ', "");
+    let refused = REFUSED.iter().flat_map(|(names, ..)| *names);
+    let known = READ.iter().chain(&NOT_NEEDED).chain(refused);
+    let known: HashMap<String, &str> = known.map(|word| (letters(word), *word)).collect();
+    for block in blocks {
+        if let Some(word) = known.get(&letters(&block.keyword)) {
+            block.keyword = (*word).to_owned();
+        }
+    }
+}
 
 /// What is to be done with a block.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -283,10 +424,18 @@ pub(super) enum Meaning {
 /// The meaning of a block by its keyword.
 ///
 /// # Errors
-/// A keyword that would change the answer or isn't known, with its line.
+/// A keyword or a parameter that would change the answer or isn't known, with its line.
 pub(super) fn meaning(source: &Source, block: &Block) -> Result<Meaning, InputError> {
     let keyword = block.keyword.as_str();
     if READ.contains(&keyword) {
+        let known = PARAMETERS.iter().find(|(name, _)| *name == keyword);
+        let mut names = block.parameter_names();
+        let unknown = known.and_then(|(_, known)| names.find(|name| !known.contains(name)));
+        if let Some(name) = unknown {
+            let name = name::shown(name);
+            let message = format!("*{keyword} with {name} isn't read, and may change the answer");
+            return Err(source.error(block.place, message));
+        }
         return Ok(Meaning::Read);
     }
     if NOT_NEEDED.contains(&keyword) {

@@ -259,6 +259,12 @@ impl Content {
         let mut taken = BTreeSet::new();
         for (pair, [slave, master]) in self.contacts.pairs.iter().zip(sides) {
             let friction = self.contacts.friction(places, pair, warnings)?;
+            if pair.adjust && pair.gap.is_none() {
+                let place = places.source.place(pair.place);
+                warnings.push(format!(
+                    "{place}: ADJUST is left out: no node is moved, and gaps are those of the mesh"
+                ));
+            }
             let plain = format!("{slave} on {master}").replace('/', " ");
             let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
             let mut names = std::iter::once(plain.clone()).chain(numbered);

@@ -10,6 +10,7 @@ use super::supports::NodeAxis;
 use super::table::{Amplitudes, Origin, Table};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
+use crate::name;
 
 /// What acts at the end of a step.
 pub(super) struct LoadStep {
@@ -34,6 +35,8 @@ pub(super) struct Steps {
     pub(super) amplitudes: Amplitudes,
     /// Local systems of nodes.
     pub(super) systems: BTreeMap<u32, System>,
+    /// The first load that comes in another way than in proportion to the time of its step.
+    pub(super) bend: Option<LinePlace>,
     open: Option<Open>,
     total_time: f64,
 }
@@ -117,10 +120,7 @@ impl Steps {
             .as_ref()
             .filter(|name| !self.amplitudes.contains_key(*name))
         {
-            let message = format!(
-                "there is no amplitude '{}' before this line",
-                crate::name::shown(name)
-            );
+            let message = format!("there is no amplitude '{}'", name::shown(name));
             return Err(places.source.error(block.place, message));
         }
         if !self.is_open() && block.keyword != "BOUNDARY" {
@@ -153,6 +153,10 @@ impl Steps {
                 .source
                 .error(open.place, "the step has no *STATIC; expected it"));
         }
+        let start = Moment {
+            in_step: 0.0,
+            total: self.total_time,
+        };
         let end = Moment {
             in_step: open.period,
             total: self.total_time + open.period,
@@ -164,6 +168,14 @@ impl Steps {
             places,
             systems: &self.systems,
         };
+        let bend = (loads.supports.bend(amplitudes, start, end))
+            .or_else(|| loads.forces.bend(amplitudes, start, end))
+            .or_else(|| loads.faces.bend(amplitudes, start, end))
+            .or_else(|| loads.surfaces.bend(amplitudes, start, end))
+            .or_else(|| loads.tractions.bend(amplitudes, start, end))
+            .or_else(|| loads.bodies.bend(amplitudes, start, end))
+            .or_else(|| loads.temperatures.bend(amplitudes, start, end));
+        self.bend = self.bend.or(bend);
         self.done.push(LoadStep {
             name: open.name,
             place: open.place,

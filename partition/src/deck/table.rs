@@ -70,6 +70,22 @@ impl<K: Ord + Clone> Table<K> {
             .collect()
     }
 
+    /// The first value whose amplitude isn't linear between two moments of a step.
+    pub(super) fn bend(
+        &self,
+        amplitudes: &Amplitudes,
+        from: Moment,
+        to: Moment,
+    ) -> Option<LinePlace> {
+        let bends = |name: &Option<String>| {
+            let amplitude = name.as_ref().and_then(|name| amplitudes.get(name));
+            amplitude.is_some_and(|amplitude| amplitude.bends(from, to))
+        };
+        let mut entries = self.0.values();
+        let bent = entries.find(|entry| entry.values.iter().any(|(_, name)| bends(name)));
+        bent.map(|entry| entry.origin.place)
+    }
+
     /// Holds what amplitudes over the time of a step are at its end.
     pub(super) fn hold(&mut self, amplitudes: &Amplitudes, end: Moment) {
         for entry in self.0.values_mut() {

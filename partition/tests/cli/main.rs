@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that can't go on has failed")]
 
+mod decks;
 mod full_disk;
 mod info;
 #[path = "../../../tests/support/mounted.rs"]

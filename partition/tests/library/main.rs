@@ -11,6 +11,7 @@ mod blocks;
 #[path = "../../../tests/support/close.rs"]
 mod close;
 mod curve;
+mod deck;
 mod decompose;
 mod element;
 mod example;

@@ -1,0 +1,104 @@
+//! Decks of Abaqus and CalculiX, solved as they are.
+
+use contact_dd_partition::deck;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
+
+use crate::support::close::close;
+use crate::support::solver::solve_steps;
+
+/// A column of two cubes that touch, without Poisson's effect: under a pressure, with its weight, and under forces alone.
+const COLUMN: &str = "\
+*NODE
+ 1, 0, 0, 0
+ 2, 1, 0, 0
+ 3, 1, 1, 0
+ 4, 0, 1, 0
+ 5, 0, 0, 1
+ 6, 1, 0, 1
+ 7, 1, 1, 1
+ 8, 0, 1, 1
+11, 0, 0, 1
+12, 1, 0, 1
+13, 1, 1, 1
+14, 0, 1, 1
+15, 0, 0, 2
+16, 1, 0, 2
+17, 1, 1, 2
+18, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=Lower
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=C3D8, ELSET=Upper
+2, 11, 12, 13, 14, 15, 16, 17, 18
+*ELSET, ELSET=All
+Lower, Upper
+*NSET, NSET=Top
+15, 16, 17, 18
+*SURFACE, NAME=Low
+Lower, S2
+*SURFACE, NAME=High
+Upper, S1
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.
+*DENSITY
+3.
+*SOLID SECTION, ELSET=All, MATERIAL=M
+*SURFACE INTERACTION, NAME=I
+*CONTACT PAIR, INTERACTION=I
+High, Low
+*BOUNDARY
+1, 1, 3
+2, 1, 3
+3, 1, 3
+4, 1, 3
+11, 1, 2
+12, 2
+*AMPLITUDE, NAME=Half
+0., 0., 2., 1.
+*STEP
+*STATIC
+1., 1.
+*DLOAD, AMPLITUDE=Half
+Upper, P2, 20.
+*END STEP
+*STEP
+*STATIC
+*DLOAD
+All, GRAV, 10., 0., 0., -1.
+*END STEP
+*STEP
+*STATIC
+*DLOAD, OP=NEW
+*CLOAD
+Top, 3, -2.5
+*END STEP
+";
+
+#[test]
+fn a_column_of_a_deck_is_as_short_as_by_hooke() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("column.inp");
+    std::fs::write(&path, COLUMN).unwrap();
+    let translation = deck::read(&path).unwrap();
+    let scene = Scene::parse(&translation.scene).unwrap();
+    let model = Model::new(&scene, translation.mesh).unwrap();
+    let steps = solve_steps(&model, 2);
+    // -∫ (p + γ (2 - z)) dz / E up to the middle and up to the top.
+    let expected = [(10.0, 0.0), (10.0, 30.0), (10.0, 0.0)];
+    assert_eq!(steps.len(), expected.len());
+    for (solution, (p, weight)) in steps.iter().zip(expected) {
+        let middle = -(p + 1.5 * weight) / 1000.0;
+        let top = -(2.0 * p + 2.0 * weight) / 1000.0;
+        for (tags, expected) in [(5..9, middle), (11..15, middle), (15..19, top)] {
+            for tag in tags {
+                let [x, y, z] = solution.displacement[&tag];
+                close(z, expected, 1e-14);
+                close(x, 0.0, 1e-14);
+                close(y, 0.0, 1e-14);
+            }
+        }
+        let force: f64 = solution.points().map(|point| point.force).sum();
+        close(force.abs(), p + weight, 1e-12);
+    }
+}
