@@ -1,25 +1,27 @@
 //! What acts in a step: supports, forces and temperatures as the steps before have left them and it changes them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::place::Places;
 use super::supports::NodeAxis;
 use super::table::{Origin, Table};
 use crate::element::geometry::length;
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, Data, LinePlace, Of, Source};
+use crate::mesh::abaqus::{Block, Data, Of, Source};
 use crate::name;
 
-/// A load on the volume of elements: per volume, or per mass.
-#[derive(Clone)]
+/// A load on the volume of elements, of magnitude 1.
+#[derive(Clone, PartialEq)]
 pub(super) struct BodyLoad {
+    /// What the deck calls the elements and the kind, in capitals: another load of both replaces it in a later step.
+    target: String,
+    pub(super) label: String,
     pub(super) elements: Vec<u32>,
     pub(super) kind: BodyKind,
-    pub(super) place: LinePlace,
 }
 
 /// A field of forces of magnitude 1.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub(super) enum BodyKind {
     /// Per volume, along an axis.
     Along(usize),
@@ -28,9 +30,6 @@ pub(super) enum BodyKind {
     /// Per mass, away from an axis through a point in a direction.
     Centrifugal([f64; 3], [f64; 3]),
 }
-
-/// Elements and the kind of a load on them, in capitals: what replaces such a load.
-pub(super) type BodyKey = (String, String);
 
 /// All that acts.
 #[derive(Default)]
@@ -43,8 +42,9 @@ pub(super) struct Loads {
     pub(super) surfaces: Table<String>,
     pub(super) tractions: Table<(String, usize)>,
     pub(super) directions: Vec<[f64; 3]>,
-    pub(super) bodies: Table<BodyKey>,
-    pub(super) of_bodies: BTreeMap<BodyKey, BodyLoad>,
+    /// Magnitudes by the number of the load.
+    pub(super) bodies: Table<usize>,
+    pub(super) of_bodies: Vec<BodyLoad>,
     pub(super) temperatures: Table<u32>,
     /// What of it isn't needed, in words.
     pub(super) notes: BTreeSet<String>,
@@ -152,17 +152,23 @@ impl Loads {
                 format!("{label} has no direction; expected one that isn't zero"),
             )
         })?;
-        let key = (target.to_uppercase(), label);
-        self.bodies.add(key.clone(), value, &origin);
-        let place = data.place;
-        self.of_bodies.insert(
-            key,
-            BodyLoad {
-                elements,
-                kind,
-                place,
-            },
-        );
+        let load = BodyLoad {
+            target: target.to_uppercase(),
+            label,
+            elements,
+            kind,
+        };
+        let replaces = |number: &usize| {
+            let other = &self.of_bodies[*number];
+            other.target == load.target && other.label == load.label
+        };
+        self.bodies.forget(origin.step, replaces);
+        let number = (self.of_bodies.iter()).position(|known| *known == load);
+        let number = number.unwrap_or_else(|| {
+            self.of_bodies.push(load);
+            self.of_bodies.len() - 1
+        });
+        self.bodies.add(number, value, &origin);
         Ok(())
     }
 
@@ -195,6 +201,8 @@ impl Loads {
                     self.directions.push(direction);
                     self.directions.len() - 1
                 });
+                self.tractions
+                    .forget(origin.step, |(other, _)| *other == surface);
                 self.tractions.add((surface, number), value, &origin);
             }
             _ => {

@@ -6,7 +6,7 @@ use super::Content;
 use super::document::{Document, Linear, quoted, vector};
 use super::elastic::Elastic;
 use super::groups::Groups;
-use super::loads::{BodyKey, BodyKind, BodyLoad};
+use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
 use super::place::Places;
 use super::sections::{self, Body, Section};
@@ -218,16 +218,17 @@ impl Content {
         step: &LoadStep,
     ) -> Result<Linear, InputError> {
         let mut force = Linear::default();
-        let of_bodies = &self.steps.loads.of_bodies;
-        let acting = body
-            .loads
-            .iter()
-            .filter_map(|key: &BodyKey| Some((key, step.bodies.get(key)?, of_bodies.get(key)?)));
-        for ((_, label), &magnitude, BodyLoad { kind, place, .. }) in acting {
+        let loads = &self.steps.loads;
+        for number in &body.loads {
+            let Some(&magnitude) = step.bodies.get(number) else {
+                continue;
+            };
+            let BodyLoad { kind, label, .. } = &loads.of_bodies[*number];
             let section = &self.sections[body.section];
+            let place = loads.bodies.place(number).unwrap_or(step.place);
             let density = || {
                 self.material(source, section)?
-                    .density(source, *place, label)
+                    .density(source, place, label)
             };
             match *kind {
                 BodyKind::Along(axis) => force.constant[axis] += magnitude,

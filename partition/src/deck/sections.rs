@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::loads::{BodyKey, Loads, item};
+use super::loads::{Loads, item};
 use super::place::Places;
 use super::steps::LoadStep;
 use crate::error::InputError;
@@ -49,7 +49,7 @@ pub(super) struct Body {
     pub(super) cells: Vec<u32>,
     pub(super) section: usize,
     /// The loads that act on it in some step.
-    pub(super) loads: BTreeSet<BodyKey>,
+    pub(super) loads: BTreeSet<usize>,
     /// Its temperature in every step, above that at the beginning.
     pub(super) warmth: Vec<f64>,
 }
@@ -102,18 +102,17 @@ pub(super) fn bodies(
         )));
     }
     let mut classes = Classes(section_of.clone());
-    let keys: BTreeSet<&BodyKey> = steps.iter().flat_map(|step| step.bodies.keys()).collect();
-    let mut acting: HashMap<u32, Vec<&BodyKey>> = HashMap::new();
-    for key in keys {
-        let members = loads
-            .of_bodies
-            .get(key)
-            .map_or(&[][..], |load| &load.elements);
-        let members: BTreeSet<u32> = members.iter().copied().collect();
+    let numbers: BTreeSet<usize> = (steps.iter())
+        .flat_map(|step| step.bodies.keys().copied())
+        .collect();
+    let mut acting: HashMap<u32, BTreeSet<usize>> = HashMap::new();
+    for number in numbers {
+        let members = loads.of_bodies[number].elements.iter().copied();
+        let members: BTreeSet<u32> = members.collect();
         classes.refine(|element| members.contains(&element).into());
-        members
-            .into_iter()
-            .for_each(|element| acting.entry(element).or_default().push(key));
+        for element in members {
+            acting.entry(element).or_default().insert(number);
+        }
     }
     let mut warmth: HashMap<u32, Vec<f64>> = HashMap::new();
     for step in steps {
@@ -142,14 +141,9 @@ pub(super) fn bodies(
     }
     let body = |cells: Vec<u32>| {
         let first = cells[0];
-        let loads = acting
-            .get(&first)
-            .into_iter()
-            .flatten()
-            .map(|key| (*key).clone());
         Body {
             section: section_of[first as usize].unwrap_or_default() as usize,
-            loads: loads.collect(),
+            loads: acting.remove(&first).unwrap_or_default(),
             warmth: warmth.remove(&first).unwrap_or_default(),
             cells,
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::amplitude::Moment;
 use super::axes::{System, numbers};
-use super::loads::{BodyKey, Loads};
+use super::loads::Loads;
 use super::place::Places;
 use super::supports::NodeAxis;
 use super::table::{Amplitudes, Origin, Table};
@@ -23,7 +23,7 @@ pub(super) struct LoadStep {
     pub(super) faces: BTreeMap<(u32, usize), f64>,
     pub(super) surfaces: BTreeMap<String, f64>,
     pub(super) tractions: BTreeMap<(String, usize), f64>,
-    pub(super) bodies: BTreeMap<BodyKey, f64>,
+    pub(super) bodies: BTreeMap<usize, f64>,
     pub(super) temperatures: BTreeMap<u32, f64>,
 }
 

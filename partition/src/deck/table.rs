@@ -53,7 +53,13 @@ impl<K: Ord + Clone> Table<K> {
 
     /// Forgets what came before a step.
     pub(super) fn begin(&mut self, step: usize) {
-        self.0.retain(|_, entry| entry.origin.step == step);
+        self.forget(step, |_| true);
+    }
+
+    /// Forgets what came before a step at places that a load of it `replaces`.
+    pub(super) fn forget(&mut self, step: usize, replaces: impl Fn(&K) -> bool) {
+        self.0
+            .retain(|key, entry| entry.origin.step == step || !replaces(key));
     }
 
     /// The values at a moment, and where they come from.

@@ -72,3 +72,31 @@ fn temperatures_count_from_those_at_the_beginning() {
         .collect();
     assert_eq!(warmth, [50.0, 0.0]);
 }
+
+#[test]
+fn loads_of_several_directions_add_up_and_those_of_a_later_step_replace_them() {
+    let steps = [
+        step(
+            "*DLOAD\nUpper, BX, 1.\nUpper, GRAV, 1e9, 0., 0., -1.\nUpper, GRAV, 1e9, 0., 1., 0.\n*DSLOAD\nHigh, TRVEC, 2., 1., 0., 0.",
+        ),
+        step("*DLOAD\nUpper, GRAV, 2e9, 1., 0., 0.\n*DSLOAD\nHigh, TRVEC, 3., 0., 1., 0."),
+    ];
+    let scene = scene(&steps.concat());
+    let weight = 1e9 * 7.8e-9;
+    let forces: Vec<[f64; 3]> = (scene.step.iter())
+        .map(|step| step.body_force["Upper"].at([0.0; 3]).unwrap())
+        .collect();
+    assert_eq!(
+        forces,
+        [[1.0, weight, -weight], [1.0 + 2.0 * weight, 0.0, 0.0]]
+    );
+    let tractions = scene.step.iter().map(|step| {
+        let list = step.traction.as_ref().unwrap();
+        let values = list.iter().map(|load| load.value.at([0.0; 3]).unwrap());
+        values.collect::<Vec<_>>()
+    });
+    assert_eq!(
+        tractions.collect::<Vec<_>>(),
+        [[[2.0, 0.0, 0.0]], [[0.0, 3.0, 0.0]]]
+    );
+}
