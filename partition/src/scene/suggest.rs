@@ -43,8 +43,8 @@ const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
         "stress before loading is a body's 'initial_stress'",
     ),
     (
-        "load loads forces cload dload neumann point_load point_force",
-        Some("force"),
+        "load loads force forces cload dload neumann point_load point_force",
+        Some("body_force"),
         "loads are 'pressure', 'traction', 'force' on nodes and a body's 'body_force'",
     ),
     (
