@@ -30,7 +30,7 @@ const FIGURES: [Figure; 8] = [
     ("tension", Some(1e-12), |ran| {
         ran.trial.reported(&["certificate", "tension"])
     }),
-    ("backward error, by the judge", None, |ran| {
+    ("backward error, by the independent checker", None, |ran| {
         ran.trial.findings.map(|found| found.backward_error)
     }),
     ("difference to the reference", None, difference),
@@ -171,7 +171,7 @@ fn verdicts(text: &mut String, ran: &[Ran]) {
         }
     }
     line("matching nodes", &|one| !one.family.ends_with("uneven"));
-    line("uneven", &|one| one.family.ends_with("uneven"));
+    line("non-matching nodes", &|one| one.family.ends_with("uneven"));
     line("with equilibrium", &|one| {
         one.trial.equilibrium == Some(true)
     });

@@ -21,12 +21,16 @@ const FIGURES: [Figure; 6] = [
     ("friction", Some(1e-9), |ran| {
         ran.trial.reported(&["certificate", "friction"])
     }),
-    ("force beyond the bound, by the judge", None, |ran| {
-        ran.trial.findings.map(|found| found.bound.max(0.0))
-    }),
-    ("slip of the result, by the judge", None, |ran| {
-        ran.trial.findings.map(|found| found.slip)
-    }),
+    (
+        "force beyond the bound, by the independent checker",
+        None,
+        |ran| ran.trial.findings.map(|found| found.bound.max(0.0)),
+    ),
+    (
+        "slip of the result, by the independent checker",
+        None,
+        |ran| ran.trial.findings.map(|found| found.slip),
+    ),
     ("difference to the reference", None, |ran| {
         ran.trial.findings?.difference
     }),
@@ -67,8 +71,8 @@ pub const SPACE: Kind = Kind {
     option: "--space --friction",
     moved: "turn and reverse",
     families: &space::friction::FAMILIES,
-    how_to_read: "As in the plane, with discs for bounds. Which rigid bodies friction holds a linear program says with polygons in the
-discs and around them. Of the scenes that it finds without equilibrium four of five are drawn anew, within their family.
+    how_to_read: "As in the plane, with friction cones for bounds. Whether friction holds rigid bodies a linear program says, with polygons in the
+cones and around them. Of the scenes that it finds without equilibrium four of five are drawn anew, within their family.
 
 ",
 };
