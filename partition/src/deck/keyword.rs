@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::parameters;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
@@ -188,7 +189,7 @@ const REFUSED: [(&[&str], &str, &str); 23] = [
     (
         &["SPRING", "DASHPOT", "CONNECTOR SECTION", "GAP"],
         NOT_YET,
-        "leave it out: bodies may be without supports",
+        "leave it out, convert the deck, and give [[spring]] in the scene",
     ),
     (
         &["CYCLIC SYMMETRY MODEL", "SELECT CYCLIC SYMMETRY MODES"],
@@ -219,7 +220,7 @@ const REFUSED: [(&[&str], &str, &str); 23] = [
     (
         &["MODEL CHANGE"],
         NOT_YET,
-        "convert the deck, and say in the scene's [[step]] what is added and removed",
+        "leave it out, convert the deck, and say in the scene's [[step]] what is added and removed",
     ),
     (
         &[
@@ -290,117 +291,6 @@ const REFUSED: [(&[&str], &str, &str); 23] = [
     ),
 ];
 
-/// Parameters of keywords that are read, be it to say that they change nothing; others are refused.
-const PARAMETERS: [(&str, &[&str]); 24] = [
-    ("MATERIAL", &["NAME", "RTOL"]),
-    ("ELASTIC", &["TYPE", "MODULI"]),
-    ("EXPANSION", &["TYPE", "ZERO"]),
-    ("DENSITY", &[]),
-    (
-        "SOLID SECTION",
-        &["ELSET", "MATERIAL", "ORIENTATION", "CONTROLS", "COMPOSITE"],
-    ),
-    ("ORIENTATION", &["NAME", "SYSTEM"]),
-    ("TRANSFORM", &["NSET", "TYPE"]),
-    (
-        "AMPLITUDE",
-        &["NAME", "TIME", "VALUE", "DEFINITION", "USER"],
-    ),
-    ("INITIAL CONDITIONS", &["TYPE"]),
-    (
-        "BOUNDARY",
-        &[
-            "OP",
-            "AMPLITUDE",
-            "TYPE",
-            "FIXED",
-            "USER",
-            "SUBMODEL",
-            "LOAD CASE",
-            "STEP",
-            "DATA SET",
-            "REGION TYPE",
-        ],
-    ),
-    ("CLOAD", &["OP", "AMPLITUDE", "REGION TYPE"]),
-    ("DLOAD", &["OP", "AMPLITUDE"]),
-    ("DSLOAD", &["OP", "AMPLITUDE"]),
-    ("TEMPERATURE", &["OP", "AMPLITUDE"]),
-    ("SURFACE INTERACTION", &["NAME"]),
-    (
-        "SURFACE BEHAVIOR",
-        &[
-            "PRESSURE-OVERCLOSURE",
-            "PENALTY",
-            "DIRECT",
-            "AUGMENTED LAGRANGE",
-        ],
-    ),
-    (
-        "FRICTION",
-        &[
-            "SLIP TOLERANCE",
-            "ROUGH",
-            "TAUMAX",
-            "EXPONENTIAL DECAY",
-            "USER",
-            "LAGRANGE",
-            "ANISOTROPIC",
-        ],
-    ),
-    (
-        "CONTACT PAIR",
-        &[
-            "INTERACTION",
-            "TYPE",
-            "SMALL SLIDING",
-            "ADJUST",
-            "TIED",
-            "EXTENSION ZONE",
-            "HCRIT",
-            "NO THICKNESS",
-            "SMOOTH",
-            "SUPPLEMENTARY CONSTRAINTS",
-            "CPSET",
-            "GEOMETRIC CORRECTION",
-            "TRACKING",
-            "SLIDING TRANSITION",
-            "MECHANICAL CONSTRAINT",
-        ],
-    ),
-    ("CLEARANCE", &["MASTER", "SLAVE", "VALUE"]),
-    ("CONTACT", &["OP"]),
-    ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),
-    ("CONTACT PROPERTY ASSIGNMENT", &[]),
-    (
-        "STEP",
-        &[
-            "NAME",
-            "NLGEOM",
-            "INC",
-            "INCR",
-            "INCF",
-            "PERTURBATION",
-            "AMPLITUDE",
-            "EXTRAPOLATION",
-            "UNSYMM",
-            "CONVERT SDI",
-        ],
-    ),
-    (
-        "STATIC",
-        &[
-            "DIRECT",
-            "SOLVER",
-            "RIKS",
-            "STABILIZE",
-            "ALLSDTOL",
-            "CONTINUE",
-            "FACTOR",
-        ],
-    ),
-];
-
 /// Gives blocks their keywords as the tables here spell them: blanks don't tell keywords apart.
 pub(super) fn spell(blocks: &mut [Block]) {
     let letters = |word: &str| word.replace(' ', "");
@@ -428,14 +318,7 @@ pub(super) enum Meaning {
 pub(super) fn meaning(source: &Source, block: &Block) -> Result<Meaning, InputError> {
     let keyword = block.keyword.as_str();
     if READ.contains(&keyword) {
-        let known = PARAMETERS.iter().find(|(name, _)| *name == keyword);
-        let mut names = block.parameter_names();
-        let unknown = known.and_then(|(_, known)| names.find(|name| !known.contains(name)));
-        if let Some(name) = unknown {
-            let name = name::shown(name);
-            let message = format!("*{keyword} with {name} isn't read, and may change the answer");
-            return Err(source.error(block.place, message));
-        }
+        parameters::check(source, block)?;
         return Ok(Meaning::Read);
     }
     if NOT_NEEDED.contains(&keyword) {

@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::place::Places;
-use super::supports::NodeAxis;
 use super::table::{Origin, Table};
 use crate::element::geometry::length;
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, Data, Of, Source};
+use crate::mesh::abaqus::{Data, Of, Source};
 use crate::name;
 
 /// A load on the volume of elements, of magnitude 1.
@@ -31,6 +30,9 @@ pub(super) enum BodyKind {
     Centrifugal([f64; 3], [f64; 3]),
 }
 
+/// A node and a local axis from 0.
+pub(super) type NodeAxis = (u32, usize);
+
 /// All that acts.
 #[derive(Default)]
 pub(super) struct Loads {
@@ -51,55 +53,8 @@ pub(super) struct Loads {
 }
 
 impl Loads {
-    /// Reads a block of loads; with `OP=NEW` what came before of its kind ends.
-    pub(super) fn read(
-        &mut self,
-        places: &mut Places,
-        block: &Block,
-        origin: &Origin,
-    ) -> Result<(), InputError> {
-        let is_new = block
-            .parameter("OP")
-            .is_some_and(|op| op.eq_ignore_ascii_case("NEW"));
-        let step = origin.step;
-        match block.keyword.as_str() {
-            "BOUNDARY" => {
-                if is_new {
-                    self.supports.begin(step);
-                }
-                self.boundary(places, block, origin)
-            }
-            "CLOAD" => {
-                if is_new {
-                    self.forces.begin(step);
-                }
-                self.concentrated(places, block, origin)
-            }
-            "DLOAD" => {
-                if is_new {
-                    self.faces.begin(step);
-                    self.bodies.begin(step);
-                }
-                (block.data.iter()).try_for_each(|data| self.distributed(places, data, origin))
-            }
-            "DSLOAD" => {
-                if is_new {
-                    self.surfaces.begin(step);
-                    self.tractions.begin(step);
-                }
-                (block.data.iter()).try_for_each(|data| self.on_surface(places, data, origin))
-            }
-            _ => {
-                if is_new {
-                    self.temperatures.begin(step);
-                }
-                (block.data.iter()).try_for_each(|data| self.temperature(places, data, origin))
-            }
-        }
-    }
-
     /// A line of `*DLOAD`: elements, the kind of the load, its magnitude.
-    fn distributed(
+    pub(super) fn distributed(
         &mut self,
         places: &mut Places,
         data: &Data,
@@ -173,7 +128,7 @@ impl Loads {
     }
 
     /// A line of `*DSLOAD`: a surface, `P` or `TRVEC`, the magnitude, and of a traction its direction.
-    fn on_surface(
+    pub(super) fn on_surface(
         &mut self,
         places: &mut Places,
         data: &Data,
@@ -217,7 +172,7 @@ impl Loads {
     }
 
     /// A line of `*TEMPERATURE`: a node or set, and its temperature.
-    fn temperature(
+    pub(super) fn temperature(
         &mut self,
         places: &mut Places,
         data: &Data,

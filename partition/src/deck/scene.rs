@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Content;
-use super::document::{Document, Linear, quoted, vector};
+use super::content::Content;
+use super::document::{Document, Linear, quoted};
 use super::elastic::Elastic;
+use super::group_load::{OnGroup, OnGroups};
 use super::groups::Groups;
 use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
@@ -16,19 +17,11 @@ use crate::mesh::abaqus::Source;
 use crate::name;
 use crate::scene::material::PlaneState;
 
+/// Name of the mesh file of a scene that is written.
+pub(super) const MESH: &str = "mesh.msh";
+
 /// A modulus below which lengths are taken for millimetres: it decides what messages and pictures call the units.
 const OF_MILLIMETRES: f64 = 1e8;
-
-/// Values of something in all steps, as bits, so that places with the same ones come together.
-type Course<V> = Vec<Option<V>>;
-
-/// A load on a group of the mesh: its table, what it is on, its key, and its value in each step.
-struct OnGroup {
-    list: &'static str,
-    on: String,
-    /// Key and value.
-    values: Course<Vec<(&'static str, String)>>,
-}
 
 /// The text of the scene; sets that it needs are added to the deck.
 pub(super) fn text(
@@ -45,8 +38,8 @@ pub(super) fn text(
         }
         _ => 1.0,
     };
-    let mut loads = Loads {
-        content,
+    let mut loads = OnGroups {
+        steps: &content.steps,
         dim: places.dim(),
         thickness,
         groups: Groups::new(places),
@@ -58,7 +51,7 @@ pub(super) fn text(
                 .of_cells(&body.cells, &content.sections[body.section].set)
         })
         .collect();
-    let on_groups = loads.on_groups(source)?;
+    let on_groups = loads.all(source)?;
     let sides: Vec<[String; 2]> = (content.contacts.pairs.iter())
         .map(|pair| [&pair.slave, &pair.master].map(|side| loads.groups.of_surface(side)))
         .collect();
@@ -67,7 +60,7 @@ pub(super) fn text(
     if let Some(title) = &content.title {
         document.key("title", quoted(title));
     }
-    document.key("mesh", quoted(super::MESH));
+    document.key("mesh", quoted(MESH));
     if let Some(plane) = plane {
         document.key("plane", quoted(plane.name()));
     }
@@ -349,176 +342,4 @@ impl Content {
         }
         Ok(())
     }
-}
-
-impl OnGroup {
-    /// Writes what it is in a step.
-    fn write(&self, step: usize, within: &str, document: &mut Document) {
-        let Some(values) = &self.values[step] else {
-            return;
-        };
-        document.table(&format!("[[{within}{}]]", self.list));
-        document.key("on", quoted(&self.on));
-        values
-            .iter()
-            .for_each(|(key, value)| document.key(key, value));
-    }
-}
-
-/// Loads and supports on their way to groups of the mesh.
-struct Loads<'a, 'b, 'c> {
-    content: &'a Content,
-    dim: usize,
-    /// Of plane sections: forces of the scene are per thickness.
-    thickness: f64,
-    groups: Groups<'b, 'c>,
-}
-
-impl Loads<'_, '_, '_> {
-    fn on_groups(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
-        let content = self.content;
-        let steps = &content.steps.done;
-        let mut all = self.supports(source)?;
-        for (faces, course) in
-            together(steps.iter().map(|step| &step.faces), |&value| number(value))
-        {
-            let on = self.groups.of_faces(&faces);
-            all.push(OnGroup {
-                list: "pressure",
-                on,
-                values: of_key(course, "value"),
-            });
-        }
-        let surfaces: BTreeSet<&String> =
-            steps.iter().flat_map(|step| step.surfaces.keys()).collect();
-        for surface in surfaces {
-            let course = steps
-                .iter()
-                .map(|step| step.surfaces.get(surface).and_then(|&value| number(value)));
-            let on = self.groups.of_surface(surface);
-            all.push(OnGroup {
-                list: "pressure",
-                on,
-                values: of_key(course.collect(), "value"),
-            });
-        }
-        let tractions: BTreeSet<&(String, usize)> = steps
-            .iter()
-            .flat_map(|step| step.tractions.keys())
-            .collect();
-        for key in tractions {
-            let direction = content.steps.loads.directions[key.1];
-            let course = steps.iter().map(|step| {
-                let value = step
-                    .tractions
-                    .get(key)
-                    .copied()
-                    .filter(|&value| value != 0.0)?;
-                Some(vector(
-                    &direction.map(|component| value * component),
-                    self.dim,
-                ))
-            });
-            let course = of_key(course.collect(), "value");
-            let on = self.groups.of_surface(&key.0);
-            all.push(OnGroup {
-                list: "traction",
-                on,
-                values: course,
-            });
-        }
-        let (dim, thickness) = (self.dim, self.thickness);
-        let force = |force: &[f64; 3]| {
-            let is_there = force.iter().any(|&component| component != 0.0);
-            is_there.then(|| vector(&force.map(|component| component / thickness), dim))
-        };
-        for (nodes, course) in together(steps.iter().map(|step| &step.forces), force) {
-            if let Some(on) = self.groups.of_nodes(&nodes, "force") {
-                all.push(OnGroup {
-                    list: "force",
-                    on,
-                    values: of_key(course, "each"),
-                });
-            }
-        }
-        Ok(all)
-    }
-
-    /// Prescribed displacements.
-    ///
-    /// # Errors
-    /// Steps hold different nodes, or along different axes.
-    fn supports(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
-        let steps = &self.content.steps.done;
-        let axes = |held: &[Option<f64>; 3]| held.map(|value| value.is_some());
-        let mut all = Vec::new();
-        let shown = |held: &[Option<f64>; 3]| {
-            let keys = ["x", "y", "z"].into_iter().zip(held);
-            let keys =
-                keys.filter_map(|(key, value)| Some((key, format!("{:?}", (*value)? + 0.0))));
-            Some((axes(held), keys.collect::<Vec<_>>()))
-        };
-        for (nodes, course) in together(steps.iter().map(|step| &step.supports), shown) {
-            let Some(on) = self.groups.of_nodes(&nodes, "support") else {
-                continue;
-            };
-            let held = |of_step: &Option<([bool; 3], _)>| of_step.as_ref().map(|(axes, _)| *axes);
-            if let Some(other) = course
-                .iter()
-                .position(|of_step| held(of_step) != held(&course[0]))
-            {
-                let message = format!(
-                    "supports come or go in this step, on {} nodes ({on}), which isn't supported yet; expected the same \
-                     degrees of freedom in every step",
-                    nodes.len()
-                );
-                return Err(source.error(steps[other].place, message));
-            }
-            let values = course
-                .into_iter()
-                .map(|of_step| of_step.map(|(_, values)| values));
-            all.push(OnGroup {
-                list: "displacement",
-                on,
-                values: values.collect(),
-            });
-        }
-        Ok(all)
-    }
-}
-
-/// A number that isn't zero, as text.
-fn number(value: f64) -> Option<String> {
-    (value != 0.0).then(|| format!("{value:?}"))
-}
-
-fn of_key(course: Course<String>, key: &'static str) -> Course<Vec<(&'static str, String)>> {
-    let values = course.into_iter();
-    values
-        .map(|value| value.map(|value| vec![(key, value)]))
-        .collect()
-}
-
-/// Places that have the same values in all steps, those of the smallest place first; places without any are left out.
-fn together<'a, K: Ord + Clone + 'a, V: 'a, T: Ord>(
-    steps: impl Iterator<Item = &'a BTreeMap<K, V>> + Clone,
-    shown: impl Fn(&V) -> Option<T>,
-) -> Vec<(Vec<K>, Course<T>)> {
-    let keys: BTreeSet<&K> = steps.clone().flat_map(|step| step.keys()).collect();
-    let mut found: BTreeMap<Course<T>, Vec<K>> = BTreeMap::new();
-    for key in keys {
-        let course: Course<T> = steps
-            .clone()
-            .map(|step| step.get(key).and_then(&shown))
-            .collect();
-        if course.iter().any(Option::is_some) {
-            found.entry(course).or_default().push(key.clone());
-        }
-    }
-    let mut classes: Vec<(Vec<K>, Course<T>)> = found
-        .into_iter()
-        .map(|(course, keys)| (keys, course))
-        .collect();
-    classes.sort_by(|(one, _), (other, _)| one[0].cmp(&other[0]));
-    classes
 }

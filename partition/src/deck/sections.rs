@@ -170,7 +170,7 @@ fn warmth_of(
             let tag = places.deck.element_tags[element as usize];
             let message = format!(
                 "the nodes of element {tag} are warmer than at the beginning by {first} and by {other} at the end of the \
-                 step, which isn't supported yet; expected one temperature for each body, or convert the deck and give \
+                 step, which isn't supported yet; expected one temperature for each body, or the deck without it, converted, and \
                  an expression of x, y and z"
             );
             Err(places.source.error(step.place, message))

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use super::amplitude::Moment;
 use super::axes::{System, numbers};
-use super::loads::Loads;
+use super::loads::{Loads, NodeAxis};
 use super::place::Places;
-use super::supports::NodeAxis;
 use super::table::{Amplitudes, Origin, Table};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
@@ -140,7 +139,55 @@ impl Steps {
             step,
             amplitude,
         };
-        self.loads.read(places, block, &origin)
+        self.add(places, block, &origin)
+    }
+
+    /// Adds a block; with `OP=NEW` what came before of its kind ends.
+    fn add(
+        &mut self,
+        places: &mut Places,
+        block: &Block,
+        origin: &Origin,
+    ) -> Result<(), InputError> {
+        let op = block.parameter("OP");
+        let is_new = op.is_some_and(|op| op.eq_ignore_ascii_case("NEW"));
+        let loads = &mut self.loads;
+        let step = origin.step;
+        let mut lines = block.data.iter();
+        match block.keyword.as_str() {
+            "BOUNDARY" => {
+                if is_new {
+                    loads.supports.begin(step);
+                }
+                loads.boundary(places, block, origin)
+            }
+            "CLOAD" => {
+                if is_new {
+                    loads.forces.begin(step);
+                }
+                loads.concentrated(places, block, origin)
+            }
+            "DLOAD" => {
+                if is_new {
+                    loads.faces.begin(step);
+                    loads.bodies.begin(step);
+                }
+                lines.try_for_each(|data| loads.distributed(places, data, origin))
+            }
+            "DSLOAD" => {
+                if is_new {
+                    loads.surfaces.begin(step);
+                    loads.tractions.begin(step);
+                }
+                lines.try_for_each(|data| loads.on_surface(places, data, origin))
+            }
+            _ => {
+                if is_new {
+                    loads.temperatures.begin(step);
+                }
+                lines.try_for_each(|data| loads.temperature(places, data, origin))
+            }
+        }
     }
 
     /// `*END STEP`.
@@ -242,7 +289,7 @@ impl Local<'_> {
                     let tag = self.places.deck.node_tags[node as usize];
                     let message = format!(
                         "the node {tag} is held along an axis of *TRANSFORM that isn't one of x, y and z, which isn't \
-                         supported; convert the deck, and hold the side by [[bilateral]], which is without displacement \
+                         supported; leave it out, convert the deck, and hold the side by [[bilateral]], which is without displacement \
                          along its normal"
                     );
                     let place = table.place(&(node, p));

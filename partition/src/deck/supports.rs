@@ -34,9 +34,6 @@ const REFUSED: [&str; 7] = [
 const DISPLACEMENTS: i64 = 3;
 const ROTATIONS: i64 = 6;
 
-/// A node and a local axis from 0.
-pub(super) type NodeAxis = (u32, usize);
-
 impl Loads {
     /// `*BOUNDARY`: a node or set, the first and the last degree of freedom, and a displacement.
     pub(super) fn boundary(

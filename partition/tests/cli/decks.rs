@@ -58,7 +58,7 @@ fn a_deck_and_the_scene_that_is_written_of_it_make_the_same_problem() {
         String::from_utf8(output.stdout).unwrap()
     };
     let said = done(&["part.inp"]);
-    assert!(said.contains("HIGH on LOW, nodes"), "{said}");
+    assert!(said.contains("HIGH on LOW, node by node"), "{said}");
     let said = done(&["part.inp", "--write-scene", "made"]);
     assert!(
         said.ends_with("contact-dd-partition made/scene.toml\n"),
@@ -84,12 +84,12 @@ fn a_deck_that_isnt_computed_ends_with_2_and_its_line() {
         (
             "*STATIC",
             "*DYNAMIC",
-            "part.inp: line 31: *DYNAMIC isn't read",
+            "part.inp: line 32: *DYNAMIC isn't read",
         ),
         (
             "*DLOAD",
             "*CLOAT",
-            "part.inp: line 32: the keyword *CLOAT isn't known",
+            "part.inp: line 33: the keyword *CLOAT isn't known",
         ),
         ("210e3, 0.3", "210e3, 0.7", "part.inp: as a scene"),
     ] {

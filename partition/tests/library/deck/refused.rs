@@ -71,7 +71,7 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         ),
         (
             "*MODEL CHANGE",
-            "line 49: *MODEL CHANGE isn't supported yet; instead convert the deck",
+            "line 49: *MODEL CHANGE isn't supported yet; instead leave it out, convert the deck",
         ),
         (
             "*FRICTON\n0.1",

@@ -1,0 +1,135 @@
+//! The parameters of keywords that are read.
+
+use crate::error::InputError;
+use crate::mesh::abaqus::{Block, Source};
+use crate::name;
+
+/// Parameters that are read, refused by whoever reads the block, or change nothing.
+const PARAMETERS: [(&str, &[&str]); 24] = [
+    ("MATERIAL", &["NAME", "RTOL"]),
+    ("ELASTIC", &["TYPE", "MODULI"]),
+    ("EXPANSION", &["TYPE", "ZERO"]),
+    ("DENSITY", &[]),
+    (
+        "SOLID SECTION",
+        &["ELSET", "MATERIAL", "ORIENTATION", "CONTROLS", "COMPOSITE"],
+    ),
+    ("ORIENTATION", &["NAME", "SYSTEM"]),
+    ("TRANSFORM", &["NSET", "TYPE"]),
+    (
+        "AMPLITUDE",
+        &["NAME", "TIME", "VALUE", "DEFINITION", "USER"],
+    ),
+    ("INITIAL CONDITIONS", &["TYPE"]),
+    (
+        "BOUNDARY",
+        &[
+            "OP",
+            "AMPLITUDE",
+            "TYPE",
+            "FIXED",
+            "USER",
+            "SUBMODEL",
+            "LOAD CASE",
+            "STEP",
+            "DATA SET",
+            "REGION TYPE",
+        ],
+    ),
+    ("CLOAD", &["OP", "AMPLITUDE", "REGION TYPE"]),
+    ("DLOAD", &["OP", "AMPLITUDE"]),
+    ("DSLOAD", &["OP", "AMPLITUDE"]),
+    ("TEMPERATURE", &["OP", "AMPLITUDE"]),
+    ("SURFACE INTERACTION", &["NAME"]),
+    (
+        "SURFACE BEHAVIOR",
+        &[
+            "PRESSURE-OVERCLOSURE",
+            "PENALTY",
+            "DIRECT",
+            "AUGMENTED LAGRANGE",
+        ],
+    ),
+    (
+        "FRICTION",
+        &[
+            "SLIP TOLERANCE",
+            "ROUGH",
+            "TAUMAX",
+            "EXPONENTIAL DECAY",
+            "USER",
+            "LAGRANGE",
+            "ANISOTROPIC",
+        ],
+    ),
+    (
+        "CONTACT PAIR",
+        &[
+            "INTERACTION",
+            "TYPE",
+            "SMALL SLIDING",
+            "ADJUST",
+            "TIED",
+            "EXTENSION ZONE",
+            "HCRIT",
+            "NO THICKNESS",
+            "SMOOTH",
+            "SUPPLEMENTARY CONSTRAINTS",
+            "CPSET",
+            "GEOMETRIC CORRECTION",
+            "TRACKING",
+            "SLIDING TRANSITION",
+            "MECHANICAL CONSTRAINT",
+        ],
+    ),
+    ("CLEARANCE", &["MASTER", "SLAVE", "VALUE"]),
+    ("CONTACT", &["OP"]),
+    ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),
+    ("CONTACT PROPERTY ASSIGNMENT", &[]),
+    (
+        "STEP",
+        &[
+            "NAME",
+            "NLGEOM",
+            "INC",
+            "INCR",
+            "INCF",
+            "PERTURBATION",
+            "AMPLITUDE",
+            "EXTRAPOLATION",
+            "UNSYMM",
+            "CONVERT SDI",
+        ],
+    ),
+    (
+        "STATIC",
+        &[
+            "DIRECT",
+            "SOLVER",
+            "RIKS",
+            "STABILIZE",
+            "ALLSDTOL",
+            "CONTINUE",
+            "FACTOR",
+        ],
+    ),
+];
+
+/// Refuses what a keyword says beside them.
+///
+/// # Errors
+/// A parameter that isn't known, with its line.
+pub(super) fn check(source: &Source, block: &Block) -> Result<(), InputError> {
+    let keyword = block.keyword.as_str();
+    let known = PARAMETERS.iter().find(|(name, _)| *name == keyword);
+    let mut names = block.parameter_names();
+    let unknown = known.and_then(|(_, known)| names.find(|name| !known.contains(name)));
+    match unknown {
+        None => Ok(()),
+        Some(name) => {
+            let name = name::shown(name);
+            let message = format!("*{keyword} with {name} isn't read, and may change the answer");
+            Err(source.error(block.place, message))
+        }
+    }
+}
