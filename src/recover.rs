@@ -4,6 +4,7 @@ pub mod conditioning;
 pub mod energy;
 pub mod fixed_active_set;
 mod fixed_conditions;
+mod group_solution;
 pub mod minimum_norm;
 pub mod motions;
 pub mod penetration;
@@ -19,11 +20,11 @@ use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
 use crate::condense::substitute::Factors;
-use crate::contact::law::{PointLaw, PointState};
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, Loads};
-use crate::fem::contact_group::ContactGroup;
 use crate::step::StepProblem;
+
+pub use group_solution::GroupSolution;
 
 /// The solution on a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,36 +33,6 @@ pub struct BlockSolution {
     pub u: Vec<f64>,
     /// Bᵀλ: what contact pushes its nodes with, less than nothing towards the other side (N/m).
     pub pushes: Vec<(u32, [f64; 3])>,
-}
-
-/// The solution at the conditions of a contact group.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GroupSolution {
-    /// Force of every condition (N/m).
-    pub forces: Vec<f64>,
-    /// Which conditions are closed; a tangential one is where the sides stick.
-    pub closed: Vec<bool>,
-    /// The gap that is left at every condition, g − B u; the way back to where the sides stuck (m).
-    pub gaps: Vec<f64>,
-}
-
-impl GroupSolution {
-    /// A point with friction.
-    pub fn point(&self, law: &PointLaw) -> PointState {
-        law.at(|j| -self.gaps[j], &self.forces, &self.closed)
-    }
-
-    /// Takes their friction away from points that have opened.
-    fn release_opened(&mut self, group: &ContactGroup) {
-        for point in group.point_laws() {
-            if point.has_opened(&self.closed) {
-                for j in point.limits() {
-                    self.closed[j] = false;
-                    self.forces[j] = 0.0;
-                }
-            }
-        }
-    }
 }
 
 /// What friction leaves at the tangential conditions of the contact groups of this rank, by their number.

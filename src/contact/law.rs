@@ -37,6 +37,19 @@ pub enum PointStatus {
     },
 }
 
+/// The linear law of a tangential force: Σ factor·force + Σ factor·slip = constant, all of limits.
+#[derive(Clone, Debug)]
+pub struct LinearLaw {
+    /// The limit whose force that is.
+    pub limit: usize,
+    /// Forces and their factors.
+    pub forces: Vec<(usize, f64)>,
+    /// Ways beyond bounds and their factors (N/m).
+    pub slips: Vec<(usize, f64)>,
+    /// The constant (N/m).
+    pub constant: f64,
+}
+
 /// A point with friction at an iterate.
 #[derive(Clone, Copy, Debug)]
 pub struct PointState {
@@ -159,6 +172,60 @@ impl PointLaw {
             direction: xi.map(|x| x / size),
             turning: self.turning(self.stiffness * bound / rest),
         }
+    }
+
+    /// The linear laws of its tangential forces with this status, where its contact is closed or not: with b = c + μ λ and
+    /// whatever r > 0
+    ///
+    /// ```text
+    /// e (eᵀ λ_t − b) + w (P λ_t − κ P s) = 0,    w = r / (r + κ)
+    /// ```
+    ///
+    /// and e λ in the place of the first part where the contact is about to open. w keeps what they miss as large as forces
+    /// are. None where it doesn't slip.
+    pub fn linear(&self, status: &PointStatus, is_closed: bool) -> Vec<LinearLaw> {
+        let (e, turning, parts) = match *status {
+            PointStatus::Slips { direction, turning } => (direction, turning, false),
+            PointStatus::Parts { direction, turning } => (direction, turning, true),
+            PointStatus::Open | PointStatus::Sticks => return Vec::new(),
+        };
+        let normal = self.normal.filter(|_| is_closed);
+        let [cohesion, slope] = match parts {
+            true => [0.0, -1.0],
+            false => self.bound.line(is_closed),
+        };
+        let weight = self.stiffness / (self.stiffness + turning);
+        // Where the other force isn't an unknown, the law of this one stands alone.
+        let alone = self.tangents[1].is_none();
+        let equation = |(k, limit): (usize, Option<usize>)| {
+            let share = e[k] * if alone && !parts { weight } else { 1.0 };
+            let mut law = LinearLaw {
+                limit: limit?,
+                forces: Vec::new(),
+                slips: Vec::new(),
+                constant: share * cohesion,
+            };
+            for (l, other) in self.tangents.into_iter().enumerate() {
+                let project = if k == l { 1.0 } else { 0.0 } - e[k] * e[l];
+                let of_slip = -weight * turning * project;
+                let Some(other) = other else {
+                    law.constant -= of_slip * self.prescribed;
+                    continue;
+                };
+                let of_force = match (alone, parts) {
+                    (true, true) => 0.0,
+                    (true, false) => weight,
+                    (false, true) => weight * project,
+                    (false, false) => e[k] * e[l] + weight * project,
+                };
+                law.forces.push((other, of_force));
+                law.slips.push((other, of_slip));
+            }
+            law.forces.extend(normal.map(|n| (n, -share * slope)));
+            Some(law)
+        };
+        let tangents = self.tangents.into_iter().enumerate();
+        tangents.filter_map(equation).collect()
     }
 
     /// κ (N/m), 0 where nothing can slip but along one line.

@@ -154,6 +154,17 @@ impl<'a> ContactLaws<'a> {
         .filter(|_| before.closed[n])
     }
 
+    /// Whether every jump is known where limits have these statuses: closed, or sticking.
+    pub fn known(&self, statuses: &Statuses) -> Vec<bool> {
+        let mut known = statuses.closed.clone();
+        for (point, status) in self.points.iter().zip(&statuses.points) {
+            point
+                .limits()
+                .for_each(|t| known[t] = *status == PointStatus::Sticks);
+        }
+        known
+    }
+
     /// The statuses of limits with these `status` at an iterate.
     pub fn begin(&self, status: &[Status], at: &Iterate) -> Statuses {
         let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();

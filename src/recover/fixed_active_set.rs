@@ -28,7 +28,7 @@ use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::slip_law::SlipLaw;
-use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem};
+use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
 
 /// How well slip forces follow what presses, at best.
@@ -184,7 +184,7 @@ impl<'a> FixedActiveSet<'a> {
             open.insert(g, fixed.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();
-        let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws) else {
+        let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws, false) else {
             // The contacts that are left hold nothing: no change is better than any.
             return Change::default();
         };
@@ -268,27 +268,6 @@ impl<'a> FixedActiveSet<'a> {
         );
         (forces, boundaries)
     }
-}
-
-/// Fixes what is `open`, and returns whether what slips by `laws` is held, which it is where that has to be. Collective.
-fn fix(
-    context: &Context<'_>,
-    fronts: &mut ActiveSetFronts,
-    open: &mut BTreeMap<usize, Vec<bool>>,
-    laws: &Laws,
-) -> Result<bool, Failure> {
-    fronts.fix(context, open)?;
-    if !fronts.has_to_hold(context) {
-        return Ok(false);
-    }
-    for (g, laws) in laws {
-        if let Some(open) = open.get_mut(g) {
-            (laws.iter().flat_map(SlipLaw::limits)).for_each(|t| open[t] = false);
-        }
-    }
-    fronts.fix(context, open)?;
-    fronts.release(context, open)?;
-    Ok(true)
 }
 
 /// Solves for what acts, and for slips where any follow laws. Collective.

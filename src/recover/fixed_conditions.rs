@@ -109,3 +109,27 @@ pub fn change_forces(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recover::group_solution::tests::{COULOMB, group, pressed};
+
+    /// A force of constant size b along the slip s turns by b/|s| times what comes across.
+    #[test]
+    fn a_force_turns_with_the_slip_as_one_of_constant_size() {
+        let (group, way) = (group(COULOMB), [-3e-3, -4e-3]);
+        let mut solution = pressed([1.2, 1.6], way, false);
+        let fixed = conditions(&group, &mut solution, &[false; 3]);
+        assert_eq!(fixed[0], FixedStatus::Closed { lacks: 0.0 });
+        for (fixed, (share, force)) in fixed[1..].iter().zip([(0.6, 1.2), (0.8, 1.6)]) {
+            let [e, turning] = fixed.slip().unwrap();
+            assert!((e - share).abs() < 1e-13, "{e}");
+            assert!((turning - 2.0 / 5e-3).abs() < 1e-9, "{turning}");
+            assert!((solution.forces.iter().any(|f| (f - force).abs() < 1e-13)));
+        }
+        change_forces(&group, &mut solution, &fixed, &[false; 3], &[2.0, 0.0, 0.0]);
+        let size = solution.forces[1].hypot(solution.forces[2]);
+        assert!((size - 3.0).abs() < 1e-13, "{size}");
+    }
+}

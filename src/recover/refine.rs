@@ -10,11 +10,10 @@ use crate::certificate::{Certificate, certificate};
 use crate::contact::jumps::JumpOf;
 use crate::context::Context;
 use crate::context::hierarchy::jumps;
-use crate::fem::contact_group::ContactGroup;
+use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::fixed_conditions::{change_forces, conditions};
 use crate::recover::motions::Field;
-use crate::recover::{DiscreteSolution, GroupSolution};
 use crate::sweep::AGAINST_FRICTION;
 use crate::vector::larger;
 
@@ -87,10 +86,10 @@ pub fn correct_statuses(
         for (g, of_group) in &mut next.groups {
             let group = &fixed.context.groups[g];
             if is_short {
-                changed |= open_or_close(group, of_group);
+                changed |= of_group.open_or_close(group);
             }
             if is_rough {
-                stick_or_slip(group, of_group);
+                of_group.stick_or_slip(group);
             }
         }
         let changed = fixed.context.comm.collect(&changed).contains(&true);
@@ -108,44 +107,6 @@ pub fn correct_statuses(
             after
         }
         _ => certificate,
-    }
-}
-
-/// Opens what is closed without a force and closes what is open with an overlap; returns whether there was any.
-fn open_or_close(group: &ContactGroup, solution: &mut GroupSolution) -> bool {
-    let mut changed = false;
-    for j in 0..group.points.len() {
-        let is_wrong = match solution.closed[j] {
-            true => solution.forces[j] <= 0.0,
-            false => solution.gaps[j] < 0.0,
-        };
-        solution.closed[j] ^= is_wrong;
-        changed |= is_wrong;
-    }
-    solution.release_opened(group);
-    changed
-}
-
-/// Lets slip what sticks under more than its bound, and stick what slips under a force that drives it. What slips without
-/// a force, which it lost with its pressure, gets the one that it has by the law.
-fn stick_or_slip(group: &ContactGroup, solution: &mut GroupSolution) {
-    for point in group.point_laws() {
-        let here = solution.point(&point);
-        let (size, way) = (here.size(), here.way());
-        let sticks = point.limits().all(|j| solution.closed[j]);
-        for (slip, j) in here.slip.into_iter().zip(point.limits()) {
-            match sticks {
-                true if size > here.bound => {
-                    solution.closed[j] = false;
-                    solution.forces[j] *= here.bound / size;
-                }
-                false if here.work() < 0.0 => solution.closed[j] = true,
-                false if size == 0.0 && here.bound * way > 0.0 => {
-                    solution.forces[j] = here.bound / way * slip;
-                }
-                _ => {}
-            }
-        }
     }
 }
 

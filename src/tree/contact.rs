@@ -9,7 +9,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::contact::friction::Status;
-use crate::contact::law::PointStatus;
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::limits::Limits;
 use crate::contact::newton::{Found, NewtonSettings, OnGroups, newton};
@@ -209,15 +208,8 @@ fn conditions(
     };
     let forces = found.at[&g].forces.iter().zip(&laws.is_tangential);
     let forces: Vec<f64> = forces.map(of_limit).collect();
-    let statuses = &found.statuses[&g];
-    let mut closed = statuses.closed.clone();
-    for (point, status) in laws.points.iter().zip(&statuses.points) {
-        for t in point.limits() {
-            closed[t] = *status == PointStatus::Sticks;
-        }
-    }
-    let forces = limits.forces(&forces).into_iter();
-    forces.zip(limits.closed(closed)).collect()
+    let closed = limits.closed(laws.known(&found.statuses[&g]));
+    limits.forces(&forces).into_iter().zip(closed).collect()
 }
 
 /// What is said where a linear problem has no finite solution.

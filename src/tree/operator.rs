@@ -1,8 +1,6 @@
 //! The tree of fronts as an operator of Newton's method on the laws of contact: it answers for statuses by eliminating again
 //! what is above those that changed, and for slip forces by GMRES over its answers.
 
-use std::collections::BTreeMap;
-
 use crate::bddc::solution::Accuracy;
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, LawResidual, Statuses};
@@ -12,7 +10,7 @@ use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::problem::{Steps, TreeProblem};
 use crate::tree::slip_law::SlipLaw;
-use crate::tree::slip_problem::{Laws, SlipProblem};
+use crate::tree::slip_problem::{Laws, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
 use crate::tree::update::LOOSE;
 use crate::vector::between;
@@ -39,20 +37,6 @@ pub(super) struct TreeOperator<'a, 's, 'o> {
     turns: bool,
     /// Round-off of the last answer, relative to the largest force.
     accuracy: f64,
-}
-
-/// Which jumps are open, or slip unless that is held, where a group has these statuses.
-fn open(laws: &ContactLaws<'_>, statuses: &Statuses, is_held: bool) -> Vec<bool> {
-    let mut open: Vec<bool> = statuses.closed.iter().map(|closed| !closed).collect();
-    for (point, status) in laws.points.iter().zip(&statuses.points) {
-        for t in point.limits() {
-            open[t] = match is_held {
-                true => *status == PointStatus::Open,
-                false => *status != PointStatus::Sticks,
-            };
-        }
-    }
-    open
 }
 
 /// The laws of the slipping points of a group with these statuses.
@@ -82,34 +66,6 @@ impl<'a, 's, 'o> TreeOperator<'a, 's, 'o> {
             accuracy: ROUND_OFF,
         }
     }
-
-    /// Fixes what these statuses leave open, which it returns; where that needs springs and directions of slip turn with
-    /// it, what slips is held from then on.
-    /// Collective.
-    ///
-    /// # Errors
-    /// Some part of the scene moves freely.
-    fn fix(
-        &mut self,
-        statuses: &OnGroups<Statuses>,
-    ) -> Result<BTreeMap<usize, Vec<bool>>, Failure> {
-        let (context, laws) = (self.problem.context, &self.problem.laws);
-        let open = |is_held: bool| {
-            let all = statuses.iter();
-            all.map(|(&g, statuses)| (g, open(&laws[&g], statuses, is_held)))
-                .collect()
-        };
-        let free: BTreeMap<usize, Vec<bool>> = open(self.is_held);
-        self.fronts.fix(context, &free)?;
-        if self.is_held || !self.fronts.has_to_hold(context) {
-            return Ok(free);
-        }
-        self.is_held = true;
-        let held = open(true);
-        self.fronts.fix(context, &held)?;
-        self.fronts.release(context, &held)?;
-        Ok(held)
-    }
 }
 
 impl ContactOperator for TreeOperator<'_, '_, '_> {
@@ -123,7 +79,16 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
     ) -> Result<OnGroups<Iterate>, Failure> {
         let (context, all_laws) = (self.problem.context, &self.problem.laws);
         self.steps.go_on(context)?;
-        let open = self.fix(statuses)?;
+        let laws: Laws = (statuses.iter())
+            .map(|(&g, statuses)| (g, slip_laws(&all_laws[&g], statuses)))
+            .collect();
+        let open = |(&g, statuses): (&usize, &Statuses)| {
+            let known = all_laws[&g].known(statuses);
+            (g, known.iter().map(|known| !known).collect())
+        };
+        let mut open = statuses.iter().map(open).collect();
+        // What slips is held from then on, as its directions turn with springs.
+        self.is_held = fix(context, self.fronts, &mut open, &laws, self.is_held)?;
         let finest = match self.fronts.coarse_dofs() {
             Some(_) => Accuracy::FULL.tolerance,
             None => 0.0,
@@ -142,9 +107,6 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
                 finest
             }
         };
-        let laws: Laws = (statuses.iter())
-            .map(|(&g, statuses)| (g, slip_laws(&all_laws[&g], statuses)))
-            .collect();
         let turn: Vec<f64> = laws.values().flatten().map(SlipLaw::turning).collect();
         self.turns = context.comm.largest(&turn) > 0.0;
         let problem = SlipProblem {

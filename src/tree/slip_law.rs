@@ -1,14 +1,6 @@
-//! The linear law of a slipping point: its force follows what presses, and turns with the slip.
-//!
-//! With e, b = c + μ λ, κ and P = I − e eᵀ, whatever r > 0, what a force λ_t misses is
-//!
-//! ```text
-//! R = e (eᵀ λ_t − b) + w (P λ_t − κ P s),    w = r / (r + κ)
-//! ```
-//!
-//! and e λ in the place of the first part where the contact is about to open. w keeps R as large as forces are.
+//! A slipping point whose force follows what presses, and turns with the slip.
 
-use crate::contact::law::{PointLaw, PointState, PointStatus};
+use crate::contact::law::{LinearLaw, PointLaw, PointState, PointStatus};
 use crate::contact::limits::{Limits, TangentialLimit};
 use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
@@ -16,27 +8,19 @@ use crate::fem::contact_group::ContactGroup;
 /// Part of its bound below which a force that slips isn't at it: the contact is about to open.
 pub const AT_BOUND: f64 = 1.0 - 1e-9;
 
-/// The linear law of a slipping point.
+/// A slipping point.
 #[derive(Clone, Debug)]
 pub struct SlipLaw {
-    tangents: [Option<usize>; 2],
-    normal: Option<usize>,
+    point: PointLaw,
+    /// Whether its contact is closed.
+    is_closed: bool,
+    /// Whether that is about to open.
+    parts: bool,
     /// e.
     direction: [f64; 2],
-    /// b without pressure (N/m).
-    constant: f64,
-    /// μ.
-    slope: f64,
-    /// w.
-    weight: f64,
-    /// r (N/m).
-    stiffness: f64,
     /// κ (N/m).
     turning: f64,
-    /// The slip along the second tangent where supports prescribe it (m).
-    prescribed: f64,
-    /// Whether the contact is about to open.
-    parts: bool,
+    laws: Vec<LinearLaw>,
 }
 
 impl SlipLaw {
@@ -47,18 +31,13 @@ impl SlipLaw {
             PointStatus::Parts { direction, turning } => (direction, turning, true),
             PointStatus::Open | PointStatus::Sticks => return None,
         };
-        let [constant, slope] = point.bound.line(is_closed);
         Some(Self {
-            tangents: point.tangents,
-            normal: point.normal.filter(|_| is_closed),
-            direction,
-            constant,
-            slope,
-            weight: point.stiffness / (point.stiffness + turning),
-            stiffness: point.stiffness,
-            turning,
-            prescribed: point.prescribed,
+            point: *point,
+            is_closed,
             parts,
+            direction,
+            turning,
+            laws: point.linear(status, is_closed),
         })
     }
 
@@ -107,30 +86,11 @@ impl SlipLaw {
         is_change: bool,
         missed: &mut [f64],
     ) {
-        let constant = |value: f64| if is_change { 0.0 } else { value };
-        let e = self.direction;
-        let dot = |v: [f64; 2]| v[0] * e[0] + v[1] * e[1];
-        let across = |v: [f64; 2]| [0, 1].map(|k| v[k] - dot(v) * e[k]);
-        let force = self.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
-        let slips = [
-            self.tangents[0].map_or(0.0, &slip),
-            self.tangents[1].map_or(constant(self.prescribed), &slip),
-        ];
-        let pressure = self.normal.map_or(0.0, |n| forces[n]);
-        let turned = across(slips).map(|s| self.turning * s);
-        let bound = constant(self.constant) + self.slope * pressure;
-        // Where the other force isn't an unknown, the law of this one stands alone.
-        let alone = self.tangents[1].is_none();
-        let along = match (self.parts, alone) {
-            (true, _) => e.map(|e| e * pressure),
-            (false, true) => [self.weight * (force[0] - e[0] * bound), 0.0],
-            (false, false) => e.map(|e| e * (dot(force) - bound)),
-        };
-        let rest = if alone { [0.0; 2] } else { across(force) };
-        for (k, t) in self.tangents.into_iter().enumerate() {
-            if let Some(t) = t {
-                missed[t] += along[k] + self.weight * (rest[k] - turned[k]);
-            }
+        for law in &self.laws {
+            let of_forces: f64 = law.forces.iter().map(|&(i, c)| c * forces[i]).sum();
+            let of_slips: f64 = law.slips.iter().map(|&(i, c)| c * slip(i)).sum();
+            let constant = if is_change { 0.0 } else { law.constant };
+            missed[law.limit] += of_forces + of_slips - constant;
         }
     }
 
@@ -142,36 +102,34 @@ impl SlipLaw {
     /// The force of the point under this pressure (N/m) where its slip is along e.
     pub fn set_force(&self, forces: &[f64], own: &mut [f64]) {
         let e = self.direction;
-        let pressure = self.normal.map_or(0.0, |n| forces[n].max(0.0));
-        let known = self.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
+        let known = self.point.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
+        let pressure = self.point.normal.map_or(0.0, |n| forces[n]);
         let size = match self.parts {
             true => known[0] * e[0] + known[1] * e[1],
-            false => self.constant + self.slope * pressure,
+            false => self.point.bound.at(pressure, self.is_closed),
         };
-        for (t, e) in self.tangents.into_iter().zip(e) {
-            if let Some(t) = t {
-                own[t] = size * e;
-            }
+        for (t, e) in self.limits().zip(e) {
+            own[t] = size * e;
         }
     }
 
     /// The forces that would make these slips at a point as stiff as it is.
     pub fn set_holding(&self, slip: impl Fn(usize) -> f64, forces: &mut [f64]) {
-        for t in self.tangents.into_iter().flatten() {
-            forces[t] = self.stiffness * slip(t);
+        for t in self.limits() {
+            forces[t] = self.point.stiffness * slip(t);
         }
     }
 
     /// Adds to `slips` those that `forces` on the jumps of the point would make if it were as stiff as it is.
     pub fn add_slips(&self, forces: &[f64], slips: &mut [f64]) {
-        for t in self.tangents.into_iter().flatten() {
-            slips[t] += forces[t] / self.stiffness;
+        for t in self.limits() {
+            slips[t] += forces[t] / self.point.stiffness;
         }
     }
 
     /// The limits of its tangential jumps.
     pub fn limits(&self) -> impl Iterator<Item = usize> {
-        self.tangents.into_iter().flatten()
+        self.point.limits()
     }
 }
 

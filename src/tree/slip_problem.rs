@@ -40,6 +40,37 @@ pub type OnJumps = BTreeMap<usize, Vec<f64>>;
 /// The laws of the slipping points of every contact group of this rank.
 pub type Laws = BTreeMap<usize, Vec<SlipLaw>>;
 
+/// Fixes what is `open`, of which what slips by `laws` is held if it was or has to be, and returns whether it is. Collective.
+///
+/// # Errors
+/// Some part of the scene moves freely.
+pub fn fix(
+    context: &Context<'_>,
+    fronts: &mut ActiveSetFronts,
+    open: &mut BTreeMap<usize, Vec<bool>>,
+    laws: &Laws,
+    was_held: bool,
+) -> Result<bool, Failure> {
+    let hold = |open: &mut BTreeMap<usize, Vec<bool>>| {
+        for (g, laws) in laws {
+            if let Some(open) = open.get_mut(g) {
+                (laws.iter().flat_map(SlipLaw::limits)).for_each(|t| open[t] = false);
+            }
+        }
+    };
+    if was_held {
+        hold(open);
+    }
+    fronts.fix(context, open)?;
+    if was_held || !fronts.has_to_hold(context) {
+        return Ok(was_held);
+    }
+    hold(open);
+    fronts.fix(context, open)?;
+    fronts.release(context, open)?;
+    Ok(true)
+}
+
 /// What a fixed active set is solved for with.
 #[derive(Clone, Copy)]
 pub struct SlipProblem<'a> {

@@ -13,6 +13,9 @@ use crate::error::Failure;
 use crate::schur::local::CondensedLoad;
 use crate::vector::{axpy, dot};
 
+/// The condensed loads of the fronts of this rank, and the values of their closed jumps.
+type CondensedLoads = BTreeMap<usize, (CondensedLoad, Vec<f64>)>;
+
 /// What a load does where the active set is fixed, on this rank.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveSetSolution {
@@ -86,21 +89,47 @@ impl ActiveSetFronts {
         loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> ActiveSetSolution {
+        let (condensed, arrived) = self.condense(context, loads);
+        let mut solution = ActiveSetSolution::default();
+        let below = match &self.bddc {
+            // Roots keep nothing.
+            None => {
+                let roots = context.plan.merge_roots.iter();
+                roots.map(|&v| (v, Vec::new())).collect()
+            }
+            Some(bddc) => {
+                let on_roots = ClusterLoads {
+                    clusters: &arrived,
+                    ..loads
+                };
+                let between = bddc.solve(context, &self.merge_roots, on_roots, accuracy);
+                let is_rough = bddc.is_stale() || bddc.is_judged();
+                solution.is_too_far = is_rough && !between.is_solved;
+                solution.merge_roots = between.clusters.clone();
+                solution.iterations = between.iterations;
+                solution.at = between.groups;
+                between.clusters
+            }
+        };
+        self.recover(context, &condensed, below, &mut solution);
+        solution
+    }
+
+    /// Condenses loads up the hierarchy: those of the fronts, and what arrives at the owners of the nodes above. Collective.
+    fn condense(
+        &self,
+        context: &Context<'_>,
+        loads: ClusterLoads<'_>,
+    ) -> (CondensedLoads, BTreeMap<usize, Vec<f64>>) {
         let plan = context.plan;
-        let mut condensed: BTreeMap<usize, (CondensedLoad, Vec<f64>)> = BTreeMap::new();
-        // What arrives at the owner of the node above.
-        let mut arrived: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        let (mut condensed, mut arrived) = (CondensedLoads::new(), BTreeMap::new());
+        let pass_up = |v: usize, load, arrived: &mut BTreeMap<usize, Vec<f64>>| {
+            let above = plan.merged_into(v);
+            carry(context, v, above, load, arrived, Direction::Up);
+        };
         for cluster in &plan.clusters {
             let load = loads.clusters.get(&cluster.node).cloned();
-            let parent = plan.merged_into(cluster.node);
-            carry(
-                context,
-                cluster.node,
-                parent,
-                load,
-                &mut arrived,
-                Direction::Up,
-            );
+            pass_up(cluster.node, load, &mut arrived);
         }
         for &v in &self.nodes {
             let passed = self.fronts.get(&v).map(|front| {
@@ -119,38 +148,20 @@ impl ActiveSetFronts {
                 condensed.insert(v, (load, values));
                 kept
             });
-            carry(
-                context,
-                v,
-                plan.merged_into(v),
-                passed,
-                &mut arrived,
-                Direction::Up,
-            );
+            pass_up(v, passed, &mut arrived);
         }
-        let mut solution = ActiveSetSolution::default();
-        let mut below: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        match &self.bddc {
-            // Roots keep nothing.
-            None => below.extend(plan.merge_roots.iter().map(|&v| (v, Vec::new()))),
-            Some(bddc) => {
-                let between = bddc.solve(
-                    context,
-                    &self.merge_roots,
-                    ClusterLoads {
-                        clusters: &arrived,
-                        ..loads
-                    },
-                    accuracy,
-                );
-                solution.merge_roots = between.clusters.clone();
-                below = between.clusters;
-                solution.iterations = between.iterations;
-                let is_rough = bddc.is_stale() || bddc.is_judged();
-                solution.is_too_far = is_rough && !between.is_solved;
-                solution.at = between.groups;
-            }
-        }
+        (condensed, arrived)
+    }
+
+    /// Recovers what the fronts have eliminated, from the unknowns `below` the roots on. Collective.
+    fn recover(
+        &self,
+        context: &Context<'_>,
+        condensed: &CondensedLoads,
+        mut below: BTreeMap<usize, Vec<f64>>,
+        solution: &mut ActiveSetSolution,
+    ) {
+        let plan = context.plan;
         for &v in self.nodes.iter().rev() {
             let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
             if let (Some(front), Some((load, values)), Some(x)) =
@@ -172,7 +183,6 @@ impl ActiveSetFronts {
         }
         below.retain(|&v, _| plan.node_owners[v] == context.comm.rank());
         solution.boundaries = below;
-        solution
     }
 }
 

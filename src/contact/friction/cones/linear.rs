@@ -3,10 +3,11 @@
 //! With the jumps of what is closed or sticks known,
 //!
 //! ```text
-//! λ = 0 where open,    D t = d where closed,    M λ_t = b(λ) e + κ M P s where a point slips along e
+//! λ = 0 where open,    D t = d where closed
 //! ```
 //!
-//! with P = I − e eᵀ and M = e eᵀ + w P, where w = r / (r + κ) keeps the equations as large as others.
+//! and the linear laws of what slips ([`LinearLaw`](crate::contact::law::LinearLaw)) are equations for the other jumps and
+//! forces.
 
 use faer::Mat;
 
@@ -33,25 +34,7 @@ impl FrictionCones<'_> {
     pub(super) fn step(&self, place: &Iterate, state: &Statuses) -> Iterate {
         let m = place.jumps.len();
         let (mut jumps, mut of_rows) = (place.jumps.clone(), place.forces[m..].to_vec());
-        let mut equations: Vec<Option<Equation>> = (0..place.forces.len())
-            .map(|i| self.normal(i, state.closed[i]))
-            .collect();
-        for (point, act) in self.laws.points.iter().zip(&state.points) {
-            for (k, i) in point.tangents.into_iter().enumerate() {
-                if let Some(i) = i {
-                    equations[i] = match (act, point.normal) {
-                        (
-                            &PointStatus::Parts {
-                                direction: e,
-                                turning: across,
-                            },
-                            Some(n),
-                        ) => self.parts(point, n, k, e, across),
-                        _ => self.slides(point, k, i, act, &state.closed),
-                    };
-                }
-            }
-        }
+        let equations = self.equations(state);
         for (i, equation) in equations.iter().enumerate() {
             match (equation, i < m) {
                 (None, true) => jumps[i] = self.contact.bounds[i],
@@ -90,6 +73,39 @@ impl FrictionCones<'_> {
         self.place(jumps, of_rows)
     }
 
+    /// The equations of all limits; `None` where a jump or force is known.
+    fn equations(&self, state: &Statuses) -> Vec<Option<Equation>> {
+        let m = self.contact.c.len();
+        let mut equations: Vec<Option<Equation>> = (0..state.closed.len())
+            .map(|i| self.normal(i, state.closed[i]))
+            .collect();
+        for (point, act) in self.laws.points.iter().zip(&state.points) {
+            for i in point.limits() {
+                equations[i] = match (act, i < m) {
+                    (PointStatus::Open, true) => Some(self.force_is(i)),
+                    (PointStatus::Sticks, false) => Some(self.way_is_none(i)),
+                    _ => None,
+                };
+            }
+            let is_closed = point.is_closed(&state.closed);
+            for (k, law) in point.linear(act, is_closed).into_iter().enumerate() {
+                equations[law.limit] = match (act, point.normal) {
+                    (&PointStatus::Parts { direction, turning }, Some(n)) => {
+                        Some(self.parts(point, n, k, direction, turning))
+                    }
+                    _ => Some(Equation {
+                        forces: law.forces,
+                        ways: law.slips,
+                        constant: law.constant,
+                        spring: if law.limit < m { SPRING } else { 0.0 },
+                        ..self.force_is(law.limit)
+                    }),
+                };
+            }
+        }
+        equations
+    }
+
     /// The equation of a limit that isn't tangential; `None` where its jump or force is known.
     fn normal(&self, i: usize, closed: bool) -> Option<Equation> {
         let of_jump = i < self.contact.c.len();
@@ -119,70 +135,9 @@ impl FrictionCones<'_> {
         }
     }
 
-    /// The equation of limit i, which is a point's tangential one number k.
-    fn slides(
-        &self,
-        point: &PointLaw,
-        k: usize,
-        i: usize,
-        act: &PointStatus,
-        closed: &[bool],
-    ) -> Option<Equation> {
-        let of_jump = i < self.contact.c.len();
-        let (e, across) = match *act {
-            PointStatus::Open => return of_jump.then(|| self.force_is(i)),
-            PointStatus::Sticks => return (!of_jump).then(|| self.way_is_none(i)),
-            PointStatus::Slips {
-                direction: e,
-                turning: across,
-            }
-            | PointStatus::Parts {
-                direction: e,
-                turning: across,
-            } => (e, across),
-        };
-        let mut equation = self.force_is(i);
-        equation.forces.clear();
-        if !of_jump {
-            equation.spring = 0.0;
-        }
-        let weight = self.laws.stiffness[i] / (self.laws.stiffness[i] + across);
-        let unit = |a: usize, b: usize| if a == b { 1.0 } else { 0.0 };
-        // Where the other force isn't an unknown, the law of this one stands alone.
-        let alone = point.tangents[1].is_none();
-        for (l, other) in point.tangents.into_iter().enumerate() {
-            let project = unit(k, l) - e[k] * e[l];
-            let of_way = -weight * across * project;
-            let Some(other) = other else {
-                equation.constant -= of_way * point.prescribed;
-                continue;
-            };
-            let of_force = match alone {
-                true => weight,
-                false => e[k] * e[l] + weight * project,
-            };
-            equation.forces.push((other, of_force));
-            equation.ways.push((other, of_way));
-        }
-        let share = e[k] * if alone { weight } else { 1.0 };
-        let [constant, slope] = point.bound.line(point.is_closed(closed));
-        equation.constant += share * constant;
-        if let Some(n) = point.normal.filter(|&n| closed[n]) {
-            equation.forces.push((n, -share * slope));
-        }
-        Some(equation)
-    }
-
     /// The equation number k of a point that parts: λ_n = 0 with limit n, and λ_t as it is along e, κ times what of the slip
-    /// is across.
-    fn parts(
-        &self,
-        point: &PointLaw,
-        n: usize,
-        k: usize,
-        e: [f64; 2],
-        across: f64,
-    ) -> Option<Equation> {
+    /// is across: what the point misses of λ_n = 0 isn't to have the round-off of the slip's force.
+    fn parts(&self, point: &PointLaw, n: usize, k: usize, e: [f64; 2], across: f64) -> Equation {
         let mut equation = self.force_is(n);
         equation.spring = 0.0;
         if let ([Some(first), Some(second)], 1) = (point.tangents, k) {
@@ -192,7 +147,7 @@ impl FrictionCones<'_> {
             equation.forces = normal.to_vec();
             equation.ways = normal.map(|(i, c)| (i, -across * c)).to_vec();
         }
-        Some(equation)
+        equation
     }
 
     /// The equations of all unknown jumps and forces.

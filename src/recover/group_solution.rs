@@ -1,0 +1,76 @@
+//! The solution at the conditions of a contact group, and what the laws of contact want to be otherwise there.
+
+use crate::contact::law::{PointLaw, PointState};
+use crate::fem::contact_group::ContactGroup;
+
+/// The solution at the conditions of a contact group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupSolution {
+    /// Force of every condition (N/m).
+    pub forces: Vec<f64>,
+    /// Which conditions are closed; a tangential one is where the sides stick.
+    pub closed: Vec<bool>,
+    /// The gap that is left at every condition, g − B u; the way back to where the sides stuck (m).
+    pub gaps: Vec<f64>,
+}
+
+impl GroupSolution {
+    /// A point with friction.
+    pub fn point(&self, law: &PointLaw) -> PointState {
+        law.at(|j| -self.gaps[j], &self.forces, &self.closed)
+    }
+
+    /// Opens normal conditions that are closed without a force and closes those that are open with an overlap; returns
+    /// whether there was any.
+    pub fn open_or_close(&mut self, group: &ContactGroup) -> bool {
+        let mut changed = false;
+        for j in 0..group.points.len() {
+            let is_wrong = match self.closed[j] {
+                true => self.forces[j] <= 0.0,
+                false => self.gaps[j] < 0.0,
+            };
+            self.closed[j] ^= is_wrong;
+            changed |= is_wrong;
+        }
+        self.release_opened(group);
+        changed
+    }
+
+    /// Takes their friction away from points that have opened.
+    pub fn release_opened(&mut self, group: &ContactGroup) {
+        for point in group.point_laws() {
+            if point.has_opened(&self.closed) {
+                for j in point.limits() {
+                    self.closed[j] = false;
+                    self.forces[j] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Lets points slip that stick under more than their bound, and stick that slip under a force that drives them. One that
+    /// slips without a force, which it lost with its pressure, gets the one that it has by the law.
+    pub fn stick_or_slip(&mut self, group: &ContactGroup) {
+        for point in group.point_laws() {
+            let here = self.point(&point);
+            let (size, way) = (here.size(), here.way());
+            let sticks = point.limits().all(|j| self.closed[j]);
+            for (slip, j) in here.slip.into_iter().zip(point.limits()) {
+                match sticks {
+                    true if size > here.bound => {
+                        self.closed[j] = false;
+                        self.forces[j] *= here.bound / size;
+                    }
+                    false if here.work() < 0.0 => self.closed[j] = true,
+                    false if size == 0.0 && here.bound * way > 0.0 => {
+                        self.forces[j] = here.bound / way * slip;
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+pub mod tests;

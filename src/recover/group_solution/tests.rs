@@ -1,0 +1,77 @@
+use contact_dd_partition::contact_point::{ContactPoint, Law, LocalFrame};
+
+use super::*;
+use crate::fem::contact_node::ContactNode;
+
+/// A point in space with this law, on a node.
+pub fn group(law: Law) -> ContactGroup {
+    let node = ContactNode {
+        interface: 0,
+        tag: 1,
+        body: 0,
+        at: [0.0; 3],
+        stiffness: 7.0,
+        supports: Vec::new(),
+        slides: None,
+    };
+    let point = ContactPoint {
+        contact: 0,
+        place: 0,
+        entries: vec![(0, 1.0)],
+        frame: LocalFrame::new([0.0, 0.0, 1.0]),
+        gap: 0.0,
+        since: [0.0; 3],
+        area: 4.0,
+        position: [0.0; 3],
+        force_point: [0.0; 3],
+        tag_a: 1,
+        tag_b: -1,
+        law,
+    };
+    ContactGroup::new(vec![point], vec![node], 3)
+}
+
+pub const COULOMB: Law = Law::Coulomb {
+    coefficient: 0.5,
+    cohesion: 0.0,
+};
+
+/// A point under a pressure of 4 with these forces and gaps along its tangents.
+pub fn pressed(forces: [f64; 2], gaps: [f64; 2], sticks: bool) -> GroupSolution {
+    GroupSolution {
+        forces: vec![4.0, forces[0], forces[1]],
+        closed: vec![true, sticks, sticks],
+        gaps: vec![0.0, gaps[0], gaps[1]],
+    }
+}
+
+#[test]
+fn a_point_sticks_or_slips_as_its_law_says() {
+    let none = [0.0; 2];
+    for (forces, gaps, sticks, after, sticks_then) in [
+        ([3.0, 4.0], none, true, [1.2, 1.6], false),
+        ([0.6, 0.8], none, true, [0.6, 0.8], true),
+        ([1.2, 1.6], [-0.3, -0.4], false, [1.2, 1.6], false),
+        ([1.2, 1.6], [0.3, 0.4], false, [1.2, 1.6], true),
+        (none, [-0.3, -0.4], false, [1.2, 1.6], false),
+    ] {
+        let mut point = pressed(forces, gaps, sticks);
+        point.stick_or_slip(&group(COULOMB));
+        assert_eq!(point.closed, [true, sticks_then, sticks_then], "{forces:?}");
+        for (force, after) in point.forces[1..].iter().zip(after) {
+            assert!((force - after).abs() < 1e-15, "{forces:?} {force}");
+        }
+    }
+}
+
+#[test]
+fn a_point_that_opens_keeps_given_friction_alone() {
+    for (law, left) in [(COULOMB, 0.0), (Law::Given { bound: 1.0 }, 1.2)] {
+        let mut point = pressed([1.2, 1.6], [0.0; 2], true);
+        point.forces[0] = -0.1;
+        assert!(point.open_or_close(&group(law)));
+        assert!(!point.closed[0]);
+        assert_eq!(point.forces[1], left);
+        assert_eq!(point.closed[1], left != 0.0);
+    }
+}
