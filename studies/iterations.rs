@@ -66,7 +66,7 @@ const CONTACT: [Scene; 2] = [
     }),
 ];
 
-/// What a run took.
+/// Cost of a run.
 struct Taken {
     dofs: u64,
     clusters: usize,

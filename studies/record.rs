@@ -69,7 +69,7 @@ enum Suite {
 /// An interface solver.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Operator {
-    /// What the program takes by itself.
+    /// The choice of the program itself.
     Chosen,
     Direct,
     Iterative,

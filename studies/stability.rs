@@ -57,7 +57,7 @@ pub struct Arguments {
     markdown: Option<PathBuf>,
 }
 
-/// What was run of each kind.
+/// Runs of each kind.
 struct Kinds {
     plain: Vec<Ran>,
     in_space: Vec<Ran>,

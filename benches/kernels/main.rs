@@ -118,7 +118,7 @@ fn interface(c: &mut Criterion) {
     });
 }
 
-/// What a block brings to Γ.
+/// The part of a block in Γ.
 fn contribution(condensed: &Condensed) -> Contribution {
     let mut condensed = condensed.clone();
     condensed.fill_upper_triangle();

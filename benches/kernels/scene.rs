@@ -53,12 +53,12 @@ impl Scene {
         linear.max_by_key(|&b| self.blocks[b].nodes()).unwrap()
     }
 
-    /// What acts on a block.
+    /// The loads on a block.
     pub fn loads(&self, b: usize) -> BlockLoads {
         BlockLoads::new(&self.blocks[b], 0)
     }
 
-    /// What supports prescribe in it.
+    /// Displacements that supports prescribe in it.
     pub fn prescribed(&self, b: usize) -> Prescribed {
         Prescribed::new(&self.blocks[b], &self.loads(b))
     }

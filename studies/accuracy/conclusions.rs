@@ -1,4 +1,4 @@
-//! What follows from the measurements.
+//! Conclusions from the measurements.
 
 use contact_dd_mpi::settings::DEFAULT_TOLERANCE;
 
@@ -39,7 +39,7 @@ pub struct Place {
     pub reached: Option<Reached>,
 }
 
-/// What sweeps leave that end below a residual.
+/// Error of sweeps that end below a residual.
 pub struct Row {
     pub residual: f64,
     pub largest: f64,
@@ -82,7 +82,7 @@ impl Conclusions {
         }
     }
 
-    /// What should hold and doesn't.
+    /// Expectations that don't hold.
     pub fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         for place in self.places.iter().filter(|place| place.is_quadratic) {
@@ -188,7 +188,7 @@ impl Conclusions {
         ))
     }
 
-    /// What grading gains.
+    /// The gain of grading.
     fn grading(&self) -> Option<String> {
         let on = |mesh: &str| {
             let own = (self.places.iter()).filter(|p| p.is_quadratic && p.mesh == mesh);

@@ -15,7 +15,7 @@ pub struct Reached {
     pub is_coarsest: bool,
 }
 
-/// Where the meshes of a series, coarse to fine, reach the goal, by straight lines between logarithms;
+/// The point at which the meshes of a series, coarse to fine, reach the goal, by straight lines between logarithms;
 /// `None` where not even the finest does.
 pub fn reached(meshes: &[&Timed]) -> Option<Reached> {
     let of = |mesh: &Timed| Reached {

@@ -12,7 +12,7 @@ use crate::support::solver::{Case, problem};
 /// Numbers of ranks; 0 is one rank without a launcher.
 const RANKS: [usize; 2] = [0, 2];
 
-/// What was found on one mesh.
+/// Results on one mesh.
 #[derive(Deserialize, Serialize)]
 pub struct Timed {
     pub scene: String,

@@ -1,4 +1,4 @@
-//! What the tolerance of the sweeps does to the error, by every method.
+//! Influence of the sweeps' tolerance on the error, by every method.
 
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::problem::Problem;
@@ -26,7 +26,7 @@ pub struct Tried {
     pub element: String,
     pub mesh: String,
     pub dofs: usize,
-    /// Where the sweeps leave nothing: `newton` to the smallest tolerance.
+    /// The limit of no tolerance: `newton` to the smallest tolerance.
     pub error: f64,
     pub asked: Vec<Asked>,
     pub stopped: Vec<Stopped>,
@@ -52,7 +52,7 @@ pub struct Stopped {
 }
 
 impl Tried {
-    /// How far an error is from that of the mesh alone, over it.
+    /// Difference of an error from that of the mesh alone, over it.
     pub fn shift(&self, error: f64) -> f64 {
         (error / self.error - 1.0).abs()
     }

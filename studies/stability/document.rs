@@ -10,7 +10,7 @@ use super::random::Ran;
 use crate::support::stress::trial::Verdict;
 use crate::support::stress::{FAMILIES, space};
 
-/// How many of the worst cases are shown.
+/// Number of the worst cases that are shown.
 const WORST: usize = 3;
 
 /// A figure: its name, the limit that is promised, and how to read it off.
@@ -146,7 +146,7 @@ fn verdict_columns(text: &mut String) {
     text.push('\n');
 }
 
-/// How many scenes of a kind have which verdict.
+/// Number of scenes of a kind by verdict.
 fn verdict_line(text: &mut String, ran: &[Ran], name: &str, of: &dyn Fn(&Ran) -> bool) {
     let members: Vec<&Ran> = ran.iter().filter(|one| of(one)).collect();
     let _ = write!(text, "| {name} | {} |", members.len());
@@ -253,7 +253,7 @@ fn worst(text: &mut String, ran: &[Ran]) {
     text.push('\n');
 }
 
-/// How far a run is from what is promised; all that aren't right come before all that are.
+/// Distance of a run from the promise; all that aren't right come before all that are.
 fn badness(one: &Ran) -> f64 {
     let missed = (FIGURES.iter()).filter_map(|(_, limit, figure)| Some(figure(one)? / (*limit)?));
     let missed = missed.fold(0.0, f64::max).min(1e100);

@@ -12,7 +12,7 @@ use crate::support::stress::trial::{Interface, Trial, Verdict};
 /// Makes the scene of a seed, with blocks of so many cells.
 pub type Draw = fn(u64, usize) -> Drawn;
 
-/// How scenes are run.
+/// Settings of the runs.
 pub struct Runs {
     pub binary: PathBuf,
     pub cells: usize,

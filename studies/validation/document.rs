@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::support::validation::{Case, Measured};
 
-/// What stands before the cases.
+/// Text before the cases.
 pub const HEAD: &str = "\
 # Validation
 
@@ -19,7 +19,7 @@ last two meshes. Contact pressure is the force of a node over its tributary area
 
 ";
 
-/// What stands after the cases.
+/// Text after the cases.
 pub const TAIL: &str = "\
 ## Friction, exactly
 

@@ -32,7 +32,7 @@ fn changed(from: &str, to: &str) -> Comparison {
     Comparison::new(&record(OLD), &record(&OLD.replacen(from, to, 1)))
 }
 
-/// What is worse and what is better, in words.
+/// Scenes that are worse and scenes that are better, in words.
 fn words(comparison: &Comparison) -> [Vec<String>; 2] {
     [&comparison.worse, &comparison.better].map(|changes| {
         let words = changes

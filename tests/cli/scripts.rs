@@ -10,7 +10,7 @@ use tempfile::{TempDir, tempdir};
 use crate::support::process::{Ended, Running};
 use crate::support::solver::LIMIT;
 
-/// What every Debian has.
+/// Programs that every Debian has.
 const ESSENTIAL: [&str; 12] = [
     "awk", "basename", "bash", "cat", "cut", "dirname", "env", "ls", "sed", "sh", "sort", "tail",
 ];

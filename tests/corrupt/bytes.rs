@@ -35,7 +35,7 @@ impl Random {
     }
 }
 
-/// Where most headers of the small problem are (bytes).
+/// Places of most headers of the small problem (bytes).
 const HEADERS: usize = 6000;
 
 /// Size of what is behind the end of the HDF5 file (bytes).

@@ -8,7 +8,7 @@ use hdf5::{Container, Group, H5Type};
 
 use super::walk::{Place, without_locks};
 
-/// What is done to a dataset or an attribute.
+/// A change of a dataset or an attribute.
 #[derive(Clone, Debug)]
 pub enum Change {
     Drop,
@@ -225,7 +225,7 @@ fn resize<T: Clone>(values: &mut Vec<T>, size: usize, none: T) {
     values.resize(size, none);
 }
 
-/// Where data are written.
+/// The place that data are written to.
 struct Target<'a> {
     group: &'a Group,
     place: &'a Place,

@@ -29,7 +29,7 @@ use support::process::Running;
 use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
-/// Where a change makes another problem that nothing in the file contradicts.
+/// Changes that make another problem which nothing in the file contradicts.
 const FREE: [&str; 47] = [
     "/@title",
     "/@plane",
@@ -86,7 +86,7 @@ const SAMPLE: usize = 100;
 /// Far more than the small problem takes, less than what a header may claim (bytes).
 const MEMORY: u64 = 16 << 30;
 
-/// What became of a changed file.
+/// The fate of a changed file.
 #[derive(Debug, PartialEq)]
 enum Verdict {
     Refused(String),
@@ -112,7 +112,7 @@ struct Job {
 }
 
 impl Job {
-    /// What the solver does with it; nothing where that is right.
+    /// The fault of the solver's answer to it; nothing where that is right.
     fn defect(&self) -> Option<String> {
         let mut command = program(self.ranks);
         let ended = Running::start(command.arg("--quiet").arg(&self.path)).wait(LIMIT);

@@ -13,7 +13,7 @@ pub struct Place {
     pub is_attribute: bool,
 }
 
-/// How files are opened here: a process that another test is about to start has the lock of this one's file, too.
+/// Access to files without locks: a process that another test is about to start has the lock of this one's file, too.
 pub fn without_locks() -> FileBuilder {
     let mut options = File::with_options();
     options.with_fapl(|access| access.file_locking(false));

@@ -4,7 +4,7 @@ use hdf5::File;
 
 use super::*;
 
-/// What is wrong with a problem file that was right.
+/// A fault put into a problem file that was right.
 type Damage = fn(&Case);
 
 fn damaged() -> [(&'static str, Damage, &'static [&'static str]); 8] {

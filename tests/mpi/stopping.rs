@@ -95,7 +95,7 @@ fn stop_between_steps(
     });
 }
 
-/// What the report says of friction in every load step.
+/// The report's friction of every load step.
 fn friction(case: &Case) -> Vec<Value> {
     let report = Solution::read_report(&case.result());
     let steps = report["steps"].as_array().unwrap();

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What can become of a rank, as the program reads it from `CONTACT_DD_END`.
+/// Ends of a rank, as the program reads it from `CONTACT_DD_END`.
 const KINDS: [&str; 3] = ["failure", "panic", "kill"];
 
 /// Phases in which nothing returns an error, so that a rank can only end suddenly.

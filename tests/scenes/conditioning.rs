@@ -1,4 +1,4 @@
-//! What the report says of a scene's conditioning.
+//! The condition number in the report.
 
 use contact_dd_partition::model::Model;
 use nalgebra::DMatrix;

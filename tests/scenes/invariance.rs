@@ -1,4 +1,4 @@
-//! Where a scene lies, how large it is and how its nodes are numbered plays no part.
+//! Invariance of solutions: place, size and numbering of a scene play no part.
 
 use std::collections::BTreeMap;
 

@@ -20,7 +20,7 @@ use crate::support::scenes::{built_in, built_in_model, model, two_block_scene, t
 use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::{Case, problem, solve};
 
-/// What two runs are to agree in.
+/// Numbers in which two runs are to agree.
 struct Likeness {
     /// Contact force of the second over that of the first.
     force: f64,

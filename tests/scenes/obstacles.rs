@@ -58,7 +58,7 @@ fn groove(force: [f64; 2], tilt: f64, sides: [&[&str]; 2]) -> (Model, [[f64; 2];
     (model(&scene(force, &walls), mesh), normals)
 }
 
-/// How much of each of two walls with these normals a force on a body rests on.
+/// Parts of a force on a body that two walls with these normals bear.
 fn shares(normals: [[f64; 2]; 2], force: [f64; 2]) -> [f64; 2] {
     let [[a, b], [c, d]] = normals;
     let determinant = a * d - b * c;

@@ -1,4 +1,4 @@
-//! What the report says of forces and moments, against statics.
+//! Forces and moments of the report, against statics.
 
 use hdf5::File;
 use serde_json::Value;

@@ -12,7 +12,7 @@ use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
 use crate::support::stress::trial::{Interface, Trial, Verdict};
 use crate::support::stress::{Balance, Drawn, draw, draw_uneven};
 
-/// What the judge finds in the solution of two blocks after `tamper`.
+/// Findings of the judge in the solution of two blocks after `tamper`.
 fn faults(tamper: impl Fn(&mut Solution)) -> Vec<String> {
     let model = model(&two_block_scene(), two_blocks().mesh);
     let mut solution = solve(&model, 5);

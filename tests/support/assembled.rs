@@ -42,7 +42,7 @@ pub struct Disturbance {
     pub seed: u64,
 }
 
-/// What holds along a tangent while a linear system is solved.
+/// The condition along a tangent while a linear system is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
     /// No force.

@@ -41,7 +41,7 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
     }
 }
 
-/// What the judge of random scenes finds in the increments of a model, the worst of all: each has to keep the laws of
+/// Findings of the judge of random scenes in the increments of a model, the worst of all: each has to keep the laws of
 /// contact and friction, and to be what follows from what it says is closed, sticks and slips.
 pub fn judged(model: &Model, increments: &[Solution]) -> Findings {
     assert_eq!(increments.len(), model.steps.len().max(1));

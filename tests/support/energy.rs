@@ -1,4 +1,4 @@
-//! Where energy comes from and goes in load steps with friction, from mesh, scene and results alone.
+//! Balance of energy in load steps with friction, from mesh, scene and results alone.
 
 use contact_dd_partition::model::Model;
 
@@ -17,7 +17,7 @@ pub struct Works {
     pub energy: f64,
     pub pressure: f64,
     pub friction: f64,
-    /// What friction dissipates with the forces at the end.
+    /// Work that friction dissipates with the forces at the end.
     pub dissipated: f64,
 }
 

@@ -43,7 +43,7 @@ impl Mounted {
     }
 }
 
-/// How one gets a view of file systems in which one may mount: as root, or as one's own root.
+/// The command for a view of file systems in which one may mount: as root, or as one's own root.
 pub fn privilege() -> Option<&'static str> {
     ["-m", "-rm"].into_iter().find(|&option| {
         let mut mount = Command::new("unshare");

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
-/// How a program ended and what it printed.
+/// The end of a program, and its output.
 #[derive(Debug)]
 pub struct Ended {
     /// Its exit status; `None` if it had to be ended because its time was up.

@@ -8,7 +8,7 @@ use hdf5::types::{TypeDescriptor, VarLenUnicode};
 use hdf5::{File, H5Type};
 use serde_json::Value;
 
-/// What a run found.
+/// The results of a run.
 #[derive(Clone, Debug)]
 pub struct Solution {
     /// Displacement by node tag [m].

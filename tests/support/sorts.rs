@@ -8,7 +8,7 @@ use contact_dd_partition::element::ElementKind::{
 use contact_dd_partition::element::Elements;
 use contact_dd_partition::mesh::Mesh;
 
-/// What the cells of a mesh become.
+/// A kind of cells that those of a mesh become.
 #[derive(Clone, Copy, Debug)]
 pub struct Sort {
     pub name: &'static str,

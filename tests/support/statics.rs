@@ -1,4 +1,4 @@
-//! What equilibrium alone says of a solution.
+//! Consequences of equilibrium alone.
 
 use contact_dd_partition::mesh::Mesh;
 

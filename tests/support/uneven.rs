@@ -7,7 +7,7 @@ use super::random::Random;
 use super::scenes::model;
 use super::sorts::Sort;
 
-/// What presses on them [Pa].
+/// The pressure on them [Pa].
 pub const PRESSURE: f64 = 1e6;
 
 /// Two materials, and bodies of them in turn.

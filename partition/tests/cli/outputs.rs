@@ -1,4 +1,4 @@
-//! What the program writes, what it leaves alone, and where it can't write.
+//! Files that the program writes, those that it leaves alone, and places where it can't write.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ fn program(args: &[&str], folder: &Path) -> Output {
     command.args(args).current_dir(folder).output().unwrap()
 }
 
-/// What a program said that ended with this exit code.
+/// The output of a program that ended with this exit code.
 #[track_caller]
 fn said(output: &Output, code: i32) -> String {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

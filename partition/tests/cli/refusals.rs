@@ -1,4 +1,4 @@
-//! What the program refuses: exit code 2, a message that says where, nothing written.
+//! Refusals of the program: exit code 2, a message that says where, nothing written.
 
 use std::fs;
 use std::path::Path;

@@ -93,7 +93,7 @@ enum Break {
     Flip(Index, u8),
 }
 
-/// What breaks readers.
+/// Texts that break readers.
 const WORDS: [&str; 36] = [
     "",
     "0",
@@ -203,7 +203,7 @@ impl Break {
     }
 }
 
-/// Where the words of a text are.
+/// Places of the words of a text.
 fn words(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let mut words = Vec::new();
     let mut start = 0;

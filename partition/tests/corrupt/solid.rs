@@ -6,7 +6,7 @@ use super::table::cases;
 const MESH: &str = include_str!("corpus/good-in-space.msh");
 const SCENE: &str = include_str!("corpus/good-in-space.toml");
 
-/// What is replaced by what, and below it the words expected; of the mesh: a hexahedron below six tetrahedra.
+/// A text and its replacement, and below them the words expected; of the mesh: a hexahedron below six tetrahedra.
 const MESHES: &str = r#"
 \n15 1.25 1 2\n => \n15 0.25 0 1.5\n
     element 12 has no volume
@@ -146,7 +146,7 @@ name = "ball" => name = "joint"
     joint
 "#;
 
-/// What is wrong with the answers to a text that is broken as a table says.
+/// Faults of the answers to a text that is broken as a table says.
 fn faults(text: &str, table: &str, refused: impl Fn(&str) -> Option<String>) -> Vec<String> {
     let fault = |(from, to, words): (String, String, String)| {
         assert_eq!(text.matches(&from).count(), 1, "{from}");

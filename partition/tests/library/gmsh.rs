@@ -79,7 +79,7 @@ fn cells_outside_all_groups_are_left_out_only_where_others_are_in_one() {
     assert_eq!(gmsh::parse(none.as_bytes()).unwrap().cells.len(), 2);
 }
 
-/// What the reader says of the square in MSH 4.1, ASCII, with something replaced.
+/// The reader's message on the square in MSH 4.1, ASCII, with something replaced.
 fn complaint(from: &str, to: &str) -> String {
     let text = String::from_utf8(version_4_1(Form::Ascii)).unwrap();
     assert!(text.contains(from), "{from} isn't in the file");
@@ -132,7 +132,7 @@ fn what_is_wrong_with_a_file_is_said_with_its_place() {
     }
 }
 
-/// What is said of a square of triangles in the plane x = 0, with this line among the physical names.
+/// The message on a square of triangles in the plane x = 0, with this line among the physical names.
 fn upright(name: &str) -> String {
     let names = match name.is_empty() {
         true => String::new(),

@@ -1,4 +1,4 @@
-//! What the library makes of scenes and meshes.
+//! Scenes and meshes in the library.
 
 #![expect(
     clippy::unwrap_used,

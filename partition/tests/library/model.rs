@@ -1,4 +1,4 @@
-//! What a scene means on its mesh.
+//! The model: a scene on its mesh.
 
 mod bodies;
 mod contact;

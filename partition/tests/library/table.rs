@@ -1,6 +1,6 @@
 //! Tables of what is replaced in a text and what is said of it then.
 
-/// What is replaced, by what, and in the line below what is said; `\n` is the end of a line.
+/// A text, its replacement, and in the line below the message; `\n` is the end of a line.
 pub fn cases(table: &str) -> impl Iterator<Item = (String, String, String)> {
     let lines: Vec<&str> = table.trim().lines().collect();
     let pairs: Vec<_> = lines.as_chunks::<2>().0.to_vec();

@@ -8,7 +8,7 @@ use crate::support::stress::friction::Law;
 use crate::support::stress::trial::Verdict;
 use crate::support::stress::{Family, friction, space};
 
-/// What is promised of coefficients up to this.
+/// Largest coefficient that the promise covers.
 const USUAL: f64 = 0.5;
 
 const FIGURES: [Figure; 6] = [

@@ -6,7 +6,7 @@ use super::case;
 use crate::support::process::Running;
 use crate::support::solver::{LIMIT, built, program};
 
-/// What begins a colour.
+/// The beginning of a colour.
 const COLOUR: &str = "\u{1b}[";
 
 fn is_control(c: char) -> bool {

@@ -11,7 +11,7 @@ use super::report;
 use crate::support::process::{Ended, Running};
 use crate::support::solver::LIMIT;
 
-/// What the script makes of the files; `None` where there is no Python.
+/// The script's answer to the files; `None` where there is no Python.
 fn collect(files: &[&Path]) -> Option<Ended> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/collect");
     if Command::new("python3").arg("--version").output().is_err() {

@@ -19,7 +19,7 @@ pub fn published() -> Value {
     schema
 }
 
-/// What JSON makes of the types: a number that isn't finite is null.
+/// The types as JSON has them: a number that isn't finite is null.
 fn as_written(schema: &mut Schema) {
     // Names of Rust's types are no formats of JSON.
     schema.remove("format");

@@ -2,7 +2,7 @@
 
 use super::page::{Inline, Page};
 
-/// What stands right before a block.
+/// The mark right before a block.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Preface {
     #[default]
@@ -22,7 +22,7 @@ pub struct Block {
     pub preface: Preface,
 }
 
-/// What is done with a block.
+/// Treatment of a block.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Action<'a> {
     /// Nothing, for a reason that stands on the page.
@@ -70,7 +70,7 @@ impl Preface {
 }
 
 impl Block {
-    /// What is done with it.
+    /// Its treatment.
     ///
     /// # Errors
     /// If the page doesn't say.

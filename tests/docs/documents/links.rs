@@ -42,7 +42,7 @@ pub fn in_repository(page: &Page, file: &str) -> PathBuf {
     path
 }
 
-/// What GitHub makes of a heading: small letters, blanks as hyphens, no other punctuation.
+/// GitHub's anchor of a heading: small letters, blanks as hyphens, no other punctuation.
 pub fn anchor_of(heading: &str) -> String {
     let kept = heading
         .trim()

@@ -11,11 +11,11 @@ use super::block::{Block, Preface};
 /// A link to something that isn't on the web.
 pub struct Link {
     pub line: usize,
-    /// What is printed, if it is nothing but code.
+    /// The printed text, if it is nothing but code.
     pub code: Option<String>,
     /// The file, relative to the page; empty for the page itself.
     pub file: String,
-    /// What is behind `#`.
+    /// Text behind `#`.
     pub anchor: Option<String>,
 }
 

@@ -1,6 +1,6 @@
-//! What a page says is printed, and what is.
+//! Comparison of output with that on a page.
 
-/// What stands for anything.
+/// The sign for any text.
 const ANYTHING: char = '…';
 
 /// Whether `printed` is what the page shows. `…` stands for anything within a line, and as a line for any

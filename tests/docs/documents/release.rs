@@ -1,4 +1,4 @@
-//! What `scripts/release` makes of built programs.
+//! The packages that `scripts/release` makes of built programs.
 
 use std::fs;
 use std::process::Command;

@@ -23,7 +23,7 @@ const LIMIT: Duration = Duration::from_secs(180);
 /// Longer than it takes to build the programs.
 const BUILD_LIMIT: Duration = Duration::from_secs(1800);
 
-/// What of the repository is at hand where the commands are run.
+/// Files of the repository that are at hand where the commands are run.
 const CHECKOUT: [&str; 3] = ["scripts", "docs", "hostfile.example"];
 
 /// The documents' Python, if there is one.

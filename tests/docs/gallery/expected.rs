@@ -10,7 +10,7 @@ pub struct Expected {
     last_digit: f64,
     /// A number from elsewhere, and by which share the run may be off from it.
     theory: Option<(f64, f64)>,
-    /// Where the run has it.
+    /// Its place in the run's output.
     pub place: String,
 }
 
@@ -36,7 +36,7 @@ impl Expected {
         }
     }
 
-    /// What is wrong with a number of a run, if anything.
+    /// The fault of a number of a run, if it has one.
     pub fn fault(&self, number: f64) -> Option<String> {
         let Self { name, found, .. } = self;
         // One in the last digit of a whole number is a difference.

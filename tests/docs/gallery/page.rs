@@ -7,9 +7,9 @@ use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
 
 use super::expected::Expected;
 
-/// What a page says.
+/// The parts of a page.
 pub struct Page {
-    /// What it shows of its scene.
+    /// The part of its scene that it shows.
     pub scene: Vec<String>,
     /// The rows of its table.
     pub expected: Vec<Expected>,

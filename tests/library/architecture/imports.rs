@@ -1,4 +1,4 @@
-//! Who takes what from whom among the files of a crate: `use` and paths, through re-exports to where a name is defined.
+//! Imports among the files of a crate: `use` and paths, through re-exports to where a name is defined.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -27,7 +27,7 @@ struct Paths {
 }
 
 impl Imports {
-    /// Those of the crate called `name`, whose files lie in the folder `src`.
+    /// The imports of the crate called `name`, whose files lie in the folder `src`.
     pub fn new(src: &Path, name: &str) -> Self {
         let mut code = BTreeMap::new();
         let mut folders = vec![src.to_path_buf()];
@@ -207,7 +207,7 @@ impl Paths {
     }
 }
 
-/// Where an item ends: behind its semicolon or its braces.
+/// The end of an item: behind its semicolon or its braces.
 fn end_of_item(words: &[&str]) -> usize {
     let mut depth = 0;
     for (at, word) in words.iter().enumerate() {

@@ -82,7 +82,7 @@ impl Folder {
     }
 }
 
-/// What a run writes that is never stopped.
+/// The file of a run that is never stopped.
 fn expected() -> Vec<Vec<f64>> {
     let folder = Folder::after(0..0);
     let mut file = ResultFile::create(&folder.result(), &in_steps()).unwrap();

@@ -1,4 +1,4 @@
-//! What a result file replaces, and what it refuses.
+//! Files that a result file replaces, and places that it refuses.
 
 use std::fs;
 

@@ -192,7 +192,7 @@ fn push(side: &str, pressure: f64) -> String {
     format!("[[step]]\n[[step.pressure]]\non = 'block {side}'\nvalue = {pressure:e}\n")
 }
 
-/// Where the middle of the block's base is, in every step.
+/// The place of the middle of the block's base, in every step.
 #[track_caller]
 fn goes(steps: &[(&str, f64, f64)]) {
     let blocks = Blocks::new().rectangle("block", [0.0, 2.0], [0.0, 0.5], [8, 2]);

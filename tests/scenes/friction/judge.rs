@@ -33,7 +33,7 @@ fn pushed(law: &str) -> Model {
     model(&text, blocks.mesh)
 }
 
-/// What the judge finds in the second step after `tamper`.
+/// Findings of the judge in the second step after `tamper`.
 fn faults(law: &str, tamper: impl Fn(&mut Vec<ContactPoint>)) -> Vec<String> {
     let whole = pushed(law);
     let [before, mut after] = <[_; 2]>::try_from(solve_steps(&whole, 3)).unwrap();

@@ -13,7 +13,7 @@ use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
-/// How far two solutions are apart, relative to the larger displacement of the second.
+/// Difference of two solutions, relative to the larger displacement of the second.
 fn apart(one: &Solution, other: &Solution) -> f64 {
     let pairs = one.displacement.iter().zip(&other.displacement);
     let all = pairs.flat_map(|((_, u), (_, v))| u.iter().zip(v));

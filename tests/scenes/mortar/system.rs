@@ -1,4 +1,4 @@
-//! What one system for the whole mesh says is what the program says.
+//! One system for the whole mesh has the program's solution.
 
 use contact_dd_partition::model::Model;
 

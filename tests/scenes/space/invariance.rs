@@ -1,4 +1,4 @@
-//! Where a scene lies, how large and how stiff it is and how its nodes are numbered plays no part.
+//! Invariance of solutions: place, size, stiffness and numbering of a scene play no part.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -63,7 +63,7 @@ impl Blocks {
     }
 }
 
-/// What is done to a scene.
+/// A change of a scene.
 #[derive(Clone, Copy)]
 struct Change {
     is_turned: bool,
@@ -94,7 +94,7 @@ impl Change {
         self.vector(x).map(|c| self.larger * c)
     }
 
-    /// How much larger forces are.
+    /// Factor of forces.
     fn forces(self) -> f64 {
         self.stiffer * self.larger.powi(2)
     }

@@ -1,4 +1,4 @@
-//! What comes and goes against exact solutions.
+//! Activation and deactivation against exact solutions.
 
 use super::solved;
 use crate::support::blocks::{Blocks, joined};

@@ -1,4 +1,4 @@
-//! What a result says of contact.
+//! The contact of a result.
 
 use contact_dd_partition::model::Model;
 

@@ -17,14 +17,14 @@ use nalgebra::{DMatrix, DVector};
 use super::super::assembled::{Assembled, Row, Tangent};
 use super::rigid::Bodies;
 
-/// What is left of the load, relative to it, up to which it is balanced, and from which not.
+/// Rest of the load, relative to it, up to which it is balanced, and from which not.
 const BALANCED: f64 = 1e-11;
 const UNBALANCED: f64 = 1e-7;
 
 /// Corners of the polygon for a disc.
 const CORNERS: usize = 12;
 
-/// What the linear program says.
+/// Answer of the linear program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Balance {
     Holds,
@@ -184,7 +184,7 @@ impl<'a> Simplex<'a> {
         if j < self.columns.len() { 0.0 } else { 1.0 }
     }
 
-    /// What is left of the load, and the dual that says why.
+    /// The rest of the load, and the dual that proves it.
     fn solve(&mut self) -> (f64, DVector<f64>) {
         let m = self.load.len();
         let mut dual = DVector::zeros(m);

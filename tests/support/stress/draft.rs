@@ -9,7 +9,7 @@ use super::friction::Friction;
 /// Poisson's ratios between which the hard ones are drawn.
 const HARD_POISSON: [f64; 5] = [0.49, 0.499, 0.4999, 0.499_999, 0.499_999_9];
 
-/// What the families draw with.
+/// The generator of the families' drafts.
 pub struct Draft {
     pub random: Random,
     pub blocks: Blocks,

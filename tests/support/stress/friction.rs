@@ -16,7 +16,7 @@ pub enum Law {
     Coulomb(f64),
 }
 
-/// What laws of friction are drawn with.
+/// Parameters with which laws of friction are drawn.
 pub struct Friction {
     random: Random,
     pub law: Law,

@@ -33,7 +33,7 @@ const SAMPLES: u64 = 4;
 /// that is always round-off.
 const BALANCE: f64 = 1e-9;
 
-/// What was found, all relative to the size of what it is about.
+/// Findings, each relative to the size of its quantity.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Findings {
     /// ‖K u − f + Bᵀ λ‖∞ over ‖|K||u| + |f| + |Bᵀ λ|‖∞, where nothing is prescribed.
@@ -47,7 +47,7 @@ pub struct Findings {
     balance_round_off: f64,
     /// The largest of the lesser of force and gap.
     pub complementarity: f64,
-    /// What prescribed displacements are missed by.
+    /// Largest error of prescribed displacements.
     pub supports: f64,
     /// By how much tangential forces exceed their bound.
     pub bound: f64,
@@ -330,7 +330,7 @@ impl Findings {
         assembled.tangents.iter().enumerate().map(one).collect()
     }
 
-    /// What is wrong, if anything is.
+    /// The fault, if there is one.
     pub fn faults(&self) -> Vec<String> {
         let mut limits = vec![
             ("backward error", self.backward_error, BACKWARD_ERROR),

@@ -100,7 +100,7 @@ pub struct Drawn {
     /// Whether its gaps, loads and prescribed displacements were replaced by those of a solution
     /// chosen first.
     pub manufactured: bool,
-    /// What gaps, loads and prescribed displacements were multiplied by.
+    /// Factor of gaps, loads and prescribed displacements.
     pub factor: f64,
     pub model: Model,
     /// Whether it was built to have an equilibrium; `None` where only [`Balance`] knows.
@@ -173,7 +173,7 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
     drawn(seed, family.name, sort.name, draft, mesh)
 }
 
-/// What comes of a draft on its mesh.
+/// The scene of a draft on its mesh.
 #[track_caller]
 fn drawn(seed: u64, family: &'static str, cells: &'static str, draft: Draft, mesh: Mesh) -> Drawn {
     // The judge's criteria don't depend on the size of strains, which is often absurd here.

@@ -16,10 +16,10 @@ const COLUMNS: [&str; 12] = [
     "suite", "operator", "law", "seed", "verdict", "exit", "sweeps", "newton", "solves", "solver",
     "backward", "seconds",
 ];
-/// What stands in a column that has no value.
+/// The mark of a column without a value.
 const NONE: &str = "-";
 
-/// What a scene is found by: its suite, the interface solver that was asked for, and its seed.
+/// The key of a scene: its suite, the interface solver that was asked for, and its seed.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
     pub suite: String,
@@ -27,7 +27,7 @@ pub struct Key {
     pub seed: u64,
 }
 
-/// What became of a scene.
+/// The record of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// `none`, `given`, `coulomb<=0.5` or `coulomb`.
@@ -64,7 +64,7 @@ pub fn law_name(law: Option<Law>) -> &'static str {
 }
 
 impl Row {
-    /// What is kept of a trial under this law.
+    /// The record of a trial under this law.
     pub fn new(law: Option<Law>, trial: &Trial) -> Self {
         let text = |key: &str| Some(trial.report.as_ref()?.get(key)?.as_str()?.to_owned());
         let count = |key: &str| Some(trial.reported(&[key])? as u64);

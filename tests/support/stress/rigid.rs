@@ -86,7 +86,7 @@ impl Bodies {
         [&along[..self.dim], &around[..turns]].concat()
     }
 
-    /// What a row of coefficients, by dof, does to each rigid motion.
+    /// Action of a row of coefficients, by dof, on each rigid motion.
     pub fn act(&self, row: &[(usize, f64)]) -> DVector<f64> {
         let mut sums = DVector::zeros(self.motions());
         for &(dof, c) in row {

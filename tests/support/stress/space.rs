@@ -120,7 +120,7 @@ impl Draft {
         [0; 3].map(|_| self.side_cells())
     }
 
-    /// Those of a block in contact with one of `n`.
+    /// Cells of a block in contact with one of `n`.
     fn facing_counts(&mut self, n: [usize; 3]) -> [usize; 3] {
         match self.matching {
             true => n,

@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, bilinear, noise, rectangle};
 
-/// How a tower fails, if it does.
+/// The failure of a tower, if it has one.
 #[derive(Clone, Copy, PartialEq)]
 enum Fall {
     Stands,

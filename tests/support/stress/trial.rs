@@ -19,7 +19,7 @@ use super::{Balance, Drawn, decomposed};
 /// Dofs up to which there is a reference.
 const REFERENCE: usize = 100_000;
 
-/// What is to be said of a run.
+/// The verdict on a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The solution, or the message that there is none where there is none.
@@ -82,12 +82,12 @@ pub struct Trial {
     /// The program's exit code, and the time that it took (s).
     pub exit: Option<i32>,
     pub seconds: f64,
-    /// What it said when it failed.
+    /// Its message when it failed.
     pub message: String,
     pub dofs: usize,
     pub conditions: usize,
     pub subdomains: usize,
-    /// Where there is a result.
+    /// The judge's findings, if there is a result.
     pub findings: Option<Findings>,
     /// The program's own report.
     pub report: Option<Value>,

@@ -115,7 +115,7 @@ impl Exact {
         [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|row| dot(row, n))
     }
 
-    /// What a unit of area or length stands for.
+    /// Extent that a unit of area or length stands for.
     fn around(&self, x: [f64; 3]) -> f64 {
         match self {
             Self::Ring(_) => 2.0 * PI * x[0],

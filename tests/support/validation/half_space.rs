@@ -14,7 +14,7 @@ pub const STIFFNESS: f64 = 200.0 / (1.0 - POISSON * POISSON);
 
 type C = Complex<f64>;
 
-/// What the stress at a point of the half space follows from: derivatives of F, and of Φ with Φ_z = F, over r where
+/// Terms of the stress at a point of the half space: derivatives of F, and of Φ with Φ_z = F, over r where
 /// that is finite on the axis.
 pub struct Potential {
     f_z: f64,
@@ -103,7 +103,7 @@ pub fn of_force([r, z]: [f64; 2]) -> Potential {
     }
 }
 
-/// How deep the axis goes at a depth z under the punch.
+/// Displacement of the axis at a depth z under the punch.
 pub fn depth(z: f64) -> f64 {
     let [root, _, w] = complex([0.0, z], 1.0);
     let of = |value: C| -LOAD / (2.0 * PI) * value.im;

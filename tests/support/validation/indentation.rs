@@ -55,7 +55,7 @@ fn graded(s: f64, cells: usize, power: f64) -> f64 {
     at(first) * (1.0 - within) + at(first + 1.0) * within
 }
 
-/// Where a point (x, y) of the unit disc comes at the part w of the height.
+/// Image of a point (x, y) of the unit disc at the part w of the height.
 type Place<'a> = &'a dyn Fn([f64; 2], f64) -> [f64; 3];
 
 /// The quarter of a unit disc: a `core` and two pieces of a ring around it, `n` cells along each of their edges but
@@ -199,7 +199,7 @@ fn of_contact(solution: &Solution) -> Vec<Figure> {
     ]
 }
 
-/// How much deeper a point is than another.
+/// Difference in depth of two points.
 fn deeper(solution: &Solution, mesh: &Mesh, from: [f64; 3], to: [f64; 3]) -> f64 {
     let tag = |at: [f64; 3]| {
         let is_there = |x: &[f64; 3]| (0..3).all(|i| (x[i] - at[i]).abs() < 1e-9);

@@ -59,7 +59,7 @@ pub struct Family {
     pub gates: Vec<Gate>,
 }
 
-/// What was found on one mesh.
+/// Results on one mesh.
 pub struct Measured {
     pub dofs: usize,
     pub figures: Vec<Figure>,
@@ -74,7 +74,7 @@ pub struct Figure {
     pub has_order: bool,
 }
 
-/// What has to hold.
+/// The gates that have to hold.
 #[derive(Clone, Copy, Debug)]
 pub enum Gate {
     /// The order between the last two meshes is at least so much.
@@ -163,7 +163,7 @@ pub fn figured_steps(model: &Model, figures: impl Fn(&[Solution]) -> Vec<Figure>
 pub struct Posed {
     pub model: Model,
     pub exact: Exact,
-    /// What is looked at beside the energy.
+    /// Quantities that are looked at beside the energy.
     pub figures: Figures,
 }
 
@@ -185,7 +185,7 @@ impl Posed {
     }
 }
 
-/// What [`Posed::measured`] says of a scene on a mesh.
+/// The measurements of [`Posed::measured`] of a scene on a mesh.
 pub fn measured(
     model: Model,
     exact: Exact,
@@ -214,7 +214,7 @@ impl Family {
         (0..count).map(&self.run).collect()
     }
 
-    /// What doesn't hold of the gates, in words.
+    /// The gates that don't hold, in words.
     pub fn faults(&self, all: &[Measured]) -> Vec<String> {
         let last = &all[all.len() - 1];
         let value = |measured: &Measured, name: &str| {

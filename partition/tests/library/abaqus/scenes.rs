@@ -15,7 +15,7 @@ use contact_dd_partition::scene::Scene;
 use super::{SQUARES, read};
 use crate::says::says;
 
-/// How a deck says what a side is.
+/// The form in which a deck gives a side.
 #[derive(Clone, Copy, Debug)]
 enum Sides {
     /// `*NSET`.

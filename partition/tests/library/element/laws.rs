@@ -1,4 +1,4 @@
-//! What every reference element keeps, whoever defined it.
+//! Laws of every reference element.
 
 use contact_dd_partition::element::definition::CellRules;
 use contact_dd_partition::element::definition::Domain;
@@ -44,7 +44,7 @@ pub fn keeps_all(element: &ReferenceElement) {
     }
 }
 
-/// What round-off leaves of sums, in the plane or in space, which has more and larger terms.
+/// Round-off of sums, in the plane or in space, which has more and larger terms.
 fn rounding(element: &ReferenceElement, in_plane: f64) -> f64 {
     if element.dim() == 3 {
         10.0 * in_plane
@@ -273,7 +273,7 @@ fn rules_are_exact(element: &ReferenceElement, rules: CellRules) {
     assert!((area - element.domain().measure()).abs() < rounding(element, 1e-14));
 }
 
-/// What is integrated over the reference element, for each node.
+/// The integrand over the reference element, for each node.
 type Integrand = fn(&ReferenceElement, &[[f64; 3]], [f64; 3]) -> Vec<f64>;
 
 /// The nodes of a cell with straight edges and nodes in their middle, whose map is affine.

@@ -1,4 +1,4 @@
-//! What single examples look like.
+//! Shapes of single examples.
 
 use std::collections::BTreeSet;
 

@@ -1,6 +1,6 @@
 //! A mesh as MSH files of both versions and all encodings, spelled out number by number.
 
-/// How a file is written.
+/// Encoding of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     Ascii,

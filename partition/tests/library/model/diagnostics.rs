@@ -1,4 +1,4 @@
-//! What is allowed and all the same warned of.
+//! Warnings of scenes that are allowed.
 
 use super::contact::stack;
 use crate::blocks::Blocks;

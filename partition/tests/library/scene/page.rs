@@ -27,7 +27,7 @@ fn parts(page: &str) -> String {
     format!("mesh = 'a.msh'\nplane = 'strain'\n{}", parts.concat())
 }
 
-/// What a message says is known.
+/// The words that a message lists as known.
 fn known(text: &str) -> Vec<String> {
     let message = Scene::parse(text).unwrap_err().to_string();
     let (_, known) = message

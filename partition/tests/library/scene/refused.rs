@@ -6,7 +6,7 @@ use super::WHOLE;
 use crate::says::says;
 use crate::table::cases;
 
-/// What is said when `from` in the whole scene is replaced by `to`, with the start of the message.
+/// The message when `from` in the whole scene is replaced by `to`, with the start of the message.
 fn said(from: &str, to: &str) -> String {
     assert!(WHOLE.contains(from), "{from}");
     match Scene::parse(&WHOLE.replacen(from, to, 1)) {

@@ -1,4 +1,4 @@
-//! What is worse in a new record than in an old one, and what is better.
+//! Comparison of a new record with an old one: worse scenes, and better ones.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
@@ -84,7 +84,7 @@ impl Comparison {
     }
 }
 
-/// How bad a verdict is: no answer is better than a wrong one.
+/// Rank of a verdict: no answer is better than a wrong one.
 fn badness(verdict: Verdict) -> usize {
     match verdict {
         Verdict::Right => 0,

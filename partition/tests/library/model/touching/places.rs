@@ -1,4 +1,4 @@
-//! Where bodies touch, and where they only seem to.
+//! Places where bodies touch, and where they only seem to.
 
 use super::*;
 

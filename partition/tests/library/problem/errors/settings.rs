@@ -1,4 +1,4 @@
-//! What `/settings` may not say.
+//! Faults of `/settings`.
 
 use std::path::Path;
 
