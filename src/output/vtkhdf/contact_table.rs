@@ -30,8 +30,11 @@ enum In {
     EachWithFriction,
 }
 
+/// The values of a column in some rows.
+type Values = fn(&[ContactRow]) -> Box<dyn List>;
+
 /// The columns, those of contacts with friction last.
-const COLUMNS: [(&str, In, fn(&[ContactRow]) -> Box<dyn List>); 10] = [
+const COLUMNS: [(&str, In, Values); 10] = [
     ("node_a", In::First, |run| list(run, |(p, _)| p.tag_a)),
     ("node_b", In::First, |run| list(run, |(p, _)| p.tag_b)),
     ("position", In::First, |run| list(run, |(p, _)| p.position)),
@@ -52,7 +55,7 @@ const COLUMNS: [(&str, In, fn(&[ContactRow]) -> Box<dyn List>); 10] = [
     }),
 ];
 
-/// The values of a column in some rows.
+/// A list of values, one a row.
 fn list<R: Row>(run: &[ContactRow], of: fn(&ContactRow) -> R) -> Box<dyn List> {
     Box::new(run.iter().map(of).collect::<Vec<R>>())
 }
