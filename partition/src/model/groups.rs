@@ -47,8 +47,8 @@ pub(super) fn facets(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>,
 
 /// Whether all groups `names` that the mesh has consist of facets.
 pub(super) fn are_of_facets(mesh: &Mesh, names: &Names) -> bool {
-    let groups = names.iter().filter_map(|name| mesh.groups.get(name));
-    groups.fold(true, |all, group| all && Members::Facets.fit(group, mesh))
+    let mut groups = names.iter().filter_map(|name| mesh.groups.get(name));
+    groups.all(|group| Members::Facets.fit(group, mesh))
 }
 
 /// The nodes of the groups `names`, of whatever they consist, ascending.
