@@ -194,3 +194,9 @@ fn judged_between(mut drawn: Drawn, interface: Interface) -> (Verdict, String) {
     let why = format!("{}\n{}", trial.reason, drawn.described());
     (trial.verdict, why)
 }
+
+/// The generator draws inner nodes that are moved, where one side of a block is far shorter than its opposite.
+#[test]
+fn a_block_whose_inner_nodes_are_moved_does_not_fold() {
+    draw(685_175, 12);
+}

@@ -1,6 +1,7 @@
 //! A random scene in the making: its text and its mesh.
 
 use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::mesh::Mesh;
 
 use super::super::blocks::Blocks;
 use super::super::random::Random;
@@ -113,15 +114,23 @@ impl Draft {
     pub fn shape(&mut self, name: &str, n: [usize; 2], map: impl Fn([f64; 2]) -> [f64; 2]) {
         let amount = self.random.pick(&[0.0, 0.1, 0.25]);
         let seed = self.random.below(1 << 20) as f64;
-        let moved = move |c: f64, other: f64, n: usize| {
-            amount / n as f64 * noise(seed + 17.0 * c + 3.0 * other)
-        };
         let inner = |c: f64| 1e-9 < c && c < 1.0 - 1e-9;
-        let blocks = std::mem::replace(&mut self.blocks, Blocks::new());
-        self.blocks = blocks.mapped(name, n, |[s, t]| match inner(s) && inner(t) {
-            true => map([s + moved(s, t, n[0]), t + moved(t, s, n[1])]),
-            false => map([s, t]),
-        });
+        let drawn = |amount: f64| {
+            let moved = |c: f64, other: f64, n: usize| {
+                amount / n as f64 * noise(seed + 17.0 * c + 3.0 * other)
+            };
+            let blocks = self.blocks.clone();
+            blocks.mapped(name, n, |[s, t]| match inner(s) && inner(t) {
+                true => map([s + moved(s, t, n[0]), t + moved(t, s, n[1])]),
+                false => map([s, t]),
+            })
+        };
+        // Where a side is far shorter than its opposite, cells may fold.
+        let whole = drawn(amount);
+        self.blocks = match is_folded(&whole.mesh, self.blocks.mesh.cells.len()) {
+            true => drawn(0.0),
+            false => whole,
+        };
     }
 
     /// Makes one node of nodes at the same place, where `at(x, y)` says so.
@@ -261,6 +270,16 @@ impl Draft {
             }
         }
     }
+}
+
+/// Whether triangles of a mesh from a number on are turned both ways.
+fn is_folded(mesh: &Mesh, first: usize) -> bool {
+    let is_left = |cell: usize| {
+        let nodes = mesh.cells.nodes_of(cell);
+        let [a, b, c] = [0, 1, 2].map(|i| mesh.points[nodes[i] as usize]);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0
+    };
+    (first..mesh.cells.len()).any(|cell| is_left(cell) != is_left(first))
 }
 
 /// The bilinear map to a quadrilateral, exact at both ends.
