@@ -8,7 +8,10 @@ pub mod limits;
 pub mod substitute;
 pub mod tree;
 
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::problem::Catalog;
+use nalgebra::{DMatrix, DVector};
 
 use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
 use crate::context::Context;
@@ -18,11 +21,15 @@ use crate::error::Failure;
 use crate::fem::assembly::FixingDof;
 use crate::fem::assembly::assemble;
 use crate::fem::block::Block;
+use crate::fem::body_frame::BodyFrame;
 use crate::fem::dofs::{Dofs, TooManyUnknowns};
 use crate::schur::condensed::Condensed;
 use crate::schur::factor::FactorError;
 use crate::schur::local::LocalSchur;
 use crate::schur::substitution::Replaced;
+
+/// Least part of the largest by which the directions that are held resist every rigid motion of a block, squared, if they hold it.
+const HELD: f64 = 1e-12;
 
 /// The data of the condensation of any block.
 #[derive(Clone, Copy)]
@@ -56,11 +63,16 @@ impl Condensation<'_> {
         let (stiffness, springs) = assemble(block, &dofs, &catalog.materials, &fixing_dofs)
             .ok_or_else(|| too_large(number))?;
         let assembled = comm.times();
-        let (factor, s) =
-            LocalSchur::new(&stiffness, dofs.interior, par).map_err(|error| match error {
-                FactorError::Size => too_large(number),
-                FactorError::Pivot(unknown) => moves(block, &dofs, unknown, catalog),
-            })?;
+        let condensed_block = match LocalSchur::new(&stiffness, dofs.interior, par) {
+            Err(FactorError::Pivot(_)) if is_held(block, &fixing_dofs) => {
+                LocalSchur::with_springs(&stiffness, dofs.interior, par)
+            }
+            other => other,
+        };
+        let (factor, s) = condensed_block.map_err(|error| match error {
+            FactorError::Size => too_large(number),
+            FactorError::Pivot(unknown) => moves(block, &dofs, unknown, catalog),
+        })?;
         let of_block = Condensed {
             jumps: 0,
             interface_dofs: dofs.interface_dofs.clone(),
@@ -97,6 +109,50 @@ impl Condensation<'_> {
 fn fixing_dofs_of(number: usize, all: &[FixingDof]) -> Vec<(u32, usize)> {
     let own = all.iter().filter(|dof| dof.subdomain as usize == number);
     own.map(|dof| (dof.node, dof.component as usize)).collect()
+}
+
+/// Whether what holds the boundary of a block holds it wholly: its cells hang together across facets, and no rigid motion
+/// leaves its nodes on Γ, its supports and its `fixing_dofs` where they are.
+fn is_held(block: &Block, fixing_dofs: &[(u32, usize)]) -> bool {
+    let mesh = Mesh {
+        dim: block.dim,
+        cells: block.subdomain.cells.clone(),
+        points: block.points().to_vec(),
+        ..Mesh::default()
+    };
+    if Topology::new(&mesh).pieces().iter().any(|&piece| piece > 0) {
+        return false;
+    }
+    let axis = |k: usize| std::array::from_fn(|i| f64::from(i == k));
+    let mut held: Vec<(u32, [f64; 3])> = Vec::new();
+    for &(node, _) in &block.interface {
+        match block.slides.get(&node) {
+            Some(&normal) => held.push((node, normal)),
+            None => held.extend((0..block.dim).map(|k| (node, axis(k)))),
+        }
+    }
+    held.extend(fixing_dofs.iter().map(|&(node, k)| (node, axis(k))));
+    let supports = block.subdomain.supports.iter();
+    held.extend(supports.map(|support| (support.node, support.direction)));
+    let bounds = |pick: fn(f64, f64) -> f64, from: f64| {
+        let points = block.points().iter();
+        points.fold([from; 3], |all, x| {
+            std::array::from_fn(|k| pick(all[k], x[k]))
+        })
+    };
+    let frame = BodyFrame::new(
+        bounds(f64::min, f64::INFINITY),
+        bounds(f64::max, -f64::INFINITY),
+    );
+    let count = BodyFrame::count(block.dim);
+    let mut gram = DMatrix::zeros(count, count);
+    for (node, direction) in held {
+        let row = frame.action(block.dim, &block.points()[node as usize], &direction);
+        let row = DVector::from_vec(row);
+        gram += &row * row.transpose();
+    }
+    let eigenvalues = gram.symmetric_eigenvalues();
+    eigenvalues.min() > HELD * eigenvalues.max()
 }
 
 fn too_large(subdomain: usize) -> Failure {

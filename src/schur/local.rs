@@ -6,6 +6,9 @@ use faer::{Mat, MatRef, Par};
 use super::factor::{BoundaryLastCholesky, FactorError};
 use super::pattern::SparseSymmetric;
 
+/// Springs at I, relative to the diagonal, where pivots of K_II are lost in round-off, the softest first.
+const SPRINGS: [f64; 3] = [1e-15, 1e-14, 1e-13];
+
 /// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
 ///
 /// B holds the normal jumps first, then the interface dofs on Γ.
@@ -28,7 +31,40 @@ impl LocalSchur {
         interior: usize,
         par: Par,
     ) -> Result<(Self, Mat<f64>), FactorError> {
-        let (factor, s) = BoundaryLastCholesky::condense(matrix, interior, par)?;
+        Self::condensed(matrix, interior, matrix, par)
+    }
+
+    /// The same for a block that is held, whose pivots are round-off even so, as it bends with next to no force: springs of
+    /// round-off make it definite.
+    ///
+    /// # Errors
+    /// Not even they do.
+    pub fn with_springs(
+        matrix: &SparseSymmetric,
+        interior: usize,
+        par: Par,
+    ) -> Result<(Self, Mat<f64>), FactorError> {
+        let mut last = FactorError::Size;
+        for spring in SPRINGS {
+            let mut held = matrix.clone();
+            for j in 0..interior {
+                held.values[matrix.pattern.column(j).start] *= 1.0 + spring;
+            }
+            match Self::condensed(matrix, interior, &held, par) {
+                Ok(condensed) => return Ok(condensed),
+                Err(error) => last = error,
+            }
+        }
+        Err(last)
+    }
+
+    fn condensed(
+        matrix: &SparseSymmetric,
+        interior: usize,
+        held: &SparseSymmetric,
+        par: Par,
+    ) -> Result<(Self, Mat<f64>), FactorError> {
+        let (factor, s) = BoundaryLastCholesky::condense(held, interior, par)?;
         let diagonal = (interior..matrix.pattern.n())
             .map(|j| matrix.values[matrix.pattern.column(j).start])
             .collect();

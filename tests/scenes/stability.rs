@@ -200,3 +200,10 @@ fn judged_between(mut drawn: Drawn, interface: Interface) -> (Verdict, String) {
 fn a_block_whose_inner_nodes_are_moved_does_not_fold() {
     draw(685_175, 12);
 }
+
+/// A strip 6,000 times as long as thick, which bends so easily that pivots of its matrix are round-off.
+#[test]
+fn what_bends_with_next_to_no_force_is_not_said_to_move() {
+    let (verdict, why) = judged(draw(688_391, 12));
+    assert_eq!(verdict, Verdict::Right, "{why}");
+}
