@@ -130,6 +130,36 @@ impl Context<'_> {
         ))
     }
 
+    /// Contact point j in words: its node, its contact, the bodies that meet there, and where.
+    pub fn point_name(&self, j: u32) -> String {
+        let Catalog {
+            points,
+            contacts,
+            subdomains,
+            bodies,
+            ..
+        } = self.catalog;
+        let point = &points[j as usize];
+        let mut names: Vec<String> = Vec::new();
+        for (at, _) in &point.entries {
+            let body = &bodies[subdomains[at.subdomain as usize].body].name;
+            let name = format!("'{body}'");
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let place: Vec<String> = (point.position.iter().take(self.catalog.dim))
+            .map(|&x| short(x))
+            .collect();
+        format!(
+            "node {} of contact '{}' ({} at ({}))",
+            point.tag(),
+            contacts[point.contact as usize].name,
+            names.join(" and "),
+            place.join(", ")
+        )
+    }
+
     /// A failure that says in which load step it was.
     pub fn in_step(&self, mut failure: Failure, k: usize) -> Failure {
         if let Some(step) = self.catalog.steps.get(k) {

@@ -1,5 +1,6 @@
 //! Back-substitution: from U on Γ to displacements and contact forces everywhere.
 
+pub mod against_law;
 pub mod conditioning;
 pub mod energy;
 pub mod fixed_active_set;

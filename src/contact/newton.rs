@@ -149,8 +149,6 @@ pub struct Found {
     pub at: OnGroups<Iterate>,
     /// The statuses whose equations these fulfil.
     pub statuses: OnGroups<Statuses>,
-    /// The limits whose statuses were wrong in the last step.
-    pub wrong: OnGroups<Vec<usize>>,
     /// What is missed of the laws, relative to the scales of forces; infinite where the method doesn't converge.
     pub missed: f64,
     /// Linear systems solved.
@@ -172,14 +170,11 @@ pub fn newton<O: ContactOperator>(
     let (mut merit, mut changed) = (f64::INFINITY, None);
     let (mut least, mut patience) = (f64::INFINITY, settings.patience);
     let (mut accuracy, mut missed) = (operator.accuracy(&TotalResidual::UNKNOWN), f64::INFINITY);
-    let (mut best, mut wrong): (Option<Found>, _) = (None, OnGroups::new());
+    let mut best: Option<Found> = None;
     for steps in 1..=settings.most {
         let target = operator.step(&at, &statuses, accuracy)?;
         let (look, total) = look(operator, laws, &target, Some(&statuses), settings);
         operator.record(NewtonStep { total, changed })?;
-        wrong = (look.iter())
-            .map(|(&g, of_group)| (g, of_group.wrong.clone()))
-            .collect();
         if total.merit.is_nan() {
             break;
         }
@@ -197,7 +192,6 @@ pub fn newton<O: ContactOperator>(
             best = Some(Found {
                 at: target.clone(),
                 statuses: statuses.clone(),
-                wrong: OnGroups::new(),
                 missed: total.missed,
                 steps,
             });
@@ -230,7 +224,6 @@ pub fn newton<O: ContactOperator>(
     Ok(best.unwrap_or(Found {
         at,
         statuses,
-        wrong,
         missed: f64::INFINITY,
         steps: settings.most,
     }))

@@ -13,6 +13,7 @@ use crate::contact::pair::ContactPair;
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
 use crate::interface::s_con::SCon;
+use crate::recover::against_law::points_against_law;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
@@ -331,7 +332,7 @@ impl Increments<'_> {
     }
 
     /// Accepts the `outcome` of the sweeps as far as the `solution` that it led to is one; returns the scales of this one and
-    /// the `earlier` ones, as far as they converged. On the root.
+    /// the `earlier` ones, as far as they converged; on the root. Collective.
     fn accept(
         &self,
         outcome: &mut Option<SweepOutcome>,
@@ -339,16 +340,19 @@ impl Increments<'_> {
         energy: &EnergyBalance,
         earlier: Scales,
     ) -> Scales {
-        let Some(outcome) = outcome else {
-            return earlier;
-        };
-        let is_finite = solution.is_finite() && energy.is_finite();
-        outcome.accept(&solution.certificate, is_finite);
-        outcome.name_unsettled(&unsettled_points(&self.context, outcome));
-        match outcome.status {
-            SweepStatus::Converged => earlier.and(solution.certificate.scales),
-            SweepStatus::NotConverged(_) => earlier,
+        if let Some(outcome) = outcome {
+            let is_finite = solution.is_finite() && energy.is_finite();
+            outcome.accept(&solution.certificate, is_finite);
         }
+        let failed = |outcome: &SweepOutcome| outcome.status != SweepStatus::Converged;
+        if !(self.context.comm).decide(outcome.as_ref().is_some_and(failed)) {
+            return earlier.and(solution.certificate.scales);
+        }
+        let names = wrong_points(&self.context, solution, outcome.as_ref());
+        if let Some(outcome) = outcome {
+            outcome.name_points(&names);
+        }
+        earlier
     }
 }
 
@@ -365,20 +369,22 @@ struct Swept {
     in_tree: Option<InTree>,
 }
 
-/// The contact points whose status cycles, by contact and node.
-fn unsettled_points(context: &Context<'_>, outcome: &SweepOutcome) -> Vec<String> {
-    let catalog = context.catalog;
-    let name = |j: u32| {
-        let point = &catalog.points[j as usize];
-        let contact = &catalog.contacts[point.contact as usize].name;
-        format!("node {} of contact '{contact}'", point.tag())
-    };
-    let pairs = outcome.unsettled.iter().enumerate();
-    let points = pairs.flat_map(|(p, conditions)| {
-        let plan = context.plan;
-        plan.points_of_conditions(catalog, p, conditions)
-    });
-    points.map(name).collect()
+/// The contact points that miss their law most, or where none does whose status cycles, in words; on the root. Collective.
+fn wrong_points(
+    context: &Context<'_>,
+    solution: &Solution,
+    outcome: Option<&SweepOutcome>,
+) -> Vec<String> {
+    let mut points = points_against_law(context, &solution.discrete);
+    if points.is_empty() {
+        let pairs = outcome.iter().flat_map(|o| o.unsettled.iter().enumerate());
+        points = pairs
+            .flat_map(|(p, conditions)| {
+                (context.plan).points_of_conditions(context.catalog, p, conditions)
+            })
+            .collect();
+    }
+    points.into_iter().map(|j| context.point_name(j)).collect()
 }
 
 impl Increment {

@@ -136,8 +136,8 @@ impl SweepOutcome {
         }
     }
 
-    /// Names the contact points, by contact and node, whose status cycles.
-    pub fn name_unsettled(&mut self, names: &[String]) {
+    /// Names contact points that keep the sweeps from converging, the worst first.
+    pub fn name_points(&mut self, names: &[String]) {
         if let (SweepStatus::NotConverged(why), false) = (&mut self.status, names.is_empty()) {
             let (shown, more) = names.split_at(names.len().min(MOST_NAMES));
             let more = match more.len() {

@@ -34,8 +34,6 @@ pub(super) struct Settled {
     pub solution: ActiveSetSolution,
     /// Whether nothing is wrong.
     pub is_right: bool,
-    /// Limits that are, on this rank.
-    pub wrong: BTreeMap<usize, Vec<usize>>,
 }
 
 /// Finds the active set of a `problem` in which all tangential conditions stick, from one that is `open` at first, or the one
@@ -70,7 +68,6 @@ pub(super) fn settle(
                 open,
                 solution,
                 is_right: faults.count == 0,
-                wrong: faults.wrong,
             });
         }
         steps.go_on(context)?;

@@ -6,7 +6,7 @@
 //! are solved by updates of the active set, which take fewer steps than Newton's method with its
 //! line search.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::contact::friction::Status;
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
@@ -19,7 +19,7 @@ use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
 use crate::tree::active_set::settle;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::operator::{ROUND_OFF, TreeOperator};
-use crate::tree::problem::{Steps, TreeProblem, points_of_limits};
+use crate::tree::problem::{Steps, TreeProblem};
 use crate::tree::solution::ActiveSetSolution;
 
 /// Most steps.
@@ -105,7 +105,6 @@ fn without_friction(
     let found = Found {
         at: settled.solution.at.clone(),
         statuses: begin(&problem.laws, &settled.open).1,
-        wrong: settled.wrong,
         missed: if settled.is_right { 0.0 } else { f64::INFINITY },
         steps: steps.count(),
     };
@@ -175,9 +174,6 @@ fn conclude(
     };
     end(&mut outcome);
     solution.cut();
-    if outcome.status != SweepStatus::Converged {
-        outcome.name_unsettled(&names(problem, &found.wrong));
-    }
     let conditions = (problem.limits.iter())
         .map(|(&g, limits)| (g, conditions(limits, &problem.laws[&g], &found, g)))
         .collect();
@@ -233,33 +229,4 @@ fn end(outcome: &mut SweepOutcome) {
             ..ConTotals::default()
         };
     }
-}
-
-/// The points of wrong limits, by contact and node; on the root. Collective.
-fn names(problem: &TreeProblem<'_>, wrong: &OnGroups<Vec<usize>>) -> Vec<String> {
-    let Context {
-        comm,
-        plan,
-        catalog,
-        groups,
-        ..
-    } = *problem.context;
-    let name = |g: usize, point: usize| {
-        let point = &groups[&g].points[point];
-        let contact = &catalog.contacts[point.contact as usize].name;
-        format!("node {} of contact '{contact}'", point.tag())
-    };
-    let mut names = Vec::new();
-    comm.gather(
-        &plan.group_owners(),
-        |g| {
-            let points = points_of_limits(&groups[&g], &problem.limits[&g]);
-            let wrong: BTreeSet<usize> = (wrong.get(&g).into_iter().flatten())
-                .map(|&i| points[i])
-                .collect();
-            wrong.into_iter().map(|point| name(g, point)).collect()
-        },
-        |_, of_group: Vec<String>| names.extend(of_group),
-    );
-    names
 }

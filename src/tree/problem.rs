@@ -68,7 +68,7 @@ impl<'a> TreeProblem<'a> {
 }
 
 /// The number of the point of every limit of a group.
-pub(super) fn points_of_limits(group: &ContactGroup, limits: &Limits) -> Vec<usize> {
+fn points_of_limits(group: &ContactGroup, limits: &Limits) -> Vec<usize> {
     let conditions: Vec<usize> = group.conditions().map(|one| one.point).collect();
     let of_limits = limits.conditions_of_limits().into_iter();
     of_limits.map(|j| conditions[j]).collect()

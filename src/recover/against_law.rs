@@ -1,0 +1,62 @@
+//! The contact points at which a solution breaks the laws of contact most.
+
+use super::{DiscreteSolution, GroupSolution};
+use crate::context::Context;
+use crate::fem::contact_group::ContactGroup;
+use crate::vector::largest;
+
+/// Points that are named at most; more are counted.
+const MOST: usize = 20;
+/// What is missed of a law, relative to the largest contact force, that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// The contact points that miss their laws, by their number among all, the worst first; on the root. Collective.
+pub fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec<u32> {
+    let plan = context.plan;
+    let (mut all, mut force) = (Vec::new(), 0.0_f64);
+    context.comm.gather(
+        &plan.group_owners(),
+        |g| match solution.groups.get(&g) {
+            Some(of_group) => {
+                let mut missed = missed(&context.groups[&g], of_group);
+                missed.sort_by(|a, b| b.1.total_cmp(&a.1));
+                missed.truncate(MOST);
+                (missed, largest(&of_group.forces))
+            }
+            None => (Vec::new(), 0.0),
+        },
+        |g, (missed, largest): (Vec<(usize, f64)>, f64)| {
+            force = force.max(largest);
+            let points = &plan.tree.nodes[plan.groups[g].node].points;
+            all.extend(missed.into_iter().map(|(point, x)| (points[point], x)));
+        },
+    );
+    all.retain(|(_, missed)| *missed > ROUND_OFF * force);
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    all.into_iter().map(|(point, _)| point).collect()
+}
+
+/// What every point of a group misses of its laws, as a force (N/m): λ − max(0, λ − r gap), and along the tangents
+/// λ_t − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
+fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
+    let (gaps, forces) = (&solution.gaps, &solution.forces);
+    let normal = |j: usize| {
+        let r = group.stiffness_at(j);
+        (forces[j] - (forces[j] - r * gaps[j]).max(0.0)).abs()
+    };
+    let mut missed: Vec<(usize, f64)> = (0..group.points.len()).map(|j| (j, normal(j))).collect();
+    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
+        let n = of_point[0].normal;
+        let r = group.stiffness_at(n);
+        let bound = of_point[0].bound.at(forces[n], solution.closed[n]);
+        let xi = of_point
+            .iter()
+            .map(|t| forces[t.number] - r * gaps[t.number]);
+        let size = xi.clone().map(|xi| xi * xi).sum::<f64>().sqrt();
+        let part = if size > bound { bound / size } else { 1.0 };
+        let off = of_point.iter().zip(xi);
+        let off = off.map(|(t, xi)| (forces[t.number] - part * xi).powi(2));
+        missed[n].1 = missed[n].1.max(off.sum::<f64>().sqrt());
+    }
+    missed
+}
