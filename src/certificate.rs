@@ -120,8 +120,8 @@ pub fn certificate(
     }
     let scales = Scales::of(&most);
     before.replace_nothing(&mut most);
-    if most.scale < NO_LOAD * most.rest {
-        // Bodies that only came to rest: what is left is round-off of their way.
+    if most.scale < NO_LOAD * most.rest && most.load < f64::EPSILON * most.rest {
+        // Bodies that only came to rest: what is left is round-off of their way, and so is what acts.
         most.scale = most.rest;
     }
     let force_scale = larger(most.scale, most.contact_force);

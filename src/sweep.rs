@@ -21,7 +21,6 @@ pub use self::outcome::{
 };
 use crate::contact::friction::Status;
 use crate::error::Failure;
-use crate::interface::coupled::CoupledContact;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, Expected, SCon};
 use crate::settings::SweepSettings;
@@ -203,15 +202,6 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     pub fn is_converged(&self, residual: &Residual) -> bool {
         let small = residual.relative <= self.tolerance() && residual.totals.changed == 0;
         residual.totals.failed_pairs == 0 && (small || residual.relative <= ROUND_OFF)
-    }
-
-    /// Whether a method that took over, and got no further, leaves no more than what refinement with friction takes off:
-    /// there the certificate decides.
-    fn can_be_refined(&self, residual: &Residual) -> bool {
-        let settled = residual.totals.failed_pairs == 0 && residual.totals.changed == 0;
-        let has_friction = || CoupledContact::new(self.problem).is_some_and(|c| c.has_friction());
-        let small = residual.relative <= self.settings.tolerance;
-        self.has_fallen_back && settled && small && has_friction()
     }
 
     /// Residual at which the sweeps end.

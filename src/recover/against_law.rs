@@ -45,18 +45,18 @@ fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
         (forces[j] - (forces[j] - r * gaps[j]).max(0.0)).abs()
     };
     let mut missed: Vec<(usize, f64)> = (0..group.points.len()).map(|j| (j, normal(j))).collect();
-    for of_point in group.friction().chunk_by(|a, b| a.normal == b.normal) {
-        let n = of_point[0].normal;
-        let r = group.stiffness_at(n);
-        let bound = of_point[0].bound.at(forces[n], solution.closed[n]);
-        let xi = of_point
-            .iter()
-            .map(|t| forces[t.number] - r * gaps[t.number]);
-        let size = xi.clone().map(|xi| xi * xi).sum::<f64>().sqrt();
-        let part = if size > bound { bound / size } else { 1.0 };
-        let off = of_point.iter().zip(xi);
-        let off = off.map(|(t, xi)| (forces[t.number] - part * xi).powi(2));
-        missed[n].1 = missed[n].1.max(off.sum::<f64>().sqrt());
+    for point in group.point_laws() {
+        let here = solution.point(&point);
+        let xi = point.reach(&here);
+        let size = xi[0].hypot(xi[1]);
+        let part = match size > here.bound {
+            true => here.bound / size,
+            false => 1.0,
+        };
+        let off = [0, 1].map(|k| here.force[k] - part * xi[k]);
+        if let Some(n) = point.normal {
+            missed[n].1 = missed[n].1.max(off[0].hypot(off[1]));
+        }
     }
     missed
 }

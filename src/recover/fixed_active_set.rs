@@ -61,8 +61,8 @@ pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a BTreeMap<usize
 pub struct FixedActiveSetRoot<'a> {
     /// Numbering of Γ and the interface problem, where there is one.
     pub interface: Option<(&'a Numbering, &'a InterfaceProblem<'a>)>,
-    /// Whether the active sets are right.
-    pub converged: bool,
+    /// Whether the solution is refined: the active sets are right, or nothing changed them any more.
+    pub is_refined: bool,
     /// Whether loads that are round-off of the displacements move what nothing resists.
     pub moves: bool,
 }
@@ -112,7 +112,7 @@ impl<'a> FixedActiveSet<'a> {
             },
             root: on_root.map(|outcome| FixedActiveSetRoot {
                 interface,
-                converged: outcome.status == SweepStatus::Converged,
+                is_refined: outcome.status == SweepStatus::Converged || outcome.is_settled,
                 moves: false,
             }),
             fronts,

@@ -20,6 +20,17 @@ impl GroupSolution {
         law.at(|j| -self.gaps[j], &self.forces, &self.closed)
     }
 
+    /// Takes from tangential forces their excess over the bounds.
+    pub fn keep_to_bounds(&mut self, group: &ContactGroup) {
+        for point in group.point_laws() {
+            let here = self.point(&point);
+            let size = here.size();
+            for j in point.limits().filter(|_| size > here.bound) {
+                self.forces[j] *= here.bound / size;
+            }
+        }
+    }
+
     /// Opens normal conditions that are closed without a force and closes those that are open with an overlap; returns
     /// whether there was any.
     pub fn open_or_close(&mut self, group: &ContactGroup) -> bool {

@@ -22,7 +22,7 @@ const LIMIT: f64 = 4e-15;
 /// Equilibrium relative to the load above which a solution is refined: bodies that move much farther than they
 /// deform have forces that are less than their displacements promise.
 const LIMIT_OF_LOAD: f64 = 1e-11;
-/// Violation of the law of friction above which a solution in space is refined.
+/// Violation of the law of friction above which a solution is refined.
 const LIMIT_OF_FRICTION: f64 = 1e-14;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
@@ -30,7 +30,7 @@ const GOOD: f64 = 1e-14;
 const CORRECTION: f64 = 1e-6;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
-/// The same in space with friction, whose forces turn.
+/// The same with friction, whose forces follow what presses, and turn in space.
 const MAX_REFINEMENTS_OF_SLIPS: usize = 8;
 /// Most corrections of what sticks and slips.
 const MAX_CORRECTIONS: usize = 20;
@@ -39,13 +39,12 @@ const MAX_CORRECTIONS: usize = 20;
 /// it is that of the whole solution. Collective.
 pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Certificate {
     let mut best = check(fixed, solution);
-    let in_space = fixed.context.catalog.dim == 3;
-    let most = match in_space && fixed.context.catalog.has_friction() {
+    let most = match fixed.context.catalog.has_friction() {
         true => MAX_REFINEMENTS_OF_SLIPS,
         false => MAX_REFINEMENTS,
     };
     for _ in 0..most {
-        let slips_astray = in_space && best.friction > LIMIT_OF_FRICTION;
+        let slips_astray = best.friction > LIMIT_OF_FRICTION;
         let falls_short = worst(&best) > LIMIT || best.equilibrium_of_load > LIMIT_OF_LOAD;
         let falls_short = falls_short || slips_astray;
         if !decide(fixed, falls_short) {
@@ -59,7 +58,7 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
             || worst(&after) < LIMIT.max(worst(&best))
                 && slips_astray
                 && after.friction < 0.5 * best.friction;
-        if !decide(fixed, is_nearer) {
+        if !decide(fixed, is_nearer && keeps_law(&after, &best)) {
             break;
         }
         *solution = refined;
@@ -70,7 +69,7 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
 
 /// Corrects statuses against the laws of contact, as forces are known better after refinement than the sweeps know them,
 /// and refines anew, until they are fulfilled; where that isn't found, nothing is changed: what sticks and what slips
-/// against friction, and where a fixed active set falls short of the certificate, what is closed without a force or
+/// against friction, and where the certificate falls short, what is closed without a force or
 /// open with an overlap, both less than the sweeps see. Collective.
 pub fn correct_statuses(
     fixed: &FixedActiveSet<'_>,
@@ -80,7 +79,7 @@ pub fn correct_statuses(
     let (mut corrected, mut after) = (None, certificate);
     for _ in 0..MAX_CORRECTIONS {
         let is_rough = decide(fixed, after.friction > AGAINST_FRICTION);
-        let is_short = fixed.fronts.is_some() && decide(fixed, worst(&after) > GOOD);
+        let is_short = decide(fixed, worst(&after) > GOOD);
         let next: &mut DiscreteSolution = corrected.get_or_insert_with(|| solution.clone());
         let mut changed = is_rough;
         for (g, of_group) in &mut next.groups {
@@ -98,6 +97,16 @@ pub fn correct_statuses(
         }
         next.share(&fixed.context, &fixed.step.loads);
         after = refine(fixed, next);
+    }
+    if let Some(next) = &mut corrected
+        && decide(fixed, after.friction > AGAINST_FRICTION)
+    {
+        // Where round-off of what balances is more than the law leaves undecided, forces keep to their bounds.
+        for (g, of_group) in &mut next.groups {
+            of_group.keep_to_bounds(&fixed.context.groups[g]);
+        }
+        next.share(&fixed.context, &fixed.step.loads);
+        after = check(fixed, next);
     }
     let is_right = after.friction <= AGAINST_FRICTION;
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
@@ -119,12 +128,17 @@ pub fn replace_if_as_good(
 ) -> (Certificate, bool) {
     let after = refine(fixed, &mut nearer);
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
-    if decide(fixed, as_good) {
+    if decide(fixed, as_good && keeps_law(&after, &certificate)) {
         *solution = nearer;
         (after, true)
     } else {
         (certificate, false)
     }
+}
+
+/// Whether a solution keeps the law of friction as well as another one, or well enough.
+fn keeps_law(after: &Certificate, before: &Certificate) -> bool {
+    after.friction <= before.friction.max(AGAINST_FRICTION)
 }
 
 fn worst(certificate: &Certificate) -> f64 {
@@ -135,7 +149,7 @@ fn worst(certificate: &Certificate) -> f64 {
 fn decide(fixed: &FixedActiveSet<'_>, decision: bool) -> bool {
     let able = fixed
         .root
-        .is_some_and(|root| root.converged && root.can_solve());
+        .is_some_and(|root| root.is_refined && root.can_solve());
     fixed.context.comm.decide(able && decision)
 }
 

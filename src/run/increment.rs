@@ -197,6 +197,9 @@ impl Increments<'_> {
         };
         let mut swept = swept.map_err(|failure| context.of_pivot(failure))?;
         seconds.add(|s| &mut s.sweeps, comm.times() - lap);
+        if let Some(outcome) = &mut swept.outcome {
+            outcome.is_settled &= self.settings.max_sweeps.is_none();
+        }
         // From here on the load step is finished first: what was found is kept.
         go_on(&context)?;
 

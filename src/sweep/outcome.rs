@@ -15,6 +15,8 @@ const LOADED: f64 = 1e-2;
 const TOO_FAR: f64 = 1e3;
 /// Violation of the law of friction of an answer that isn't one.
 pub const AGAINST_FRICTION: f64 = 1e-9;
+/// Tension, or product of force and gap, of an answer that isn't one.
+const AGAINST_CONTACT: f64 = 1e-11;
 /// Equilibrium relative to the load of an answer that says nothing.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 
@@ -64,6 +66,8 @@ pub struct SweepOutcome {
     pub u: Vec<f64>,
     /// Why they ended.
     pub status: SweepStatus,
+    /// Whether they got no further although no status changed any more: refinement may find the rest.
+    pub is_settled: bool,
     /// History.
     pub records: Vec<SweepRecord>,
     /// Warnings.
@@ -101,6 +105,7 @@ impl SweepOutcome {
         Self {
             u,
             status: SweepStatus::NotConverged("the sweeps haven't ended".into()),
+            is_settled: false,
             records: Vec::new(),
             notes: Vec::new(),
             active_set_iterations: 0,
@@ -164,47 +169,59 @@ impl SweepOutcome {
         ));
     }
 
-    /// Takes back that the sweeps converged if the full discrete problem says otherwise, as their
-    /// residual is relative to terms that may be far larger than the load, or if not all results are `finite`.
+    /// The verdict of the full discrete problem, which alone knows the solution as it was refined, on what the sweeps say:
+    /// their residual is relative to terms that may be far larger than the load, and where they got no further, that may be
+    /// round-off, which refinement has taken off. Results that aren't all `finite` are none.
     pub fn accept(&mut self, certificate: &Certificate, finite: bool) {
-        let Certificate {
-            equilibrium,
-            equilibrium_of_load,
-            load_share,
-            farther,
-            penetration,
-            friction,
-            ..
-        } = *certificate;
-        let not_round_off =
-            equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED || farther > TOO_FAR;
-        let unbalanced = equilibrium > NOT_BALANCED
-            || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
-        if friction > AGAINST_FRICTION && self.status == SweepStatus::Converged {
-            self.status = SweepStatus::NotConverged(format!(
-                "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
-            ));
-        }
-        let failed = unbalanced || penetration > NOT_BALANCED || !certificate.is_a_number();
-        if failed && self.status == SweepStatus::Converged {
-            let moves = match equilibrium_of_load > MOVES {
-                true => ", or something slides or parts on and on",
-                false => "",
-            };
-            self.status = SweepStatus::NotConverged(format!(
-                "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
-                 {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
-                 {penetration:.1e} of the largest displacement: the scene is too badly conditioned{moves}"
-            ));
-        }
-        if !finite && self.status == SweepStatus::Converged {
-            self.status = SweepStatus::NotConverged(
-                "some of displacements, stresses, forces and energies are no finite numbers: loads or stiffnesses are \
-                 too large or too small, or something moves without end"
-                    .into(),
-            );
-        }
+        let fault = fault_of(certificate, finite);
+        let keeps_signs = certificate.tension.max(certificate.complementarity) <= AGAINST_CONTACT;
+        self.status = match (self.status.clone(), fault) {
+            (SweepStatus::Converged, Some(why)) => SweepStatus::NotConverged(why),
+            (SweepStatus::NotConverged(why), None) if self.is_settled && keeps_signs => {
+                self.fell_back(&format!("{why}; refinement found the solution"));
+                SweepStatus::Converged
+            }
+            (as_it_is, _) => as_it_is,
+        };
     }
+}
+
+/// The reason why the solution with a `certificate` is none; `None` where it is one, to round-off.
+fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
+    let Certificate {
+        equilibrium,
+        equilibrium_of_load,
+        load_share,
+        farther,
+        penetration,
+        friction,
+        ..
+    } = *certificate;
+    if friction > AGAINST_FRICTION {
+        return Some(format!(
+            "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
+        ));
+    }
+    let not_round_off =
+        equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED || farther > TOO_FAR;
+    let unbalanced =
+        equilibrium > NOT_BALANCED || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
+    if unbalanced || penetration > NOT_BALANCED || !certificate.is_a_number() {
+        let moves = match equilibrium_of_load > MOVES {
+            true => ", or something slides or parts on and on",
+            false => "",
+        };
+        return Some(format!(
+            "the forces on the nodes are balanced to {equilibrium:.1e} of their terms and \
+             {equilibrium_of_load:.1e} of the largest load, and contacts penetrate by \
+             {penetration:.1e} of the largest displacement: the scene is too badly conditioned{moves}"
+        ));
+    }
+    (!finite).then(|| {
+        "some of displacements, stresses, forces and energies are no finite numbers: loads or stiffnesses are too large \
+         or too small, or something moves without end"
+            .into()
+    })
 }
 
 #[cfg(test)]

@@ -172,6 +172,7 @@ fn conclude(
             outcome.records[sweep].changed.unwrap_or_default()
         )),
     };
+    outcome.is_settled = is_finite && outcome.records[sweep].changed == Some(0);
     end(&mut outcome);
     solution.cut();
     let conditions = (problem.limits.iter())

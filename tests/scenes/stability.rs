@@ -207,3 +207,13 @@ fn what_bends_with_next_to_no_force_is_not_said_to_move() {
     let (verdict, why) = judged(draw(688_391, 12));
     assert_eq!(verdict, Verdict::Right, "{why}");
 }
+
+/// What the sweeps leave is round-off of bodies that lie far from where they would touch, or of stiff ones, and refinement
+/// takes it off.
+#[test]
+fn what_round_off_keeps_sweeps_from_is_found_by_refinement() {
+    for seed in [685_154, 696_382] {
+        let (verdict, why) = judged(draw(seed, 12));
+        assert_eq!(verdict, Verdict::Right, "{seed}: {why}");
+    }
+}

@@ -170,6 +170,24 @@ fn what_a_step_leaves_without_load_is_where_it_is_without_earlier_steps() {
     }
 }
 
+/// Bodies that are unheld, and that nothing loads, lie anywhere; what round-off does to them is nothing that keeps the others
+/// from their solution.
+#[test]
+fn one_body_is_loaded_among_others_that_nothing_holds() {
+    let (text, mesh) = built_in("rollers", 0);
+    let (head, rest) = text.split_once("[[pressure]]").unwrap();
+    let (_, contacts) = rest.split_once("# Nodes don't match").unwrap();
+    for roller in ["left", "middle", "right"] {
+        let own = format!("\"{roller} roller\" = {{ material = \"steel\"");
+        let loaded = head.replace(&own, &format!("{own}, body_force = [0.0, -1e5]"));
+        let text = format!("{loaded}# Nodes don't match{contacts}");
+        let model = model(&text, mesh.clone());
+        for count in [14, 18, 32] {
+            Case::of(&model, count).solve(&[]).check_certificate();
+        }
+    }
+}
+
 #[test]
 fn heat_that_is_gone_leaves_nothing() {
     let heated =
