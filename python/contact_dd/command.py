@@ -1,4 +1,5 @@
-"""The command `contact-dd`: runs of decks and scenes, pictures, pages and tables of results, error bars, and meshes that adapt."""
+"""The command `contact-dd`: runs of decks and scenes, pictures, pages and tables of results, error bars, and meshes
+that adapt."""
 
 import argparse
 import signal
