@@ -3,6 +3,7 @@
 use super::{DiscreteSolution, GroupSolution};
 use crate::context::Context;
 use crate::fem::contact_group::ContactGroup;
+use crate::sweep::SweepOutcome;
 use crate::vector::largest;
 
 /// Points that are named at most; more are counted.
@@ -10,8 +11,26 @@ const MOST: usize = 20;
 /// What is missed of a law, relative to the largest contact force, that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
+/// The contact points that miss their law most, or where none does whose status cycles, in words; on the root. Collective.
+pub fn names_against_law(
+    context: &Context<'_>,
+    solution: &DiscreteSolution,
+    outcome: Option<&SweepOutcome>,
+) -> Vec<String> {
+    let mut points = points_against_law(context, solution);
+    if points.is_empty() {
+        let pairs = outcome.iter().flat_map(|o| o.unsettled.iter().enumerate());
+        points = pairs
+            .flat_map(|(p, conditions)| {
+                (context.plan).points_of_conditions(context.catalog, p, conditions)
+            })
+            .collect();
+    }
+    points.into_iter().map(|j| context.point_name(j)).collect()
+}
+
 /// The contact points that miss their laws, by their number among all, the worst first; on the root. Collective.
-pub fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec<u32> {
+fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec<u32> {
     let plan = context.plan;
     let (mut all, mut force) = (Vec::new(), 0.0_f64);
     context.comm.gather(

@@ -13,7 +13,7 @@ use crate::contact::pair::ContactPair;
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
 use crate::interface::s_con::SCon;
-use crate::recover::against_law::points_against_law;
+use crate::recover::against_law::names_against_law;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
@@ -351,7 +351,7 @@ impl Increments<'_> {
         if !(self.context.comm).decide(outcome.as_ref().is_some_and(failed)) {
             return earlier.and(solution.certificate.scales);
         }
-        let names = wrong_points(&self.context, solution, outcome.as_ref());
+        let names = names_against_law(&self.context, &solution.discrete, outcome.as_ref());
         if let Some(outcome) = outcome {
             outcome.name_points(&names);
         }
@@ -370,24 +370,6 @@ struct Swept {
     /// The statuses of the contact groups, where the tree solved for them.
     statuses: BTreeMap<usize, Statuses>,
     in_tree: Option<InTree>,
-}
-
-/// The contact points that miss their law most, or where none does whose status cycles, in words; on the root. Collective.
-fn wrong_points(
-    context: &Context<'_>,
-    solution: &Solution,
-    outcome: Option<&SweepOutcome>,
-) -> Vec<String> {
-    let mut points = points_against_law(context, &solution.discrete);
-    if points.is_empty() {
-        let pairs = outcome.iter().flat_map(|o| o.unsettled.iter().enumerate());
-        points = pairs
-            .flat_map(|(p, conditions)| {
-                (context.plan).points_of_conditions(context.catalog, p, conditions)
-            })
-            .collect();
-    }
-    points.into_iter().map(|j| context.point_name(j)).collect()
 }
 
 impl Increment {

@@ -2,6 +2,7 @@
 
 mod attribute;
 mod catalog;
+mod cells;
 mod contents;
 mod dataset;
 mod entries;
@@ -12,6 +13,7 @@ mod points;
 mod probes;
 mod settings;
 mod slice;
+mod springs;
 mod subdomain;
 
 use std::ops::Range;

@@ -6,38 +6,35 @@ use std::ops::Range;
 use super::ProblemFile;
 use super::slice::Slice;
 use crate::element::geometry::{dot, padded};
-use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
-use crate::magnitude::SMALLEST_AREA;
-use crate::mesh::facets::Facets;
-use crate::model::{PlaneState, SpringBlock, Support};
+use crate::model::{PlaneState, Support};
 use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
 /// Name of indices of nodes in messages.
-const NODE: &str = "node of its subdomain";
+pub(super) const NODE: &str = "node of its subdomain";
 
 /// The datasets of consecutive subdomains, each value by itself as the schema says.
-struct Slices {
-    points: Slice<f64>,
-    tags: Slice<i64>,
-    types: Slice<i64>,
-    connectivity: Slice<i64>,
-    offsets: Slice<i64>,
-    materials: Slice<i64>,
-    interface: Slice<i64>,
-    support_nodes: Slice<i64>,
-    support_directions: Slice<f64>,
-    support_values: Slice<f64>,
+pub(super) struct Slices {
+    pub(super) points: Slice<f64>,
+    pub(super) tags: Slice<i64>,
+    pub(super) types: Slice<i64>,
+    pub(super) connectivity: Slice<i64>,
+    pub(super) offsets: Slice<i64>,
+    pub(super) materials: Slice<i64>,
+    pub(super) interface: Slice<i64>,
+    pub(super) support_nodes: Slice<i64>,
+    pub(super) support_directions: Slice<f64>,
+    pub(super) support_values: Slice<f64>,
     /// Absent from files that don't tell conditions apart.
-    support_conditions: Option<Slice<i64>>,
-    spring_nodes: Slice<i64>,
-    spring_stiffness: Slice<f64>,
-    spring_conditions: Slice<i64>,
-    force_nodes: Slice<i64>,
-    force_values: Slice<f64>,
+    pub(super) support_conditions: Option<Slice<i64>>,
+    pub(super) spring_nodes: Slice<i64>,
+    pub(super) spring_stiffness: Slice<f64>,
+    pub(super) spring_conditions: Slice<i64>,
+    pub(super) force_nodes: Slice<i64>,
+    pub(super) force_values: Slice<f64>,
     /// Absent where no cell has any.
-    stress_of_cells: Slice<f64>,
-    stress_of_nodes: Slice<f64>,
+    pub(super) stress_of_cells: Slice<f64>,
+    pub(super) stress_of_nodes: Slice<f64>,
 }
 
 impl Slices {
@@ -164,67 +161,6 @@ impl ProblemFile {
         }
     }
 
-    fn take_cells(
-        &self,
-        slices: &Slices,
-        index: usize,
-        points: &[[f64; 3]],
-    ) -> Result<Elements, InputError> {
-        let rows = self.contents.rows('C', index);
-        let entries = self.contents.rows('K', index);
-        let (types, connectivity) = (&slices.types, &slices.connectivity);
-        let nodes = connectivity.indices(entries.clone(), NODE, points.len())?;
-        // Each of the subdomains before this one has an offset more than cells.
-        let first = rows.start + index;
-        let offsets = slices.offsets.of(first..first + rows.len() + 1);
-        let mut elements = Elements::default();
-        let mut at_nodes = Vec::new();
-        let mut used = vec![false; points.len()];
-        let mut start = 0;
-        for (cell, &code) in types.of(rows.clone()).iter().enumerate() {
-            let kind = ElementKind::cell_from_vtk(code, self.catalog.dim)
-                .map_err(|error| types.error(rows.start + cell, &error))?;
-            let end = start + kind.nodes();
-            let fits = offsets[cell..cell + 2] == [start as i64, end as i64];
-            let Some(its_nodes) = nodes.get(start..end).filter(|_| fits) else {
-                let what = format!(
-                    "the nodes of the cell run from {} to {} of {}; expected {start} to {end}",
-                    offsets[cell],
-                    offsets[cell + 1],
-                    nodes.len()
-                );
-                return Err(slices.offsets.error(first + cell, &what));
-            };
-            at_nodes.clear();
-            at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
-            if let Some((place, what)) = fault_of_cell(kind, its_nodes, &at_nodes) {
-                let what = format!("cell {} ({}) {what}", rows.start + cell, kind.name());
-                return Err(connectivity.error(entries.start + start + place, &what));
-            }
-            for &node in its_nodes {
-                used[node as usize] = true;
-            }
-            elements.push(kind, its_nodes);
-            start = end;
-        }
-        if start != nodes.len() {
-            let what = format!("offset {start}; expected {}", nodes.len());
-            return Err(slices.offsets.error(first + rows.len(), &what));
-        }
-        if let Some(node) = used.iter().position(|used| !used) {
-            let row = self.contents.rows('P', index).start + node;
-            return Err(slices.points.error(row, "the point belongs to no cell"));
-        }
-        if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
-            let [one, other] = cells.map(|cell| cell as usize);
-            let [one, other] = [one.min(other), one.max(other)];
-            let row = entries.start + elements.offsets()[other];
-            let [one, other] = [one, other].map(|cell| rows.start + cell);
-            return Err(connectivity.error(row, &format!("the cells {one} and {other} {what}")));
-        }
-        Ok(elements)
-    }
-
     fn take_supports(
         &self,
         slices: &Slices,
@@ -258,48 +194,6 @@ impl ProblemFile {
             });
         }
         Ok(supports)
-    }
-
-    fn take_springs(
-        &self,
-        slices: &Slices,
-        index: usize,
-        cells: &Elements,
-    ) -> Result<Vec<SpringBlock>, InputError> {
-        let rows = self.contents.rows('Y', index);
-        let dim = self.catalog.dim;
-        let (node, stiffness) = (&slices.spring_nodes, &slices.spring_stiffness);
-        let (nodes, _) = node.of(rows.clone()).as_chunks::<2>();
-        let sought: HashSet<[i64; 2]> = nodes.iter().copied().collect();
-        let mut found = HashSet::new();
-        for (_, of_cell) in cells.iter().filter(|_| !sought.is_empty()) {
-            let of_cell = || of_cell.iter().map(|&node| i64::from(node));
-            let pairs = of_cell().flat_map(|a| of_cell().map(move |b| [a, b]));
-            found.extend(pairs.filter(|pair| sought.contains(pair)));
-        }
-        let blocks = stiffness.of(rows.clone()).chunks_exact(dim * dim);
-        let conditions = slices.spring_conditions.of(rows.clone());
-        let mut springs = Vec::with_capacity(rows.len());
-        for (((row, pair), block), &condition) in rows.zip(nodes).zip(blocks).zip(conditions) {
-            if !found.contains(pair) {
-                return Err(node.error(row, "expected two nodes of one cell of the subdomain"));
-            }
-            let mut k = [[0.0; 3]; 3];
-            for (k, row) in k.iter_mut().zip(block.chunks_exact(dim)) {
-                k[..dim].copy_from_slice(row);
-            }
-            let differs = |i: usize, j: usize| k[i][j] != k[j][i];
-            let is_unsymmetric = (0..dim).any(|i| (0..i).any(|j| differs(i, j)));
-            if pair[0] == pair[1] && is_unsymmetric {
-                return Err(stiffness.error(row, "expected a symmetric block of a node"));
-            }
-            springs.push(SpringBlock {
-                nodes: pair.map(|node| node as u32),
-                stiffness: k,
-                condition: condition as u32,
-            });
-        }
-        Ok(springs)
     }
 
     fn take_forces(
@@ -344,48 +238,6 @@ impl ProblemFile {
             .map(|(node, &interface)| InterfaceNode { node, interface })
             .collect())
     }
-}
-
-/// The fault of a cell, and its node.
-fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Option<(usize, String)> {
-    if let Some(twice) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
-        return Some((twice, "has the node twice".into()));
-    }
-    let size = kind.measure(points);
-    if !(size > SMALLEST_AREA && size.is_finite()) {
-        let what = format!("has the area {size:e}; expected a positive one (counter-clockwise)");
-        return Some((0, what));
-    }
-    let fold = kind.fold(points, 0.0)?;
-    if kind.bears_fold(points, 0.0) {
-        return None;
-    }
-    let what = format!(
-        "is folded: its Jacobian near the node is {:e}; expected a positive one everywhere",
-        fold.jacobian
-    );
-    Some((fold.node, what))
-}
-
-/// Two cells that can't stand side by side, and why.
-fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'static str)> {
-    if Facets::repeat_themselves(cells, points)
-        && let Some(two) = Facets::new(cells, points).overlap(cells)
-    {
-        let what = match cells.kind(0).dim() {
-            3 => {
-                "lie on the same side of a face that they share; expected cells that don't overlap"
-            }
-            _ => {
-                "lie on the same side of an edge that they share; expected cells that don't overlap"
-            }
-        };
-        return Some((two.map(|facet| facet.cell), what));
-    }
-    let what = "share the ends of an edge, but not the node between them; expected the same nodes \
-                on both sides";
-    let tear = Facets::torn(cells, points).filter(|tear| tear.hangs)?;
-    Some((tear.cells, what))
 }
 
 fn take_node_tags(slices: &Slices, rows: Range<usize>) -> Result<Vec<i64>, InputError> {

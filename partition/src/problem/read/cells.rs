@@ -1,0 +1,113 @@
+//! The cells of a subdomain, checked one by one and between each other.
+
+use super::ProblemFile;
+use super::subdomain::{NODE, Slices};
+use crate::element::{ElementKind, Elements};
+use crate::error::InputError;
+use crate::magnitude::SMALLEST_AREA;
+use crate::mesh::facets::Facets;
+
+impl ProblemFile {
+    pub(super) fn take_cells(
+        &self,
+        slices: &Slices,
+        index: usize,
+        points: &[[f64; 3]],
+    ) -> Result<Elements, InputError> {
+        let rows = self.contents.rows('C', index);
+        let entries = self.contents.rows('K', index);
+        let (types, connectivity) = (&slices.types, &slices.connectivity);
+        let nodes = connectivity.indices(entries.clone(), NODE, points.len())?;
+        // Each of the subdomains before this one has an offset more than cells.
+        let first = rows.start + index;
+        let offsets = slices.offsets.of(first..first + rows.len() + 1);
+        let mut elements = Elements::default();
+        let mut at_nodes = Vec::new();
+        let mut used = vec![false; points.len()];
+        let mut start = 0;
+        for (cell, &code) in types.of(rows.clone()).iter().enumerate() {
+            let kind = ElementKind::cell_from_vtk(code, self.catalog.dim)
+                .map_err(|error| types.error(rows.start + cell, &error))?;
+            let end = start + kind.nodes();
+            let fits = offsets[cell..cell + 2] == [start as i64, end as i64];
+            let Some(its_nodes) = nodes.get(start..end).filter(|_| fits) else {
+                let what = format!(
+                    "the nodes of the cell run from {} to {} of {}; expected {start} to {end}",
+                    offsets[cell],
+                    offsets[cell + 1],
+                    nodes.len()
+                );
+                return Err(slices.offsets.error(first + cell, &what));
+            };
+            at_nodes.clear();
+            at_nodes.extend(its_nodes.iter().map(|&n| points[n as usize]));
+            if let Some((place, what)) = fault_of_cell(kind, its_nodes, &at_nodes) {
+                let what = format!("cell {} ({}) {what}", rows.start + cell, kind.name());
+                return Err(connectivity.error(entries.start + start + place, &what));
+            }
+            for &node in its_nodes {
+                used[node as usize] = true;
+            }
+            elements.push(kind, its_nodes);
+            start = end;
+        }
+        if start != nodes.len() {
+            let what = format!("offset {start}; expected {}", nodes.len());
+            return Err(slices.offsets.error(first + rows.len(), &what));
+        }
+        if let Some(node) = used.iter().position(|used| !used) {
+            let row = self.contents.rows('P', index).start + node;
+            return Err(slices.points.error(row, "the point belongs to no cell"));
+        }
+        if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
+            let [one, other] = cells.map(|cell| cell as usize);
+            let [one, other] = [one.min(other), one.max(other)];
+            let row = entries.start + elements.offsets()[other];
+            let [one, other] = [one, other].map(|cell| rows.start + cell);
+            return Err(connectivity.error(row, &format!("the cells {one} and {other} {what}")));
+        }
+        Ok(elements)
+    }
+}
+
+/// The fault of a cell, and its node.
+fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Option<(usize, String)> {
+    if let Some(twice) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
+        return Some((twice, "has the node twice".into()));
+    }
+    let size = kind.measure(points);
+    if !(size > SMALLEST_AREA && size.is_finite()) {
+        let what = format!("has the area {size:e}; expected a positive one (counter-clockwise)");
+        return Some((0, what));
+    }
+    let fold = kind.fold(points, 0.0)?;
+    if kind.bears_fold(points, 0.0) {
+        return None;
+    }
+    let what = format!(
+        "is folded: its Jacobian near the node is {:e}; expected a positive one everywhere",
+        fold.jacobian
+    );
+    Some((fold.node, what))
+}
+
+/// Two cells that can't stand side by side, and why.
+fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'static str)> {
+    if Facets::repeat_themselves(cells, points)
+        && let Some(two) = Facets::new(cells, points).overlap(cells)
+    {
+        let what = match cells.kind(0).dim() {
+            3 => {
+                "lie on the same side of a face that they share; expected cells that don't overlap"
+            }
+            _ => {
+                "lie on the same side of an edge that they share; expected cells that don't overlap"
+            }
+        };
+        return Some((two.map(|facet| facet.cell), what));
+    }
+    let what = "share the ends of an edge, but not the node between them; expected the same nodes \
+                on both sides";
+    let tear = Facets::torn(cells, points).filter(|tear| tear.hangs)?;
+    Some((tear.cells, what))
+}
