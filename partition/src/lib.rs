@@ -35,6 +35,7 @@
 pub mod allocator;
 pub mod command_line;
 pub mod contact_point;
+pub mod crack_tip;
 pub mod deck;
 #[cfg(feature = "metis")]
 pub mod decompose;

@@ -8,6 +8,7 @@ mod blend;
 mod bodies;
 mod clip;
 mod contact;
+mod crack_tips;
 mod diagnostics;
 mod facet_tree;
 mod groups;
@@ -32,6 +33,7 @@ pub use self::initial_stress::InitialStress;
 pub use self::parts::{Contact, Material, Support};
 pub use self::springs::SpringBlock;
 pub use self::steps::ModelStep;
+use crate::crack_tip::CrackTip;
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
@@ -79,6 +81,8 @@ pub struct Model {
     pub steps: Vec<ModelStep>,
     /// Contacts in the order of the scene.
     pub contacts: Vec<Contact>,
+    /// Crack tips of the plane, each with a cell that has it.
+    pub tips: Vec<(u32, CrackTip)>,
     /// Description of the contacts that were found by themselves, each with its name.
     pub found: Vec<String>,
     /// The partition that the scene asks for, a subdomain for every cell.
@@ -122,6 +126,9 @@ impl Model {
         let all: Vec<&str> = declared.iter().map(|of| &of.table[..]).collect();
         diagnostics.check_repeated_contacts(&activation::contacts(scene, &all))?;
         warnings.extend(diagnostics.warnings()?);
+        let on = (&bodies.mesh, &topology);
+        let (tips, coarse) = crack_tips::find(on, plane, &bodies.cell_material, &contacts);
+        warnings.extend(crack_tips::warning(coarse));
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
             .transpose()?;
@@ -148,6 +155,7 @@ impl Model {
                 })
                 .collect(),
             contacts,
+            tips,
             found,
             prescribed_subdomains,
             // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.

@@ -17,6 +17,7 @@ pub mod vtkhdf;
 pub mod write;
 
 use crate::contact_point::{ContactPoint, Probe};
+use crate::crack_tip::CrackTip;
 use crate::element::Elements;
 use crate::element::geometry::{advance, dot};
 use crate::model::{Material, PlaneState, SpringBlock, Support};
@@ -284,6 +285,8 @@ pub struct Catalog {
     pub points: Vec<ContactPoint<SubdomainNode>>,
     /// Places at which solutions are checked for penetration.
     pub probes: Vec<Probe<SubdomainNode>>,
+    /// Crack tips of the plane.
+    pub tips: Vec<CrackTip>,
     /// The nodes of every contact point.
     pub point_nodes: Vec<Vec<PointNode>>,
     /// The tree along which Schur complements are merged.

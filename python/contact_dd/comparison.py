@@ -153,6 +153,10 @@ def numbers_of(result: Result) -> Iterator[tuple[tuple[str, str, str], float]]:
     for support in report["reactions"]:
         for axis, force in zip("xyz", support["force"], strict=True):
             yield ("force", f"reaction of {support['support']}, {axis}", units.force), force
+    for tip in report.get("crack_tips", []):
+        for key, symbol in (("k_i", "K_I"), ("k_ii", "K_II")):
+            name = f"{symbol} of {tip['tip']}"
+            yield ("stress intensity", name, f"{units.stress} √{units.length}"), tip[key]
     if report.get("friction"):
         yield ("work", "work of friction", units.work), report["friction"]["dissipated_work"]
 

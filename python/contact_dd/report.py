@@ -37,8 +37,12 @@ REPORT: Shape = {
     "skipped": [str], "warnings": [str], "fallbacks": [str], "settings": {"problem": str, "tolerance": NUMBER},
     "build": dict.fromkeys(("mpi", "hdf5", "compiler", "profile", "commit"), (str, type(None))),
 }
+TIP: Shape = {
+    "tip": str, "node": int, "position": [MAYBE], "direction": [MAYBE], "k_i": MAYBE, "k_ii": MAYBE,
+    "energy_release_rate": MAYBE, "radius": MAYBE, "dependence_on_radius": MAYBE,
+}
 # What may be null or missing.
-OPTIONAL: dict[str, Shape] = {"error_estimate": ESTIMATE, "friction": FRICTION}
+OPTIONAL: dict[str, Shape] = {"error_estimate": ESTIMATE, "friction": FRICTION, "crack_tips": [TIP]}
 
 
 def report_of(text: str | bytes) -> dict[str, Any]:

@@ -42,6 +42,7 @@ fn catalog() -> Catalog {
         interface_nodes: 4,
         groups: vec![2],
         probes: Vec::new(),
+        tips: Vec::new(),
         points: vec![point(5, 6), point(7, 8)],
         point_nodes: vec![vec![free(None); 2], vec![free(Some(2)), free(None)]],
         hierarchy: Hierarchy {

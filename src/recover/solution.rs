@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
-use crate::fem::resultants::Reaction;
+use crate::fem::resultants::{Reaction, StressIntensity};
 use crate::fem::strain::LargestStrain;
 use crate::recover::conditioning::condition_number;
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -13,6 +13,7 @@ use crate::recover::minimum_norm::{
 };
 use crate::recover::reactions::reactions;
 use crate::recover::refine::{correct_statuses, refine};
+use crate::recover::stress_intensity::stress_intensities;
 use crate::recover::stresses::{Stress, error_estimate, largest_strain, stresses};
 use crate::recover::{DiscreteSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
@@ -37,6 +38,8 @@ pub struct Solution {
     pub friction_limit: Vec<String>,
     /// What supports carry; on the root.
     pub reactions: Vec<Reaction>,
+    /// Stress intensity of crack tips, where there are stresses; on the root.
+    pub stress_intensities: Vec<StressIntensity>,
     /// The estimate of the mesh's error, where there are stresses; on the root.
     pub estimate: Option<CellError>,
     /// The largest strain of a cell, where there are stresses, and the block that has it; on the root.
@@ -79,6 +82,9 @@ impl Solution {
             displacement: with_closing_motions(&fixed.context, displacements(blocks), analysis),
             friction_limit: friction_limit(fixed, analysis, &discrete),
             reactions: reactions(fixed, blocks),
+            stress_intensities: stress_of.map_or_else(Vec::new, |step| {
+                stress_intensities(&fixed.context, blocks, step)
+            }),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
             largest_strain: (stress.as_ref()).map(|stress| largest_strain(comm, stress, plan)),
             discrete,

@@ -97,6 +97,7 @@ impl RunFiles {
         absent: &[ContactRow],
     ) -> Result<Resultants, Failure> {
         let mut resultants = Resultants::new(context.catalog, solution.reactions.clone());
+        resultants.crack_tips = solution.stress_intensities.clone();
         let contacts = &mut resultants.contacts;
         let files = (self.result.as_mut(), self.beside.as_mut());
         write_solution(context, (solution, slips), files, contacts, absent)?;

@@ -12,6 +12,7 @@ mod axisymmetric;
 mod bending;
 mod conditioning;
 mod convergence;
+mod crack_tips;
 mod decks;
 mod elements;
 mod exact;

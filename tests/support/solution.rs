@@ -63,6 +63,13 @@ impl Solution {
         serde_json::from_str(report.as_str()).unwrap()
     }
 
+    /// K_I and K_II of the crack tips (Pa √m).
+    pub fn stress_intensity(&self) -> Vec<[f64; 2]> {
+        let tips = self.report["crack_tips"].as_array().unwrap().iter();
+        tips.map(|tip| ["k_i", "k_ii"].map(|key| tip[key].as_f64().unwrap()))
+            .collect()
+    }
+
     /// All increments: those of the load steps, or the only one.
     pub fn increments(path: &Path, has_steps: bool) -> Vec<Self> {
         match has_steps {

@@ -10,6 +10,7 @@ use self::groups::Groups;
 use self::owners::Owners;
 use super::Decomposition;
 use crate::contact_point::{ContactPoint, Probe};
+use crate::crack_tip::CrackTip;
 use crate::element::Elements;
 use crate::error::InputError;
 use crate::model::{self, Model};
@@ -72,6 +73,12 @@ impl Problem {
             groups: points.iter().map(Vec::len).collect(),
             points: points.concat(),
             probes: gather_probes(model, &owners),
+            tips: (model.tips.iter())
+                .map(|(cell, tip)| CrackTip {
+                    body: bodies.of_cell[*cell as usize] as u32,
+                    ..tip.clone()
+                })
+                .collect(),
             point_nodes: Vec::new(),
             hierarchy: decomposition.hierarchy.clone(),
             warnings,

@@ -15,6 +15,7 @@ mod settings;
 mod slice;
 mod springs;
 mod subdomain;
+mod tips;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -111,6 +111,8 @@ pub const LETTERS: &[(char, &str)] = &[
     ('E', "entries of contact points"),
     ('V', "probes"),
     ('H', "entries of probes"),
+    ('A', "crack tips"),
+    ('X', "facets of crack faces"),
     ('W', "warnings"),
     ('d', "dimensions of space, 2 or 3"),
     (
@@ -127,13 +129,14 @@ pub const TOGETHER: [&[&str]; 3] = [
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
-pub const MAY_BE_EMPTY: [&str; 7] = [
+pub const MAY_BE_EMPTY: [&str; 8] = [
     "/interface",
     "/support",
     "/spring",
     "/force",
     "/contact",
     "/probe",
+    "/tip",
     "/steps",
 ];
 
@@ -288,6 +291,20 @@ pub const FIELDS: &[Field] = &[
     field("/probe/entry_subdomain", "H", Indices("subdomain", 'N'), "subdomain of the entry"),
     field("/probe/entry_node", "H", Integers, "node, counted within that subdomain"),
     field("/probe/entry_weight", "H", Numbers, "weight of the node's displacement"),
+    field("/tip/name", "A", Names, "names of crack tips, of which the report has the stress intensity factors"),
+    field("/tip/node", "A", Integers, "name (`GlobalNodeId`) of the node at which both faces of the crack end"),
+    field("/tip/body", "A", Indices("body", 'B'), "index of its body"),
+    field("/tip/material", "A", Indices("material", 'M'), "index of the only material within the radius"),
+    field("/tip/position", "A, d", Numbers, "undeformed position [m]"),
+    field("/tip/direction", "A, d", UnitVectors, "unit vector along which the crack would grow straight on"),
+    field("/tip/radius", "A", Positive,
+        "radius of the disc around it that is evaluated [m]: nothing but the straight faces of this crack lies in it"),
+    field("/tip/facet_offset", "A + 1", Offsets('X'), "facets of the crack faces in each disc"),
+    field("/tip/facet_face", "X", Codes("face", 2), "0 for the lower face, 1 for the upper one, to whose left of `direction` the body lies"),
+    field("/tip/facet_node", "X, 3", Integers,
+        "names of the facet's nodes: the end nearer to the tip, the other end, the node between them or −1"),
+    field("/tip/facet_distance", "X, 3", NotNegative,
+        "distances of these from the tip [m]; without a node between them the last one isn't used"),
     optional("/warnings", "W", Lines, "repeated in the solver's report"),
 ];
 

@@ -53,6 +53,9 @@ impl Problem {
         if !self.catalog.probes.is_empty() {
             self.write_probes(&mut datasets)?;
         }
+        if !self.catalog.tips.is_empty() {
+            self.write_tips(&mut datasets)?;
+        }
         vtkhdf::mark(&file.group("VTKHDF")?)?;
         file.flush()?;
         file.close()
@@ -224,6 +227,22 @@ impl Problem {
         datasets.vectors("/probe/normal", probes().map(|p| &p.normal))?;
         datasets.put("/probe/gap", probes().map(|p| p.gap))?;
         datasets.entries("/probe", probes().map(|p| &p.entries))
+    }
+
+    fn write_tips(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
+        let tips = || self.catalog.tips.iter();
+        datasets.strings("/tip/name", tips().map(|tip| tip.name.as_str()))?;
+        datasets.put("/tip/node", tips().map(|tip| tip.tag))?;
+        datasets.integers("/tip/body", tips().map(|tip| tip.body))?;
+        datasets.integers("/tip/material", tips().map(|tip| tip.material))?;
+        datasets.vectors("/tip/position", tips().map(|tip| &tip.position))?;
+        datasets.vectors("/tip/direction", tips().map(|tip| &tip.direction))?;
+        datasets.put("/tip/radius", tips().map(|tip| tip.radius))?;
+        datasets.offsets("/tip/facet_offset", tips().map(|tip| tip.facets.len()))?;
+        let facets = || tips().flat_map(|tip| &tip.facets);
+        datasets.integers("/tip/facet_face", facets().map(|facet| facet.is_upper))?;
+        datasets.put("/tip/facet_node", facets().flat_map(|facet| facet.nodes))?;
+        datasets.put("/tip/facet_distance", facets().flat_map(|f| f.distances))
     }
 
     fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {

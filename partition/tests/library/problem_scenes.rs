@@ -124,6 +124,7 @@ impl Builder {
             cell_body: self.cell_body,
             steps: Vec::new(),
             contacts: self.contacts,
+            tips: Vec::new(),
             found: Vec::new(),
             prescribed_subdomains: None,
             warnings: vec!["something".into()],

@@ -61,7 +61,7 @@ def page(result, coarser=()):
         parts = [
             head(report, result), warnings(report), bodies(result), steps(report, units),
             contacts(report, sides_of(result), units), convergence(report, result.convergence), certificate(report),
-            reactions(report, units), bars([*coarser, result]), ranks(report), rest(report),
+            reactions(report, units), tips(report, units), bars([*coarser, result]), ranks(report), rest(report),
         ]
     title = escape(result.title or problem_of(report))
     return (
@@ -350,6 +350,24 @@ def reactions(report, units):
     rows = [[r["support"], *force] for r, force in zip(found[:MOST_ROWS], forces(found, units.force))]
     rows = table(["support", *force_head("", found)], rows, numbers=(1, 2, 3))
     return section("Reactions of supports", rows, more(found, ""))
+
+
+def tips(report, units):
+    found = report.get("crack_tips")
+    if not found:
+        return ""
+    of_k, of_j = f"{units.stress} √{units.length}", units.force
+    rows = [
+        [tip["tip"], si(tip["k_i"], of_k, 4), si(tip["k_ii"], of_k, 4), si(tip["energy_release_rate"], of_j, 4),
+         f"{100 * (tip['dependence_on_radius'] or 0):.2g} %"]
+        for tip in found[:MOST_ROWS]
+    ]
+    words = (
+        "The last column is the largest difference of the factors in smaller discs around the tip. Their error is of that size or "
+        "larger: a second mesh tells."
+    )
+    rows = table(["crack tip", "K_I", "K_II", "J", "by the disc"], rows, numbers=(1, 2, 3, 4))
+    return section("Stress intensity", rows, more(found, ""), f"<p><small>{words}</small></p>")
 
 
 def bars(results):

@@ -2,7 +2,7 @@
 
 use contact_dd_partition::scene::units::Units;
 
-use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants};
+use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants, StressIntensity};
 
 /// Most lines that are printed of a table; the report has all.
 const LINES: usize = 12;
@@ -12,6 +12,7 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
     let Resultants {
         contacts,
         reactions,
+        crack_tips,
     } = resultants;
     let title = "contact, on side a";
     let names = (contacts.iter().map(|c| c.name.as_str()))
@@ -62,7 +63,31 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
         "support"
     );
     lines.extend(table(head, reactions, support));
+    lines.extend(tips(crack_tips, units));
     lines
+}
+
+/// The stress intensity factors of crack tips, and by how much they depend on the disc that is evaluated.
+fn tips(tips: &[StressIntensity], units: Units) -> Vec<String> {
+    let title = "crack tip";
+    let names = tips.iter().map(|tip| tip.tip.chars().count());
+    let width = names.max().unwrap_or(0).max(title.len());
+    let unit = format!("{} √{}", units.stress(), units.length());
+    let (rate, none) = (units.force(2), "");
+    let head = format!(
+        "{title:<width$} {:>12} {:>12} {:>12} {:>9}\n{none:width$} {unit:>12} {unit:>12} {rate:>12} {:>9}",
+        "K_I", "K_II", "J", "by disc", "%"
+    );
+    table(head, tips, |tip| {
+        format!(
+            "{:<width$} {:>12.4e} {:>12.4e} {:>12.4e} {:>9.3}",
+            tip.tip,
+            tip.opening,
+            tip.sliding,
+            tip.energy_release_rate,
+            100.0 * tip.dependence_on_radius
+        )
+    })
 }
 
 /// The lines of the head and a line for each of `all`; nothing where there is none.
@@ -88,6 +113,7 @@ mod tests {
         let resultants = Resultants {
             contacts: vec![ContactResultant::default(); 15],
             reactions: vec![Reaction::default(); 2],
+            ..Resultants::default()
         };
         let lines = lines(&resultants, Units::Metre, 2);
         assert_eq!(lines.len(), 2 + 12 + 1 + 2 + 2);
@@ -98,7 +124,7 @@ mod tests {
     fn contacts_that_slip_are_told_where_there_is_friction() {
         let mut resultants = Resultants {
             contacts: vec![ContactResultant::default(); 2],
-            reactions: Vec::new(),
+            ..Resultants::default()
         };
         let lines = |resultants: &Resultants| lines(resultants, Units::Metre, 2);
         assert!(lines(&resultants)[0].ends_with("pressure"));
@@ -119,6 +145,7 @@ mod tests {
         let resultants = Resultants {
             contacts: vec![ContactResultant::default()],
             reactions: vec![Reaction::default()],
+            ..Resultants::default()
         };
         for (units, dim, expected) in [
             (Units::Metre, 2, ["N/m", "N/m", "N", "Pa"]),

@@ -1,5 +1,7 @@
 //! A closed inclined crack, turned so that it lies along x.
 
+use std::f64::consts::PI;
+
 use contact_dd_partition::model::Model;
 use nalgebra::Complex;
 
@@ -17,7 +19,7 @@ A crack of half-length b = 1 m at ψ = 20° to a pressure of σ = 100 MPa, E = 2
 
 Source: A.-V. Phan, J. A. L. Napier, L. J. Gray, T. Kaplan, *Symmetric-Galerkin BEM simulation of fracture
 with frictional contact*, Int. J. Numer. Meth. Engng 57 (2003); stresses by Westergaard's function of
-the second mode, H. Tada, P. C. Paris, G. R. Irwin, *The Stress Analysis of Cracks Handbook*.
+the second mode and K_II = σ sinψ cosψ √(πb), H. Tada, P. C. Paris, G. R. Irwin, *The Stress Analysis of Cracks Handbook*.
 
 Mesh: the square [−3, 3]² with the exact tractions, graded (3rd power) towards both tips and the crack.
 The tips are singular: expected orders are 1 for linear and 1.5 for quadratic cells.
@@ -25,7 +27,7 @@ The tips are singular: expected orders are 1 for linear and 1.5 for quadratic ce
 
 const WITH_FRICTION: &str = "\
 The same crack with Coulomb's friction, μ = 0.6: what its sides carry of the shear by μ |t_N| drops out of the slip,
-4 (1 − ν²)/E σ (sinψ cosψ − μ sin²ψ) √(b² − x²), at most 3.7681e-3 m, and of Z, and adds to σ_xy everywhere. Above
+4 (1 − ν²)/E σ (sinψ cosψ − μ sin²ψ) √(b² − x²), at most 3.7681e-3 m, of K_II, and of Z, and adds to σ_xy everywhere. Above
 μ = cot ψ = 2.7475 nothing slips. *Sticking*: how many points don't slip.
 
 Source and mesh: as above.
@@ -151,8 +153,14 @@ fn of_crack(solution: &Solution, friction: f64) -> Vec<Figure> {
     let errors = points
         .iter()
         .map(|point| (point.pressure / pressure - 1.0).abs());
+    let factor = shears(friction)[1] * PI.sqrt();
+    let tips = solution.stress_intensity();
+    let off = |of_tip: &[f64; 2]| (of_tip[1].abs() / factor - 1.0).abs();
+    let opening = tips.iter().map(|[opening, _]| (opening / factor).abs());
     let mut figures = vec![
         falling("slip", largest.fold(0.0, f64::max) / slip - 1.0),
+        falling("K_II", tips.iter().map(off).fold(0.0, f64::max)),
+        plain("K_I", opening.fold(0.0, f64::max)),
         plain("pressure", errors.fold(0.0, f64::max)),
     ];
     if friction > 0.0 {
@@ -170,6 +178,8 @@ fn families(friction: f64, names: &[&'static str]) -> Vec<Family> {
         let mut gates = vec![
             Gate::Order("energy", order),
             Gate::AtMost("slip", 3e-2),
+            Gate::AtMost("K_II", if is_quadratic { 1e-3 } else { 1e-2 }),
+            Gate::AtMost("K_I", 1e-3),
             Gate::AtMost("pressure", 1e-8),
         ];
         if friction > 0.0 {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::contents::Contents;
 use super::header::Header;
-use super::{hierarchy, materials, points, probes, settings};
+use super::{hierarchy, materials, points, probes, settings, tips};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::{
@@ -45,6 +45,7 @@ pub(super) fn read(
         groups,
         points,
         probes,
+        tips: tips::read(contents)?,
         point_nodes,
         hierarchy: Hierarchy::default(),
         solver: settings::read(file)?,

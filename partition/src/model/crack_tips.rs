@@ -1,0 +1,289 @@
+//! Crack tips: nodes of the outline at which the body turns by a whole circle.
+
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::TAU;
+
+use super::{Contact, PlaneState};
+use crate::crack_tip::{CrackTip, FaceFacet};
+use crate::element::geometry::{advance, difference, dot, length};
+use crate::mesh::Mesh;
+use crate::mesh::topology::Topology;
+
+/// Angle between the faces at a tip up to which these are those of a crack, not of a notch (rad).
+const OPENING: f64 = 0.05;
+/// Distance of a face from the straight line, over that from the tip, up to which it is straight.
+const STRAIGHT: f64 = 0.01;
+/// Radius of the disc over the distance from the tip to what disturbs its near field.
+const UNDISTURBED: f64 = 0.8;
+/// Facets of a crack face that a disc has at least.
+const FEWEST: f64 = 3.0;
+
+/// An edge of the outline, with the body to its left, and the node in its middle.
+struct Edge {
+    cell: u32,
+    ends: [u32; 2],
+    middle: Option<u32>,
+}
+
+/// The outline of all bodies.
+struct Outline<'a> {
+    mesh: &'a Mesh,
+    edges: Vec<Edge>,
+    /// The edges that start and end at a node.
+    at: HashMap<u32, [Vec<usize>; 2]>,
+}
+
+/// A node at which two faces of a crack end, and the edges of these from it on.
+struct Ending {
+    node: u32,
+    direction: [f64; 3],
+    /// The edges of the lower and of the upper face as far as they are straight.
+    faces: [Vec<usize>; 2],
+}
+
+/// The crack tips of a plane mesh in the order of their positions, each with a cell that has it, and how many have too
+/// few facets around them.
+pub(super) fn find(
+    (mesh, topology): (&Mesh, &Topology),
+    plane: Option<PlaneState>,
+    cell_material: &[u32],
+    contacts: &[Contact],
+) -> (Vec<(u32, CrackTip)>, usize) {
+    if !matches!(plane, Some(PlaneState::Strain | PlaneState::Stress)) {
+        return Default::default();
+    }
+    let outline = Outline::new(mesh, topology);
+    let mut endings: Vec<Ending> = (outline.at.keys().copied())
+        .filter_map(|node| outline.ending(node))
+        .collect();
+    if endings.is_empty() {
+        return Default::default();
+    }
+    let at = |ending: &Ending| mesh.points[ending.node as usize];
+    endings.sort_by(|a, b| {
+        let [a, b] = [at(a), at(b)];
+        (a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
+    });
+    let seams = seams(mesh, cell_material);
+    let contact_of = contacts_of_nodes(contacts);
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    let mut coarse = 0;
+    let mut tips = Vec::new();
+    for ending in &endings {
+        let Some(radius) = outline.radius(ending, &seams) else {
+            coarse += 1;
+            continue;
+        };
+        let first = &outline.edges[ending.faces[0][0]];
+        let contact = first.ends.iter().find_map(|node| contact_of.get(node));
+        let of = contact.map_or("", |&contact| &contacts[contact].name[..]);
+        let count = counts.entry(of).or_default();
+        *count += 1;
+        let name = match of {
+            "" => format!("tip {count}"),
+            name => format!("{name}, tip {count}"),
+        };
+        let tip = CrackTip {
+            name,
+            tag: mesh.node_tags[ending.node as usize],
+            body: 0,
+            material: cell_material[first.cell as usize],
+            position: at(ending),
+            direction: ending.direction,
+            radius,
+            facets: outline.facets(ending, radius),
+        };
+        tips.push((first.cell, tip));
+    }
+    (tips, coarse)
+}
+
+/// The warning of crack tips on a mesh that is too coarse for stress intensity factors.
+pub(super) fn warning(coarse: usize) -> Option<String> {
+    (coarse > 0).then(|| {
+        format!(
+            "{coarse} crack tip{} without stress intensity factors: fewer than three facets of the crack faces lie between \
+             the tip and the next kink, end, boundary or other material; expected smaller cells there",
+            if coarse == 1 { "" } else { "s" }
+        )
+    })
+}
+
+/// The nodes at which cells of several materials meet.
+fn seams(mesh: &Mesh, cell_material: &[u32]) -> Vec<u32> {
+    let mut of_node = vec![u32::MAX; mesh.points.len()];
+    let mut seams = HashSet::new();
+    for ((_, nodes), &material) in mesh.cells.iter().zip(cell_material) {
+        for &node in nodes {
+            let first = &mut of_node[node as usize];
+            match *first {
+                u32::MAX => *first = material,
+                other if other != material => {
+                    seams.insert(node);
+                }
+                _ => {}
+            }
+        }
+    }
+    seams.into_iter().collect()
+}
+
+/// The contact whose conditions a node has.
+fn contacts_of_nodes(contacts: &[Contact]) -> HashMap<u32, usize> {
+    let all = contacts.iter().enumerate();
+    all.flat_map(|(c, contact)| {
+        let entries = contact.points.iter().flat_map(|point| &point.entries);
+        entries.map(move |&(node, _)| (node, c))
+    })
+    .collect()
+}
+
+impl<'a> Outline<'a> {
+    fn new(mesh: &'a Mesh, topology: &Topology) -> Self {
+        let edges: Vec<Edge> = (topology.boundary())
+            .map(|facet| {
+                let nodes = facet.nodes(&mesh.cells);
+                Edge {
+                    cell: facet.cell,
+                    ends: [nodes[0], nodes[1]],
+                    middle: nodes.get(2).copied(),
+                }
+            })
+            .collect();
+        let mut at: HashMap<u32, [Vec<usize>; 2]> = HashMap::new();
+        for (e, edge) in edges.iter().enumerate() {
+            for (end, node) in edge.ends.iter().enumerate() {
+                at.entry(*node).or_default()[end].push(e);
+            }
+        }
+        Self { mesh, edges, at }
+    }
+
+    /// The one edge that starts (0) or ends (1) at a node through which the outline passes once.
+    fn one(&self, node: u32, end: usize) -> Option<usize> {
+        match &self.at.get(&node)? {
+            [starts, ends] if starts.len() == 1 && ends.len() == 1 => Some([starts, ends][end][0]),
+            _ => None,
+        }
+    }
+
+    fn vector(&self, from: u32, to: u32) -> [f64; 3] {
+        difference(
+            self.mesh.points[to as usize],
+            self.mesh.points[from as usize],
+        )
+    }
+
+    /// The crack that ends at a node, if one does: the two edges there leave the body a whole circle.
+    fn ending(&self, node: u32) -> Option<Ending> {
+        let [lower, upper] = [self.one(node, 0)?, self.one(node, 1)?];
+        let away = [self.edges[lower].ends[1], self.edges[upper].ends[0]];
+        let [below, above] = away.map(|end| {
+            let vector = self.vector(node, end);
+            vector.map(|x| x / length(vector))
+        });
+        // The angle of the body from the lower face to the upper one, counter-clockwise.
+        let sine = below[0] * above[1] - below[1] * above[0];
+        let turn = sine.atan2(dot(below, above)).rem_euclid(TAU);
+        let is_whole = turn > TAU - OPENING || turn < 1e-6;
+        if away[0] == away[1] || !is_whole {
+            return None;
+        }
+        let back = advance(below, 1.0, above);
+        let direction = back.map(|x| -x / length(back));
+        let faces = [0, 1].map(|face| self.face(node, direction, face));
+        let is_there = faces.iter().all(|face| !face.is_empty());
+        is_there.then_some(Ending {
+            node,
+            direction,
+            faces,
+        })
+    }
+
+    /// Distance of a node behind a tip along a crack (m) and that from its line over it.
+    fn behind(&self, tip: u32, direction: [f64; 3], node: u32) -> (f64, f64) {
+        let way = self.vector(tip, node);
+        let distance = -dot(way, direction);
+        let across = way[1] * direction[0] - way[0] * direction[1];
+        (distance, (across / distance).abs())
+    }
+
+    /// The edges of the lower (0) or upper (1) face from a tip on, as far as they are straight.
+    fn face(&self, tip: u32, direction: [f64; 3], face: usize) -> Vec<usize> {
+        let mut edges = Vec::new();
+        let (mut node, mut reached) = (tip, 0.0);
+        while let Some(e) = self.one(node, face) {
+            let edge = &self.edges[e];
+            let next = edge.ends[1 - face];
+            let (distance, off) = self.behind(tip, direction, next);
+            let middle = edge.middle.map(|node| self.behind(tip, direction, node).1);
+            if distance <= reached || off.max(middle.unwrap_or(0.0)) > STRAIGHT {
+                break;
+            }
+            edges.push(e);
+            (node, reached) = (next, distance);
+        }
+        edges
+    }
+
+    /// The radius of the disc around a tip that holds nothing but straight faces and one material (m), if that is large
+    /// enough beside the facets.
+    fn radius(&self, ending: &Ending, seams: &[u32]) -> Option<f64> {
+        let own: HashSet<usize> = ending.faces.iter().flatten().copied().collect();
+        let tip = self.mesh.points[ending.node as usize];
+        let others = (0..self.edges.len()).filter(|e| !own.contains(e));
+        let edges = others.map(|e| {
+            let [a, b] = self.edges[e].ends.map(|end| self.mesh.points[end as usize]);
+            distance_to_line(tip, a, b)
+        });
+        let nodes = seams
+            .iter()
+            .map(|&node| length(self.vector(ending.node, node)));
+        let ends = (ending.faces.iter()).map(|face| self.far_end(ending, face[face.len() - 1]));
+        let free = edges.chain(nodes).chain(ends).fold(f64::INFINITY, f64::min);
+        let sizes = ending
+            .faces
+            .iter()
+            .map(|face| self.far_end(ending, face[0]));
+        let radius = UNDISTURBED * free;
+        (radius >= FEWEST * sizes.fold(0.0, f64::max)).then_some(radius)
+    }
+
+    /// Distance of the far end of an edge of a face from the tip (m).
+    fn far_end(&self, ending: &Ending, edge: usize) -> f64 {
+        let ends = self.edges[edge].ends.iter();
+        let distances = ends.map(|&end| length(self.vector(ending.node, end)));
+        distances.fold(0.0, f64::max)
+    }
+
+    /// The facets of both faces that start within a radius.
+    fn facets(&self, ending: &Ending, radius: f64) -> Vec<FaceFacet> {
+        let mut facets = Vec::new();
+        for (face, edges) in ending.faces.iter().enumerate() {
+            for &e in edges {
+                let edge = &self.edges[e];
+                let [near, far] = [edge.ends[face], edge.ends[1 - face]];
+                let middle = edge.middle.unwrap_or(far);
+                let nodes = [near, far, middle];
+                let distances = nodes.map(|node| length(self.vector(ending.node, node)));
+                if distances[0] >= radius {
+                    break;
+                }
+                let tags = nodes.map(|node| self.mesh.node_tags[node as usize]);
+                facets.push(FaceFacet {
+                    is_upper: face == 1,
+                    nodes: [tags[0], tags[1], edge.middle.map_or(-1, |_| tags[2])],
+                    distances,
+                });
+            }
+        }
+        facets
+    }
+}
+
+/// Distance of a point from the line between two others (m).
+fn distance_to_line(point: [f64; 3], a: [f64; 3], b: [f64; 3]) -> f64 {
+    let (along, from) = (difference(b, a), difference(point, a));
+    let part = (dot(from, along) / dot(along, along)).clamp(0.0, 1.0);
+    length(advance(from, -part, along))
+}

@@ -1,0 +1,342 @@
+//! The interaction integral of a crack tip over the cells of a block.
+//!
+//! With the near field a of K = 1, its stress s and strain e, the stress σ, and q = 1 at the tip and 0 outside a disc,
+//!
+//! > M = ∫ (σ_ij a_i,1 + s_ij u_i,1 − σ:e δ_1j) q,_j dx − ∫ e:σ⁰,₁ q dx − Σ f_j · W_j,   M = 2 H K,
+//!
+//! G = Kᵀ H K. σ⁰ is the initial stress. The last sum is the work of the forces that act within the disc: body forces, tractions on
+//! the crack faces, those of contact and of friction among them. They are f_j = ∫ Bᵀ σ at every node, as the solution is
+//! balanced, and W = q a,₁; on the faces, where a,₁ is singular, its mean with the shape function of the node.
+//!
+//! J. F. Yau, S. S. Wang, H. T. Corten, *A mixed-mode crack analysis of isotropic solids using conservation laws of
+//! elasticity*, J. Appl. Mech. 47 (1980); J. R. Walters, G. H. Paulino, R. H. Dodds, *Interaction integral procedures for
+//! 3-D curved cracks including surface tractions*, Eng. Fract. Mech. 72 (2005).
+
+mod faces;
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::crack_tip::CrackTip;
+use contact_dd_partition::element::ElementKind;
+use contact_dd_partition::element::quadrature::TabulatedPoint;
+use contact_dd_partition::model::Material;
+use contact_dd_partition::problem::InitialStress;
+use contact_dd_partition::stiffness::Stiffness;
+use nalgebra::{Matrix3, Vector3};
+
+use super::block::{Block, BlockCell};
+use super::elasticity::amplitudes;
+use super::gradients::{MAX_PLANE_NODES, PointGradients, has_modes, stiffness_points};
+use super::near_field::{Gradient, NearField, strain, turned};
+
+/// The radii of the discs that are evaluated, over that of the tip: the integral doesn't depend on it.
+pub const RADII: [f64; 3] = [1.0, 0.75, 0.5];
+/// Radius within which q = 1, over that of the disc.
+const INNER: f64 = 0.5;
+/// Degree of the quadrature of near fields.
+const DEGREE: usize = 6;
+
+/// M (Pa √m · m) for every radius of a disc and both modes.
+pub type Integrals = [[f64; 2]; RADII.len()];
+
+/// q or the components of W at the nodes of a cell, for every radius.
+type OfRadii<T> = [Vec<T>; RADII.len()];
+
+/// W of both modes.
+type Work = [[f64; 2]; 2];
+
+/// The disc around a crack tip.
+pub struct TipDisc<'a> {
+    tip: &'a CrackTip,
+    /// The near fields.
+    pub field: NearField,
+    /// The material in the frame of the tip.
+    material: Material,
+    /// W at the nodes of the faces, by their tags.
+    on_faces: BTreeMap<i64, [Work; RADII.len()]>,
+}
+
+/// A cell in the frame of the tip.
+struct LocalCell {
+    kind: ElementKind,
+    /// Whether it has incompatible modes.
+    has_modes: bool,
+    nodes: Vec<usize>,
+    points: Vec<[f64; 3]>,
+    /// Initial stress at its nodes (Pa); empty where there is none.
+    initial: Vec<Vector3<f64>>,
+    q: OfRadii<f64>,
+    work: OfRadii<Work>,
+}
+
+/// M of a cell: what is linear in u, by nodes and then by incompatible modes, in the frame of the tip, and the rest.
+struct OfCell {
+    slopes: Vec<[f64; 2]>,
+    constant: f64,
+}
+
+impl<'a> TipDisc<'a> {
+    /// The disc around a tip in its `material`; `None` where this has no near fields.
+    pub fn new(tip: &'a CrackTip, material: &Material) -> Option<Self> {
+        let stiffness = Matrix3::from_row_slice(material.stiffness.values());
+        let stiffness = turned(&stiffness, [tip.direction[0], tip.direction[1]]);
+        let mut disc = Self {
+            tip,
+            field: NearField::new(stiffness)?,
+            material: Material {
+                stiffness: Stiffness::new(3, stiffness.transpose().as_slice()),
+                ..material.clone()
+            },
+            on_faces: BTreeMap::new(),
+        };
+        disc.on_faces = disc.work_on_faces();
+        Some(disc)
+    }
+
+    /// The tip.
+    pub fn tip(&self) -> &CrackTip {
+        self.tip
+    }
+
+    /// The components of a vector of the plane in the frame of the tip.
+    fn turn(&self, x: [f64; 2]) -> [f64; 2] {
+        let [cos, sin, _] = self.tip.direction;
+        [cos * x[0] + sin * x[1], cos * x[1] - sin * x[0]]
+    }
+
+    /// A point in the frame of the tip (m).
+    fn place(&self, x: &[f64; 3]) -> [f64; 2] {
+        let tip = &self.tip.position;
+        self.turn([x[0] - tip[0], x[1] - tip[1]])
+    }
+
+    /// q of a radius at a distance from the tip.
+    fn weight(&self, radius: usize, distance: f64) -> f64 {
+        let outer = RADII[radius] * self.tip.radius;
+        ((1.0 - distance / outer) / (1.0 - INNER)).clamp(0.0, 1.0)
+    }
+
+    /// q a,₁ of both modes at a place in the frame of the tip.
+    fn work(&self, q: f64, x: [f64; 2]) -> Work {
+        let distance = x[0].hypot(x[1]);
+        if q == 0.0 || distance == 0.0 {
+            return Work::default();
+        }
+        [0, 1].map(|mode| {
+            let gradient = self.field.gradient(mode, distance, x[1].atan2(x[0]));
+            gradient.map(|of_component| q * of_component[0])
+        })
+    }
+
+    /// The integrals over the cells of a block, for displacements `u`, node by node; `None` where no cell lies in the disc.
+    pub fn integrals(
+        &self,
+        block: &Block,
+        u: &[f64],
+        initial: &InitialStress,
+    ) -> Option<Integrals> {
+        let mut sum = None;
+        self.each_cell(block, initial, |cell, found| {
+            let of_nodes = cell
+                .nodes
+                .iter()
+                .map(|&n| self.turn([u[2 * n], u[2 * n + 1]]));
+            let mut u: Vec<[f64; 2]> = of_nodes.collect();
+            self.append_modes(cell, &mut u);
+            let sum: &mut Integrals = sum.get_or_insert_default();
+            for (sum, found) in sum.iter_mut().zip(found) {
+                for (sum, found) in sum.iter_mut().zip(found) {
+                    let products = u.iter().zip(&found.slopes);
+                    let of_u: f64 = products.map(|(u, l)| u[0] * l[0] + u[1] * l[1]).sum();
+                    *sum += of_u + found.constant;
+                }
+            }
+        });
+        sum
+    }
+
+    /// Hands the integral over every cell in the disc to `take`.
+    fn each_cell(
+        &self,
+        block: &Block,
+        initial: &InitialStress,
+        mut take: impl FnMut(&LocalCell, &[[OfCell; 2]]),
+    ) {
+        let mut rules: BTreeMap<u8, Vec<TabulatedPoint>> = BTreeMap::new();
+        let is_near = |node: u32| {
+            let [x, y] = self.place(&block.points()[node as usize]);
+            x.hypot(y) < self.tip.radius
+        };
+        for cell in block.cells().filter(|cell| cell.nodes().any(is_near)) {
+            let local = self.cell(block, &cell, initial);
+            let places = local.nodes.len() + if local.has_modes { 2 } else { 0 };
+            let none = || OfCell {
+                slopes: vec![[0.0; 2]; places],
+                constant: 0.0,
+            };
+            let mut found: Vec<[OfCell; 2]> = (0..RADII.len()).map(|_| [none(), none()]).collect();
+            for point in stiffness_points(&cell.kind, 3) {
+                self.add_forces(&local, point, &mut found);
+            }
+            let rule = (rules.entry(cell.kind.vtk())).or_insert_with(|| cell.kind.tabulate(DEGREE));
+            for point in rule {
+                self.add_fields(&local, point, &mut found);
+            }
+            take(&local, &found);
+        }
+    }
+
+    fn cell(&self, block: &Block, cell: &BlockCell<'_>, initial: &InitialStress) -> LocalCell {
+        let nodes: Vec<usize> = cell.nodes().map(|node| node as usize).collect();
+        let places: Vec<[f64; 2]> = (nodes.iter())
+            .map(|&node| self.place(&block.points()[node]))
+            .collect();
+        let q = std::array::from_fn(|radius| {
+            let distances = places.iter().map(|[x, y]| x.hypot(*y));
+            distances
+                .map(|distance| self.weight(radius, distance))
+                .collect()
+        });
+        let work = std::array::from_fn(|radius| {
+            let q: &Vec<f64> = &q[radius];
+            let of_nodes = nodes.iter().zip(&places).zip(q);
+            let work = of_nodes.map(|((&node, &place), &q)| {
+                let on_face = self.on_faces.get(&block.subdomain.node_tags[node]);
+                on_face.map_or_else(|| self.work(q, place), |of_radii| of_radii[radius])
+            });
+            work.collect()
+        });
+        let stress = |&node: &usize| initial.nodes.get(node).map(|stress| self.turned(stress));
+        LocalCell {
+            kind: cell.kind,
+            has_modes: has_modes(&cell.kind, &self.material),
+            points: places.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
+            initial: nodes.iter().filter_map(stress).collect(),
+            nodes,
+            q,
+            work,
+        }
+    }
+
+    /// Appends the amplitudes of incompatible modes to the displacements of a cell that has some.
+    fn append_modes(&self, cell: &LocalCell, u: &mut Vec<[f64; 2]>) {
+        if cell.has_modes {
+            let of_nodes = u.concat();
+            let modes = amplitudes(&cell.kind, &cell.points, &self.material, &of_nodes);
+            u.extend(modes.as_chunks().0);
+        }
+    }
+
+    /// A stress (XX, YY, ZZ, XY, YZ, XZ) in the frame of the tip, (xx, yy, xy).
+    fn turned(&self, stress: &[f64; 6]) -> Vector3<f64> {
+        let [c, s, _] = self.tip.direction;
+        let [xx, yy, _, xy, ..] = *stress;
+        Vector3::new(
+            c * c * xx + s * s * yy + 2.0 * c * s * xy,
+            s * s * xx + c * c * yy - 2.0 * c * s * xy,
+            c * s * (yy - xx) + (c * c - s * s) * xy,
+        )
+    }
+
+    /// Subtracts Σ f_j · W_j at a point, which is ∫ σ : ∇W.
+    fn add_forces(&self, cell: &LocalCell, reference: &TabulatedPoint, found: &mut [[OfCell; 2]]) {
+        let point = LocalPoint::new(cell, reference);
+        for (found, work) in found.iter_mut().zip(&cell.work) {
+            for (mode, found) in found.iter_mut().enumerate() {
+                let mut slope = Gradient::default();
+                for (g, work) in point.at.gradients.iter().zip(work) {
+                    for (slope, work) in slope.iter_mut().zip(work[mode]) {
+                        *slope = [slope[0] + work * g[0], slope[1] + work * g[1]];
+                    }
+                }
+                let stress = tensor(&self.field.stress(&slope));
+                point.add(-1.0, &stress, found);
+                found.constant -= point.at.weight * point.initial.dot(&strain(&slope));
+            }
+        }
+    }
+
+    /// Adds ∫ (σ_ij a_i,1 + s_ij u_i,1 − σ:e δ_1j) q,_j − ∫ e:σ⁰,₁ q at a point.
+    fn add_fields(&self, cell: &LocalCell, reference: &TabulatedPoint, found: &mut [[OfCell; 2]]) {
+        let is_flat = |q: &Vec<f64>| q.iter().all(|x| *x == q[0]);
+        if cell.initial.is_empty() && cell.q[..found.len()].iter().all(is_flat) {
+            return;
+        }
+        let point = LocalPoint::new(cell, reference);
+        let shape = || reference.shape.iter();
+        let [x, y] =
+            [0, 1].map(|d| -> f64 { shape().zip(&cell.points).map(|(n, x)| n * x[d]).sum() });
+        for mode in 0..2 {
+            let near = self.field.gradient(mode, x.hypot(y), y.atan2(x));
+            let (stress, near_strain) = (self.field.stress(&near), strain(&near));
+            let s = tensor(&stress);
+            for (found, of_nodes) in found.iter_mut().zip(&cell.q) {
+                let found = &mut found[mode];
+                let mut q = [0.0; 2];
+                for (g, of_node) in point.at.gradients.iter().zip(of_nodes) {
+                    q = [q[0] + of_node * g[0], q[1] + of_node * g[1]];
+                }
+                // The displacement gradient whose work with σ is σ_ij a_i,1 q,_j.
+                let grown = near.map(|of| q.map(|q| of[0] * q));
+                let of_stress = tensor(&self.field.stress(&grown));
+                let factor: Gradient = std::array::from_fn(|i| {
+                    let flux = s[i][0] * q[0] + s[i][1] * q[1];
+                    [
+                        of_stress[i][0] + flux - s[i][0] * q[0],
+                        of_stress[i][1] - s[i][1] * q[0],
+                    ]
+                });
+                point.add(1.0, &factor, found);
+                let q_here: f64 = shape().zip(of_nodes).map(|(n, q)| n * q).sum();
+                let of_initial = point.initial.dot(&(strain(&grown) - q[0] * near_strain));
+                let of_slope = q_here * near_strain.dot(&point.initial_slope);
+                found.constant += point.at.weight * (of_initial - of_slope);
+            }
+        }
+    }
+}
+
+/// A point of a cell.
+struct LocalPoint {
+    at: PointGradients<2, 3, MAX_PLANE_NODES>,
+    /// σ⁰ (Pa), (xx, yy, xy).
+    initial: Vector3<f64>,
+    /// σ⁰,₁ (Pa/m).
+    initial_slope: Vector3<f64>,
+}
+
+impl LocalPoint {
+    fn new(cell: &LocalCell, reference: &TabulatedPoint) -> Self {
+        let mut at = PointGradients::new(reference, &cell.points);
+        if cell.has_modes {
+            at = at.with_modes(reference, &cell.points);
+        }
+        let (mut initial, mut initial_slope) = (Vector3::zeros(), Vector3::zeros());
+        for ((stress, n), g) in cell.initial.iter().zip(&reference.shape).zip(&at.gradients) {
+            initial += *n * stress;
+            initial_slope += g[0] * stress;
+        }
+        Self {
+            at,
+            initial,
+            initial_slope,
+        }
+    }
+
+    /// Adds a multiple of what is linear in u, Σ factor_ij u_i,j, at the point.
+    fn add(&self, multiple: f64, factor: &Gradient, found: &mut OfCell) {
+        let weight = multiple * self.at.weight;
+        for (slope, g) in found.slopes.iter_mut().zip(&self.at.gradients) {
+            for (slope, row) in slope.iter_mut().zip(factor) {
+                *slope += weight * (row[0] * g[0] + row[1] * g[1]);
+            }
+        }
+    }
+}
+
+fn tensor(stress: &Vector3<f64>) -> Gradient {
+    [[stress[0], stress[2]], [stress[2], stress[1]]]
+}
+
+#[cfg(test)]
+mod tests;

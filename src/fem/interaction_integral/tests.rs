@@ -1,0 +1,156 @@
+use std::f64::consts::PI;
+
+use contact_dd_partition::crack_tip::FaceFacet;
+use contact_dd_partition::element::Elements;
+use contact_dd_partition::problem::Subdomain;
+use nalgebra::Vector2;
+
+use super::*;
+
+/// Number of rings and sectors around a tip.
+const RINGS: usize = 24;
+const SECTORS: usize = 40;
+
+/// A tip whose crack points to 30°, in a disc of 1 m around (2, 1).
+fn tip() -> CrackTip {
+    let (sin, cos) = (PI / 6.0).sin_cos();
+    let ring = |i: usize| i as f64 / RINGS as f64;
+    let node = |i: usize, j: usize| match i {
+        0 => 0,
+        _ => (1 + (i - 1) * (SECTORS + 1) + j) as i64,
+    };
+    let facets = [0, SECTORS].into_iter().flat_map(|j| {
+        (0..RINGS).map(move |i| FaceFacet {
+            is_upper: j > 0,
+            nodes: [node(i, j), node(i + 1, j), -1],
+            distances: [ring(i), ring(i + 1), ring(i + 1)],
+        })
+    });
+    CrackTip {
+        name: "tip".into(),
+        tag: 0,
+        body: 0,
+        material: 0,
+        position: [2.0, 1.0, 0.0],
+        direction: [cos, sin, 0.0],
+        radius: 0.9,
+        facets: facets.collect(),
+    }
+}
+
+/// Rings of quadrilaterals around it, within them triangles; tags are the numbers of nodes.
+fn block(tip: &CrackTip) -> Block {
+    let mut points = vec![tip.position];
+    for i in 1..=RINGS {
+        for j in 0..=SECTORS {
+            let angle = 2.0 * PI * j as f64 / SECTORS as f64 - PI + PI / 6.0;
+            let radius = i as f64 / RINGS as f64;
+            points.push([2.0 + radius * angle.cos(), 1.0 + radius * angle.sin(), 0.0]);
+        }
+    }
+    let mut cells = Elements::default();
+    let node = |i: usize, j: usize| (1 + (i - 1) * (SECTORS + 1) + j) as u32;
+    for j in 0..SECTORS {
+        cells.push(ElementKind::Triangle3, &[0, node(1, j), node(1, j + 1)]);
+        for i in 1..RINGS {
+            let corners = [
+                node(i, j),
+                node(i + 1, j),
+                node(i + 1, j + 1),
+                node(i, j + 1),
+            ];
+            cells.push(ElementKind::Quad4, &corners);
+        }
+    }
+    Block {
+        subdomain: Subdomain {
+            index: 0,
+            body: 0,
+            node_tags: (0..points.len() as i64).collect(),
+            cell_material: vec![0; cells.len()],
+            points,
+            cells,
+            supports: Vec::new(),
+            springs: Vec::new(),
+            forces: Vec::new(),
+            initial_stress: InitialStress::default(),
+            interface: Vec::new(),
+            steps: Vec::new(),
+        },
+        interface: Vec::new(),
+        slides: BTreeMap::new(),
+        dim: 2,
+    }
+}
+
+fn material(values: [[f64; 3]; 3]) -> Material {
+    Material {
+        name: "test".into(),
+        stiffness: values.into(),
+        out_of_plane: None,
+        poisson: None,
+        has_incompatible_modes: false,
+    }
+}
+
+fn isotropic() -> Material {
+    material([[3.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 1.0]])
+}
+
+fn orthotropic() -> Material {
+    material([[9.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 0.8]])
+}
+
+/// K of a displacement of the plane, for all radii.
+fn factors(
+    material: &Material,
+    u: impl Fn(&TipDisc<'_>, [f64; 2]) -> [f64; 2],
+    initial: impl Fn([f64; 2]) -> [f64; 6],
+) -> [Vector2<f64>; RADII.len()] {
+    let tip = tip();
+    let block = block(&tip);
+    let disc = TipDisc::new(&tip, material).unwrap();
+    let points = block.points().iter();
+    let u: Vec<f64> = (points.clone().map(|x| u(&disc, [x[0], x[1]])))
+        .flatten()
+        .collect();
+    let initial = InitialStress {
+        cells: Vec::new(),
+        nodes: points.map(|x| initial([x[0], x[1]])).collect(),
+    };
+    let integrals = disc.integrals(&block, &u, &initial).unwrap();
+    let h = disc.field.compliance().try_inverse().unwrap();
+    integrals.map(|m| 0.5 * h * Vector2::from(m))
+}
+
+#[test]
+fn uniform_stress_with_its_tractions_on_the_faces_and_turned_bodies_have_none() {
+    let none = |_: [f64; 2]| [0.0; 6];
+    for material in [isotropic(), orthotropic()] {
+        for gradient in [
+            [[1.0, 0.0], [0.0, 0.0]],
+            [[0.0, 0.0], [0.0, 1.0]],
+            [[0.0, 1.0], [1.0, 0.0]],
+            [[0.0, 1.0], [-1.0, 0.0]],
+        ] {
+            let u = |_: &TipDisc<'_>, x: [f64; 2]| {
+                gradient.map(|of: [f64; 2]| of[0] * x[0] + of[1] * x[1])
+            };
+            let k = factors(&material, u, none);
+            assert!(k.iter().all(|k| k.norm() < 2e-3), "{gradient:?}: {k:?}");
+        }
+        let stress = |_: [f64; 2]| [1.0, -2.0, 0.0, 0.5, 0.0, 0.0];
+        let k = factors(&material, |_, _| [0.0; 2], stress);
+        assert!(k.iter().all(|k| k.norm() < 2e-3), "{k:?}");
+    }
+}
+
+#[test]
+fn what_expands_freely_has_none() {
+    // u of the temperature x, by which the material expands alike in all directions: ε = x, 0 in shear.
+    let u = |_: &TipDisc<'_>, [x, y]: [f64; 2]| [0.5 * (x * x - y * y), x * y];
+    let material = isotropic();
+    let stress = |[x, _]: [f64; 2]| [-4.0 * x, -4.0 * x, 0.0, 0.0, 0.0, 0.0];
+    let k = factors(&material, u, stress);
+    assert!(k.iter().all(|k| k.norm() < 5e-3), "{k:?}");
+}

@@ -1,0 +1,197 @@
+//! Stress intensity factors of crack tips.
+
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+
+use crate::support::blocks::{Blocks, moved};
+use crate::support::close::close;
+use crate::support::scenes::model;
+use crate::support::solution::Solution;
+use crate::support::solver::{Case, solve};
+use crate::support::sorts::sort;
+use crate::support::validation::gather;
+
+/// Pressure on faces, or tension far away (Pa).
+const LOAD: f64 = 1e7;
+
+/// A plate of 6 m × 6 m with a crack of `length` along x from its left side on, in cells of a kind, so many times finer.
+fn plate(length: f64, cells: &str, finer: usize) -> Mesh {
+    let graded = |s: f64| s.powi(3);
+    let x = move |column: &str, s: f64| match column {
+        "crack" => length * (1.0 - graded(1.0 - s)),
+        _ => length + (6.0 - length) * graded(s),
+    };
+    let mut blocks = Blocks::new();
+    for column in ["crack", "rest"] {
+        blocks = blocks
+            .mapped(
+                &format!("{column} below"),
+                [8 * finer, 6 * finer],
+                |[s, t]| [x(column, s), -3.0 * graded(1.0 - t)],
+            )
+            .mapped(
+                &format!("{column} above"),
+                [8 * finer, 6 * finer],
+                |[s, t]| [x(column, s), 3.0 * graded(t)],
+            );
+    }
+    let blocks = blocks.glued(|x, y| y != 0.0 || x > length - 1e-9);
+    let mut mesh = sort(cells).of(&blocks.mesh);
+    let pieces = ["crack below", "crack above", "rest below", "rest above"];
+    gather(&mut mesh, "plate", &pieces);
+    mesh
+}
+
+const ISOTROPIC: &str = "{young = 25e9, poisson = 0.25}";
+const ORTHOTROPIC: &str = "{stiffness = [[90e9, 8e9, 2e9], [8e9, 30e9, -1e9], [2e9, -1e9, 9e9]], out_of_plane = [5e9, 5e9, 0]}";
+
+/// The plate in a material under these loads.
+fn loaded(mesh: Mesh, material: &str, loads: &str) -> Model {
+    let text = format!(
+        "plane = 'strain'
+        materials.rock = {material}
+        bodies.plate.material = 'rock'
+        [[contact]]
+        name = 'crack'
+        sides = ['crack below top', 'crack above bottom']
+        gap = 0
+        {loads}"
+    );
+    model(&text, mesh)
+}
+
+fn pressure(on: &str, value: f64) -> String {
+    format!("[[pressure]]\non = [{on}]\nvalue = {value:e}\n")
+}
+
+const FACES: &str = "'crack below top', 'crack above bottom'";
+const FAR: &str = "'crack below bottom', 'rest below bottom', 'crack above top', 'rest above top'";
+
+/// The factors of the only tip.
+fn factors(solution: &Solution) -> [f64; 2] {
+    let tips = solution.stress_intensity();
+    assert_eq!(tips.len(), 1);
+    tips[0]
+}
+
+/// The stress of the uncracked plate, uniform, is the difference of both.
+#[test]
+fn pressure_on_the_faces_does_what_tension_far_away_does() {
+    for material in [ISOTROPIC, ORTHOTROPIC] {
+        for (cells, slack) in [("quad4", 5e-3), ("triangle6", 1e-3)] {
+            let solved =
+                |loads: &str| factors(&solve(&loaded(plate(3.0, cells, 1), material, loads), 4));
+            let [inside, outside] = [
+                solved(&pressure(FACES, LOAD)),
+                solved(&pressure(FAR, -LOAD)),
+            ];
+            let size = outside[0].hypot(outside[1]);
+            for (one, other) in inside.into_iter().zip(outside) {
+                close(one, other, slack * size);
+            }
+        }
+    }
+}
+
+/// The strain energy (J/m).
+fn strain_energy(solution: &Solution) -> f64 {
+    let norm = solution.report["error_estimate"]["energy_norm"].as_f64();
+    0.5 * norm.unwrap().powi(2)
+}
+
+#[test]
+fn the_energy_that_is_released_is_that_by_which_the_potential_falls() {
+    for (material, cells, slack) in [
+        (ISOTROPIC, "triangle6", 2e-3),
+        (ORTHOTROPIC, "triangle6", 2e-3),
+        (ISOTROPIC, "quad4", 1e-2),
+    ] {
+        let off = |finer: usize| {
+            let at = |length: f64| {
+                let loads = pressure(FAR, -LOAD);
+                solve(&loaded(plate(length, cells, finer), material, &loads), 4)
+            };
+            let rate = &at(3.0).report["crack_tips"][0]["energy_release_rate"];
+            // Loads that don't change do twice the work that is stored.
+            let released = (strain_energy(&at(3.02)) - strain_energy(&at(2.98))) / 0.04;
+            (rate.as_f64().unwrap() / released - 1.0).abs()
+        };
+        let [coarse, fine] = [1, 2].map(off);
+        assert!(
+            fine < slack && fine < 0.7 * coarse,
+            "{cells}: {coarse:e}, {fine:e}"
+        );
+    }
+}
+
+/// Shear of this size along a direction, all around the plate.
+fn shear(size: f64, [c, s]: [f64; 2]) -> String {
+    let sides = [
+        ("'crack above top', 'rest above top'", [c, s]),
+        ("'crack below bottom', 'rest below bottom'", [-c, -s]),
+        ("'rest below right', 'rest above right'", [-s, c]),
+        ("'crack below left', 'crack above left'", [s, -c]),
+    ];
+    let loads = sides.map(|(on, along)| {
+        let [x, y] = along.map(|part| size * part);
+        format!("[[traction]]\non = [{on}]\nvalue = [{x:e}, {y:e}]\n")
+    });
+    loads.concat()
+}
+
+#[test]
+fn factors_are_the_same_wherever_the_plate_lies_and_sliding_is_turned_round_in_a_mirror() {
+    let plate = || plate(3.0, "quad9", 1);
+    let solved = |mesh: Mesh, loads: &str| factors(&solve(&loaded(mesh, ISOTROPIC, loads), 4));
+    let first = solved(plate(), &shear(LOAD, [1.0, 0.0]));
+    // What lies to the left of the crack's direction is pulled along it.
+    assert!(first[1] > 0.0);
+    let [c, s] = [0.6, 0.8];
+    let turned = moved(plate(), |[x, y]| [c * x - s * y + 5.0, s * x + c * y]);
+    let turned = solved(turned, &shear(LOAD, [c, s]));
+    let mirrored = solved(plate(), &shear(-LOAD, [1.0, 0.0]));
+    for (other, sense) in [(turned, 1.0), (mirrored, -1.0)] {
+        close(other[0], first[0], 1e-9 * first[1]);
+        close(other[1], sense * first[1], 1e-9 * first[1]);
+    }
+}
+
+#[test]
+fn factors_have_the_same_bits_on_any_number_of_ranks_and_none_are_there_without_stresses() {
+    let model = loaded(plate(3.0, "quad4", 1), ISOTROPIC, &pressure(FACES, LOAD));
+    let case = Case::of(&model, 6);
+    let tips = |ranks: usize| {
+        let ended = case.run_on(ranks, &[]);
+        assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
+        assert!(ended.stdout.contains("crack, tip 1"), "{}", ended.stdout);
+        Solution::read(&case.result()).report["crack_tips"].clone()
+    };
+    let alone = tips(0);
+    assert_eq!(alone[0]["tip"], "crack, tip 1");
+    for ranks in [2, 3] {
+        assert_eq!(tips(ranks), alone);
+    }
+    assert_eq!(case.run(&["--no-stress"]).code(), 0);
+    let without = Solution::read_report(&case.result());
+    assert_eq!(without["crack_tips"].as_array().unwrap().len(), 0);
+}
+
+#[test]
+fn a_mesh_that_is_too_coarse_at_a_tip_is_warned_of() {
+    let blocks = Blocks::new()
+        .rectangle("crack below", [0.0, 1.0], [-1.0, 0.0], [2, 2])
+        .rectangle("crack above", [0.0, 1.0], [0.0, 1.0], [2, 2])
+        .rectangle("rest below", [1.0, 2.0], [-1.0, 0.0], [2, 2])
+        .rectangle("rest above", [1.0, 2.0], [0.0, 1.0], [2, 2])
+        .glued(|x, y| y != 0.0 || x > 1.0 - 1e-9);
+    let mut mesh = blocks.mesh;
+    let pieces = ["crack below", "crack above", "rest below", "rest above"];
+    gather(&mut mesh, "plate", &pieces);
+    let model = loaded(mesh, ISOTROPIC, &pressure(FACES, LOAD));
+    assert!(model.tips.is_empty());
+    let warned = model
+        .warnings
+        .iter()
+        .any(|w| w.contains("1 crack tip without stress intensity"));
+    assert!(warned, "{:?}", model.warnings);
+}
