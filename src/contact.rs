@@ -4,8 +4,10 @@
 
 pub mod active_equalities;
 pub mod active_set;
+pub mod dependence;
 pub mod dependent;
 pub mod dual;
+pub mod exchange;
 pub mod friction;
 pub mod interior_point;
 pub mod jumps;
@@ -16,5 +18,6 @@ pub mod newton;
 pub mod open_factor;
 pub mod pair;
 pub mod patch;
+pub mod projection;
 pub mod status;
 pub mod tangent;

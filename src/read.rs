@@ -12,7 +12,6 @@ use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::{Catalog, Subdomain, trial};
 
 use crate::comm::{Comm, is_asked_to_stop};
-use crate::contact::limits::Limits;
 use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
@@ -107,25 +106,6 @@ pub fn collect_groups(
     };
     let groups: Result<_, InputError> = described.into_iter().map(group).collect();
     comm.agree(groups.map_err(|error| Failure::from(file.refuse(error))))
-}
-
-/// Whether the limits of some contact group have linearly dependent rows, D t ≤ d: conditions on combinations of others'
-/// jumps, or with friction on a jump that another condition has, too. Collective.
-pub fn depend_on_each_other(
-    comm: &Comm,
-    plan: &Plan,
-    groups: &BTreeMap<usize, ContactGroup>,
-) -> bool {
-    let depends = groups.iter().any(|(&g, group)| {
-        let node = &plan.tree.nodes[plan.groups[g].node];
-        group.jumps(&node.eliminated).map_or(true, |jumps| {
-            // Which rows there are doesn't depend on the gaps.
-            let (friction, gaps) = (group.friction(), vec![0.0; jumps.of.len()]);
-            let limits = Limits::new(jumps.pivots.len(), &jumps.of, &gaps, &friction, 0.0);
-            !limits.rows.is_empty()
-        })
-    });
-    comm.decide(comm.collect(&depends).contains(&true))
 }
 
 /// The subdomains of `rank`, those that follow one another in the file read at once.

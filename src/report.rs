@@ -181,10 +181,8 @@ fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
         "it goes with --method newton"
     } else if totals.catalog.has_friction() && settings.second_start {
         "--second-start solves for all conditions at once"
-    } else if totals.plan.merging == Merging::Clusters {
-        "the problem file has one cluster"
     } else {
-        "some contact conditions depend on others"
+        "the problem file has one cluster"
     };
     Some(format!(
         "--interface iterative: {why}; the interface problem was solved directly"

@@ -6,6 +6,7 @@
 
 mod active_set;
 pub mod contact;
+mod front_jumps;
 pub mod fronts;
 mod operator;
 mod problem;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::jumps::NoUnknown;
 use crate::contact::laws::Iterate;
 use crate::context::Context;
-use crate::context::hierarchy::jumps;
+use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, JumpRows};
 use crate::schur::condensed::InterfaceDof;
@@ -17,11 +17,11 @@ use crate::schur::substitution::Replaced;
 #[derive(Clone, Debug)]
 pub struct GroupBetween {
     rows: JumpRows,
-    /// The normal jumps, t = b·x.
+    /// The limits: jumps t = b·x, and dependent rows D t = b·x.
     terms: Vec<Vec<(InterfaceDof, f64)>>,
-    /// The open ones among the jumps.
+    /// Which limits are open.
     pub open: Vec<bool>,
-    /// The unknowns that closed jumps replace.
+    /// The unknowns that closed limits replace.
     replaced: Vec<Replaced>,
 }
 
@@ -31,7 +31,7 @@ impl GroupBetween {
     /// # Errors
     /// A contact point that nothing can be replaced for.
     pub fn new(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Self, Failure> {
-        let rows = group.rows_of(&jumps(context, g, group)?);
+        let rows = group.rows_of(&resting_limits(context, g, group)?);
         Ok(Self {
             terms: group.terms_of(&rows),
             rows,
@@ -75,7 +75,7 @@ impl GroupBetween {
         }
     }
 
-    /// The constants of what is tied, where the closed normal jumps have these `values`.
+    /// The constants of what is tied, where the closed limits have these `values`.
     pub fn constants(&self, values: &[f64]) -> Vec<(InterfaceDof, f64)> {
         let constant = |replaced: &Replaced| {
             let terms = replaced.jumps.iter().map(|&(t, c)| c * values[t]);
@@ -84,14 +84,14 @@ impl GroupBetween {
         self.replaced.iter().map(constant).collect()
     }
 
-    /// Loads −Bᵀλ of `forces` on its jumps.
+    /// Loads −Bᵀλ of `forces` on its limits.
     pub fn loads_of(&self, forces: &[f64]) -> Vec<(InterfaceDof, f64)> {
         let acting = forces.iter().zip(&self.terms).filter(|(f, _)| **f != 0.0);
         let loads = acting.flat_map(|(f, terms)| terms.iter().map(move |&(dof, c)| (dof, -c * f)));
         loads.collect()
     }
 
-    /// Its jumps and forces, 0 where open, for displacements and unbalanced forces at its unknowns.
+    /// The jumps and forces of its limits, 0 where open, for displacements and unbalanced forces at its unknowns.
     pub fn answer(
         &self,
         x: &BTreeMap<InterfaceDof, f64>,

@@ -198,7 +198,7 @@ impl ContactProblem<'_> {
             }
             for j in wrong {
                 if open[j] {
-                    self.close(j, open, &trial.forces);
+                    self.rows.close(j, open, &trial.forces, |_| true);
                 } else {
                     open[j] = true;
                 }
@@ -321,7 +321,7 @@ impl ContactProblem<'_> {
         let largest = t.iter().fold(self.scale, |m, t| m.max(t.abs()));
         let round_off = GAP_TOLERANCE * largest * size;
         if value <= self.bounds[i] + round_off
-            || value <= self.bounds[i] + round_off * self.amplified(i, open, trial)
+            || value <= self.bounds[i] + round_off * self.rows.amplified(i, open, &trial.equalities)
         {
             return 0.0;
         }

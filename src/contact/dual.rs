@@ -6,9 +6,7 @@
 
 use super::active_equalities::ActiveEqualities;
 use super::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE, Trial};
-
-/// Share of a condition's normal in another's below which there is none.
-const NO_SHARE: f64 = 1e-10;
+use super::dependence::first_to_vanish;
 
 impl ContactProblem<'_> {
     /// Opens the linearly dependent constraints that say nothing beyond closed ones: their gaps are what these
@@ -34,58 +32,9 @@ impl ContactProblem<'_> {
         of_jump(i) + held.sum::<f64>()
     }
 
-    /// Closes condition k; where it follows from closed ones, the one opens in exchange whose force
-    /// vanishes first as that of k grows.
-    pub(super) fn close(&self, k: usize, open: &mut [bool], forces: &[f64]) {
-        if !self.rows.is_empty()
-            && let Some(shares) = self.shares_in(k, open, &ActiveEqualities::new(self.rows, open))
-            && let Some((blocking, _)) = first_to_vanish(&shares, forces)
-        {
-            open[blocking] = true;
-        }
-        open[k] = false;
-    }
-
-    /// How much larger round-off in closed conditions is in condition k, where that follows from them.
-    pub(super) fn amplified(&self, k: usize, open: &[bool], trial: &Trial) -> f64 {
-        if self.rows.is_empty() {
-            return 0.0;
-        }
-        let shares = self
-            .shares_in(k, open, &trial.equalities)
-            .unwrap_or_default();
-        shares.iter().map(|(_, share)| share.abs()).sum()
-    }
-
     /// Whether condition i holds its sides apart, beyond round-off.
     fn presses(&self, i: usize, trial: &Trial) -> bool {
         trial.forces[i] > FORCE_TOLERANCE * self.force_scale(i, trial)
-    }
-
-    /// The multiples of closed conditions' normals that the normal of k is, if it is.
-    fn shares_in(
-        &self,
-        k: usize,
-        open: &[bool],
-        equalities: &ActiveEqualities,
-    ) -> Option<Vec<(usize, f64)>> {
-        let m = self.c.len();
-        let own = [(k, 1.0)];
-        let normal = if k < m { &own } else { self.rows.row(k - m) };
-        let of_rows = equalities.express(normal, open)?;
-        let mut of_jumps = vec![0.0; m];
-        for &(i, c) in normal {
-            of_jumps[i] += c;
-        }
-        for &(j, share) in &of_rows {
-            for &(i, c) in self.rows.row(j) {
-                of_jumps[i] -= share * c;
-            }
-        }
-        let closed = (0..m).filter(|&i| !open[i] && of_jumps[i].abs() > NO_SHARE);
-        let mut shares: Vec<_> = closed.map(|i| (i, of_jumps[i])).collect();
-        shares.extend(of_rows.into_iter().map(|(j, share)| (m + j, share)));
-        Some(shares)
     }
 
     /// Closes violated conditions one by one until there is none, starting from those of the closed
@@ -135,7 +84,7 @@ impl ContactProblem<'_> {
         let mut forces: Vec<f64> = from.forces.iter().map(|f| f.max(0.0)).collect();
         loop {
             let equalities = ActiveEqualities::new(self.rows, open);
-            if let Some(shares) = self.shares_in(k, open, &equalities) {
+            if let Some(shares) = self.rows.shares_in(k, open, &equalities) {
                 let (blocking, growth) = first_to_vanish(&shares, &forces)?;
                 for &(i, share) in &shares {
                     forces[i] = (forces[i] - growth * share).max(0.0);
@@ -167,12 +116,4 @@ impl ContactProblem<'_> {
             open[k] = true;
         }
     }
-}
-
-/// The condition whose force is the first to vanish when each loses its share of a growing force,
-/// and how far that can grow; `None` if none vanishes.
-fn first_to_vanish(shares: &[(usize, f64)], forces: &[f64]) -> Option<(usize, f64)> {
-    let losing = shares.iter().filter(|(_, share)| *share > NO_SHARE);
-    let growth = |&(i, share): &(usize, f64)| (i, forces[i].max(0.0) / share);
-    losing.map(growth).min_by(|(_, a), (_, b)| a.total_cmp(b))
 }

@@ -49,6 +49,16 @@ pub trait ContactOperator {
         part: f64,
     ) -> OnGroups<Iterate>;
 
+    /// Exchanges limits that are closed `now`, at an iterate, where they depend on each other and were closed otherwise
+    /// `before`; an operator that shares forces among such limits lets them be.
+    fn exchange(
+        &self,
+        _at: &OnGroups<Iterate>,
+        _before: &OnGroups<Statuses>,
+        _now: &mut OnGroups<Statuses>,
+    ) {
+    }
+
     /// The terms that the force of every limit is a sum of (N/m).
     fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>>;
 
@@ -213,8 +223,10 @@ pub fn newton<O: ContactOperator>(
             .iter()
             .map(|(&g, of_group)| (g, of_group.statuses.opened.clone()))
             .collect();
+        let before = statuses;
         (at, merit, statuses) =
             part_of_way(operator, laws, (at, merit), target, (look, total), settings);
+        operator.exchange(&at, &before, &mut statuses);
         for (g, opened) in opened {
             if let Some(of_group) = statuses.get_mut(&g) {
                 of_group.opened = opened;

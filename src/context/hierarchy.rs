@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::bytes::Reals;
 use crate::contact::jumps::{Jumps, NoUnknown};
+use crate::contact::limits::Limits;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;
@@ -44,6 +45,21 @@ pub enum Direction {
     Up,
     /// From the node that it was merged into to a node.
     Down,
+}
+
+/// The limits of contact group g of this rank without loads: which dependent rows there are doesn't depend on gaps.
+///
+/// # Errors
+/// A contact point that nothing can be replaced for.
+pub fn resting_limits(
+    context: &Context<'_>,
+    g: usize,
+    group: &ContactGroup,
+) -> Result<Limits, Failure> {
+    let jumps = jumps(context, g, group)?;
+    let (friction, gaps) = (group.friction(), vec![0.0; jumps.of.len()]);
+    let count = jumps.pivots.len();
+    Ok(Limits::new(count, &jumps.of, &gaps, &friction, 0.0))
 }
 
 /// The jumps of contact group g of this rank.

@@ -13,6 +13,7 @@ use super::jump_row::{NO_ROW, less, only_direction, product};
 use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
 use crate::contact::law::PointLaw;
+use crate::contact::limits::Limits;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 
@@ -38,7 +39,7 @@ pub struct Condition {
     pub is_tangential: bool,
 }
 
-/// The rows of the normal jumps of a contact group.
+/// The rows of the limits of a contact group.
 #[derive(Clone, Debug)]
 pub struct JumpRows(Vec<JumpRow>);
 
@@ -276,14 +277,15 @@ impl ContactGroup {
         Jumps::new(rows, may_go, |v| node(v).stiffness)
     }
 
-    /// The rows of normal jumps, t = b·x.
-    pub fn rows_of(&self, jumps: &Jumps) -> JumpRows {
+    /// The rows of `limits`, t = b·x and D t = b·x.
+    pub fn rows_of(&self, limits: &Limits) -> JumpRows {
         let rows = self.rows();
-        let defining = defining_conditions(&jumps.of, jumps.pivots.len());
-        JumpRows(defining.into_iter().map(|j| rows[j].clone()).collect())
+        let dependent = limits.conditions_of_limits().split_off(limits.jumps());
+        let conditions = limits.defining.iter().copied().chain(dependent);
+        JumpRows(conditions.map(|j| rows[j].clone()).collect())
     }
 
-    /// The unknowns that the `closed` jumps replace where all others are none; they keep their numbers among the `rows`
+    /// The unknowns that the `closed` limits replace where all others are none; they keep their numbers among the `rows`
     /// of all.
     ///
     /// # Errors
@@ -304,7 +306,7 @@ impl ContactGroup {
         Ok(replaced)
     }
 
-    /// The terms of every normal jump, in the words of Γ.
+    /// The terms of every limit, in the words of Γ.
     pub fn terms_of(&self, rows: &JumpRows) -> Vec<Vec<(InterfaceDof, f64)>> {
         let terms = |row: &JumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
         rows.0.iter().map(terms).collect()

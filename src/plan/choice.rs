@@ -173,19 +173,4 @@ impl ChosenPlan {
             |refusal| refusal.failure,
         ))
     }
-
-    /// The same plan where some contact conditions depend on others, which the dense matrix alone solves for. Collective.
-    ///
-    /// # Errors
-    /// There is too little memory for it.
-    pub fn of_dependent(mut self, comm: &Comm, catalog: &Catalog) -> Result<Self, Failure> {
-        self.plan.form_clusters(Merging::All);
-        self.costs = self.plan.cost_estimates(catalog, comm.size());
-        self.available = afford(comm, &self.costs, CERTAIN)?;
-        self.choice = Choice::new(
-            Merging::All,
-            "a dense matrix of all conditions: some depend on others, which takes it",
-        );
-        Ok(self)
-    }
 }

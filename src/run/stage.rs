@@ -17,7 +17,7 @@ use crate::plan::Plan;
 use crate::plan::choice::{Choice, ChosenPlan};
 use crate::plan::cluster::Merging;
 use crate::plan::cost::CostEstimate;
-use crate::read::{check_copies, collect_groups, depend_on_each_other, read_blocks};
+use crate::read::{check_copies, collect_groups, read_blocks};
 use crate::report::log::{Checked, RunLog};
 use crate::settings::Settings;
 use crate::step::state::{StepState, analyse_steps};
@@ -165,17 +165,12 @@ impl Stages<'_> {
         let Self { comm, file, .. } = *self;
         let catalog = &stage.catalog;
         phase("reading");
-        let mut chosen = ChosenPlan::new(comm, catalog, choices)?;
+        let chosen = ChosenPlan::new(comm, catalog, choices)?;
         let blocks = comm.agree(read_blocks(comm.rank(), file, &chosen.plan))?;
         if first {
             check_copies(comm, file, &blocks)?;
         }
         let groups = collect_groups(comm, file, catalog, &chosen.plan, &blocks)?;
-        if chosen.choice.merging.has_active_set()
-            && depend_on_each_other(comm, &chosen.plan, &groups)
-        {
-            chosen = chosen.of_dependent(comm, catalog)?;
-        }
         let ChosenPlan {
             choice,
             plan,

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::comm::Comm;
-use crate::contact::laws::Iterate;
+use crate::contact::active_equalities::ActiveEqualities;
+use crate::contact::laws::{ContactLaws, Iterate};
 use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::operator::ROUND_OFF;
@@ -59,6 +60,9 @@ pub(super) fn settle(
     };
     let first = steps.count();
     loop {
+        for (g, of_group) in &mut open {
+            problem.laws[g].rows.open_redundant(of_group);
+        }
         let (solution, faults) = search.step(&open, update.tolerance)?;
         let made = steps.count() - first;
         let residual = (faults.largest, faults.active, changed);
@@ -71,25 +75,43 @@ pub(super) fn settle(
             });
         }
         steps.go_on(context)?;
-        changed = Some(match update.is_of_all(faults.count) {
+        let all = update.is_of_all(faults.count);
+        changed = Some(match all {
             true => {
                 descent = Descent::default();
                 for (g, wrong) in &faults.wrong {
                     if let Some(of_group) = open.get_mut(g) {
-                        wrong.iter().for_each(|&j| of_group[j] = !of_group[j]);
+                        flip(&problem.laws[g], wrong, &solution.at[g], of_group);
                     }
                 }
                 faults.count
             }
-            false => {
-                let bounds = &problem.bounds;
-                descent.update(context, &faults.wrong, bounds, &solution.at, &mut open)
-            }
+            false => descent.update(problem, &faults.wrong, &solution.at, &mut open),
         });
+        if changed == Some(0) {
+            return Ok(Settled {
+                open,
+                solution,
+                is_right: false,
+            });
+        }
         search.last = Some(ActiveSetSolution {
             iterations: 0,
             ..solution
         });
+    }
+}
+
+/// Opens and closes what is wrong; where a limit follows from closed ones, it closes in the place of one of them.
+fn flip(laws: &ContactLaws<'_>, wrong: &[usize], at: &Iterate, open: &mut [bool]) {
+    for &j in wrong {
+        match open[j] {
+            true => {
+                let may_open = |i: usize| !laws.is_tangential[i];
+                laws.rows.close(j, open, &at.forces, may_open);
+            }
+            false => open[j] = true,
+        }
     }
 }
 
@@ -195,10 +217,15 @@ impl Faults {
             let sticks = &problem.laws[&g].is_tangential;
             for (j, &is_open) in open[&g].iter().enumerate().filter(|&(j, _)| !sticks[j]) {
                 let Iterate { jumps, forces } = &solution.at[&g];
-                let excess = match is_open {
+                let mut excess = match is_open {
                     true => (jumps[j] - problem.bounds[&g][j]) / scales[1],
                     false => -forces[j] / scales[0],
                 };
+                let rows = problem.laws[&g].rows;
+                if is_open && excess > least && !rows.is_empty() {
+                    let equalities = ActiveEqualities::new(rows, &open[&g]);
+                    excess /= rows.amplified(j, &open[&g], &equalities).max(1.0);
+                }
                 active += usize::from(!is_open);
                 largest = largest.max(excess);
                 if excess > least {

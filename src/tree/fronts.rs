@@ -7,11 +7,14 @@ use faer::Mat;
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::condense::Condensation;
+use crate::contact::dependent::DependentConstraints;
 use crate::context::Context;
+use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
 use crate::schur::condensed::Condensed;
 use crate::schur::merge::{Merge, OwnJumps, Spare};
 use crate::schur::substitution::Replaced;
+use crate::tree::front_jumps::FrontJumps;
 
 /// The spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely without
 /// the contacts that are open: the next active set closes what stops it.
@@ -26,8 +29,8 @@ pub(super) struct ActiveSetFront {
     pub(super) merge: Merge,
     /// S of the closed ones against them and what is kept, a column each from the diagonal on.
     pub(super) held: Mat<f64>,
-    /// Which are open.
-    pub(super) open: Vec<bool>,
+    /// Its jumps, and which limits of them are open.
+    pub(super) jumps: FrontJumps,
 }
 
 /// The fronts of this rank above all contact, and what they are merged from.
@@ -41,6 +44,8 @@ pub struct ActiveSetFronts {
     /// S of those that nothing here is above.
     pub(super) merge_roots: BTreeMap<usize, ClusterSchur>,
     replaced: BTreeMap<usize, Vec<Replaced>>,
+    /// The dependent rows of every contact group of this rank.
+    rows: BTreeMap<usize, DependentConstraints>,
     spring: f64,
     spare: Spare,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
@@ -78,12 +83,15 @@ impl ActiveSetFronts {
             .filter(|group| plan.node_owners[group.node] == context.comm.rank());
         let replaced = own.map(|group| Ok((group.node, condensation.replaced(group.node)?)));
         let replaced = context.comm.agree(replaced.collect())?;
+        let rows = context.groups.iter();
+        let rows = rows.map(|(&g, group)| Ok((g, resting_limits(context, g, group)?.rows)));
         let mut fronts = Self {
             nodes,
             fronts: BTreeMap::new(),
             merged: BTreeMap::new(),
             merge_roots: BTreeMap::new(),
             replaced,
+            rows: context.comm.agree(rows.collect())?,
             spring: 0.0,
             spare: Spare::default(),
             smallest_pivot: f64::INFINITY,
@@ -280,7 +288,7 @@ impl ActiveSetFronts {
             let front = self
                 .fronts
                 .get(&plan.groups[g].node)
-                .map(|front| &front.open);
+                .map(|front| &front.jumps.open);
             let between = || self.bddc.as_ref().and_then(|bddc| bddc.open(g));
             front.or_else(between) != Some(&open[&g])
         };
@@ -336,10 +344,11 @@ impl ActiveSetFronts {
         };
         let none = Vec::new();
         let replaced = self.replaced.get(&v).unwrap_or(&none);
-        let open = plan.group_of(v).map_or_else(Vec::new, |g| open[&g].clone());
+        let of_group = |g: usize| FrontJumps::new(&self.rows[&g], &open[&g]);
+        let jumps = plan.group_of(v).map(of_group).unwrap_or_default();
         let own = OwnJumps {
-            replaced,
-            open: &open,
+            replaced: &jumps.replaced(replaced),
+            open: &jumps.open_in_front(),
             spring: self.spring,
         };
         let (merge, whole) = Merge::of(&children, &node.eliminated, own, &mut self.spare, par)
@@ -370,7 +379,7 @@ impl ActiveSetFronts {
             smallest_pivot: whole.smallest_pivot,
         };
         self.smallest_pivot = self.smallest_pivot.min(whole.smallest_pivot);
-        self.fronts.insert(v, ActiveSetFront { merge, held, open });
+        self.fronts.insert(v, ActiveSetFront { merge, held, jumps });
         Ok(Some(condensed))
     }
 }

@@ -84,7 +84,9 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             .collect();
         let open = |(&g, statuses): (&usize, &Statuses)| {
             let known = all_laws[&g].known(statuses);
-            (g, known.iter().map(|known| !known).collect())
+            let mut open: Vec<bool> = known.iter().map(|known| !known).collect();
+            all_laws[&g].rows.open_redundant(&mut open);
+            (g, open)
         };
         let mut open = statuses.iter().map(open).collect();
         // What slips is held from then on, as its directions turn with springs.
@@ -139,6 +141,17 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             (g, Iterate { jumps, forces })
         };
         from.iter().map(of_group).collect()
+    }
+
+    fn exchange(
+        &self,
+        at: &OnGroups<Iterate>,
+        before: &OnGroups<Statuses>,
+        now: &mut OnGroups<Statuses>,
+    ) {
+        for (g, now) in now {
+            self.problem.laws[g].exchange(&at[g], &before[g], now);
+        }
     }
 
     fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>> {

@@ -111,7 +111,7 @@ impl ActiveSetFronts {
                 between.clusters
             }
         };
-        self.recover(context, &condensed, below, &mut solution);
+        self.recover(context, &condensed, (below, loads), &mut solution);
         solution
     }
 
@@ -136,9 +136,11 @@ impl ActiveSetFronts {
                 let children = plan.tree.nodes[v].children.iter();
                 let of_children: Vec<&[f64]> = children.map(|child| &arrived[child][..]).collect();
                 let group = plan.group_of(v);
-                let forces = group.map_or_else(Vec::new, |g| forces_on(&loads, g, &front.open));
+                let forces = group.and_then(|g| loads.forces.get(&g));
+                let forces = forces.map_or_else(Vec::new, |of| front.jumps.open_forces(of));
                 let load = front.merge.condense(&of_children, &forces);
-                let values = front.closed_values(group.map(|g| &loads.prescribed[&g][..]));
+                let values = group.map(|g| front.jumps.closed_values(&loads.prescribed[&g]));
+                let values = values.unwrap_or_default();
                 let closed = values.len();
                 let mut kept = load.boundary()[closed..].to_vec();
                 for (j, value) in values.iter().enumerate() {
@@ -153,12 +155,12 @@ impl ActiveSetFronts {
         (condensed, arrived)
     }
 
-    /// Recovers what the fronts have eliminated, from the unknowns `below` the roots on. Collective.
+    /// Recovers what the fronts have eliminated under these `loads`, from the unknowns `below` the roots on. Collective.
     fn recover(
         &self,
         context: &Context<'_>,
         condensed: &CondensedLoads,
-        mut below: BTreeMap<usize, Vec<f64>>,
+        (mut below, loads): (BTreeMap<usize, Vec<f64>>, ClusterLoads<'_>),
         solution: &mut ActiveSetSolution,
     ) {
         let plan = context.plan;
@@ -172,8 +174,10 @@ impl ActiveSetFronts {
                 let (x, jumps) = front.merge.recover(load, &boundary);
                 of_children.extend(plan.tree.nodes[v].children.iter().copied().zip(x));
                 if let Some(g) = plan.group_of(v) {
-                    let forces = front.forces(load, &boundary);
-                    solution.at.insert(g, Iterate { jumps, forces });
+                    let balance = front.balance(load, &boundary);
+                    let given = loads.forces.get(&g).map_or(&[][..], Vec::as_slice);
+                    let at = front.jumps.answer(jumps, balance, given);
+                    solution.at.insert(g, at);
                 }
             }
             for &child in &plan.tree.nodes[v].children {
@@ -186,24 +190,10 @@ impl ActiveSetFronts {
     }
 }
 
-/// The forces on the open jumps of group g.
-fn forces_on(loads: &ClusterLoads<'_>, g: usize, open: &[bool]) -> Vec<f64> {
-    let all = loads.forces.get(&g).into_iter().flatten().zip(open);
-    all.filter(|(_, open)| **open).map(|(f, _)| *f).collect()
-}
-
 impl ActiveSetFront {
-    /// The values of its closed normal jumps, of those that all of its own would have.
-    fn closed_values(&self, prescribed: Option<&[f64]>) -> Vec<f64> {
-        let all = prescribed.unwrap_or_default().iter().zip(&self.open);
-        all.filter(|(_, open)| !**open)
-            .map(|(value, _)| *value)
-            .collect()
-    }
-
     /// The forces on its own normal jumps, 0 where open: what the load leaves of them at the unknowns `boundary`,
     /// closed normal jumps and what is kept.
-    fn forces(&self, load: &CondensedLoad, boundary: &[f64]) -> Vec<f64> {
+    fn balance(&self, load: &CondensedLoad, boundary: &[f64]) -> Vec<f64> {
         let closed = self.held.ncols();
         let mut of_closed = load.boundary()[..closed].to_vec();
         for j in 0..closed {
@@ -218,6 +208,6 @@ impl ActiveSetFront {
             true => 0.0,
             false => of_closed.next().unwrap_or_default(),
         };
-        self.open.iter().map(of_jump).collect()
+        self.jumps.open_in_front().iter().map(of_jump).collect()
     }
 }

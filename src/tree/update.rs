@@ -7,9 +7,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::contact::laws::Iterate;
+use crate::contact::laws::{ContactLaws, Iterate};
 use crate::contact::newton::OnGroups;
+use crate::contact::projection::project;
 use crate::context::Context;
+use crate::tree::problem::TreeProblem;
 
 /// Tolerance of an iterative solver beside what is wrong with the active set before.
 pub(super) const LOOSE: f64 = 0.01;
@@ -57,17 +59,24 @@ impl ActiveSetUpdate {
 pub(super) struct Descent(Option<BTreeMap<usize, Vec<f64>>>);
 
 impl Descent {
-    /// Goes towards the jumps that a step `found` where those conditions were `open`, of which some are `wrong`, and
-    /// changes some; how many. Collective.
+    /// Goes towards the jumps that a step of a `problem` `found` where those limits were `open`, of which some are `wrong`,
+    /// and changes some; how many. None where rows depend on tangential jumps, that stick: no position near is known in which
+    /// nothing penetrates. Collective.
     pub fn update(
         &mut self,
-        context: &Context<'_>,
+        problem: &TreeProblem<'_>,
         wrong: &BTreeMap<usize, Vec<usize>>,
-        bounds: &BTreeMap<usize, Vec<f64>>,
         found: &OnGroups<Iterate>,
         open: &mut BTreeMap<usize, Vec<bool>>,
     ) -> usize {
-        let Context { comm, plan, .. } = *context;
+        let Context { comm, plan, .. } = *problem.context;
+        let bounds = &problem.bounds;
+        let sticks =
+            |laws: &ContactLaws<'_>| !laws.rows.is_empty() && laws.is_tangential.contains(&true);
+        let any_sticks = problem.laws.values().any(sticks);
+        if comm.decide(comm.collect(&any_sticks).contains(&true)) {
+            return 0;
+        }
         let begun = self.0.is_some();
         let all = || found.iter().map(|(&g, at)| (g, at.jumps.clone())).collect();
         let jumps = self.0.get_or_insert_with(all);
@@ -88,8 +97,12 @@ impl Descent {
             if let Some(open) = open.get_mut(g) {
                 let count = match begun {
                     true => go(of_group, &found[g].jumps, &bounds[g], open, wrong, least),
-                    // Where all that penetrates is closed none does.
-                    false => close(of_group, &bounds[g], open, wrong),
+                    false => {
+                        let rows = problem.laws[g].rows;
+                        let projected = project(rows, &bounds[g], of_group, open);
+                        // Where all else that penetrates is closed none does.
+                        projected + close(of_group, &bounds[g], open, wrong)
+                    }
                 };
                 changed.insert(*g, count);
             }
@@ -145,8 +158,10 @@ fn go(
 fn close(jumps: &mut [f64], bounds: &[f64], open: &mut [bool], wrong: &[usize]) -> usize {
     let mut count = 0;
     for &j in wrong.iter().filter(|&&j| open[j]) {
-        jumps[j] = bounds[j];
-        count += 1;
+        if jumps[j] > bounds[j] {
+            jumps[j] = bounds[j];
+            count += 1;
+        }
     }
     wrong.iter().for_each(|&j| open[j] &= jumps[j] != bounds[j]);
     count

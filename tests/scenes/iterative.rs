@@ -1,6 +1,7 @@
 //! The iterative interface solver between clusters of subdomains.
 
 mod choice;
+mod dependent;
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
 use contact_dd_partition::model::Model;
