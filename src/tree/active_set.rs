@@ -75,8 +75,7 @@ pub(super) fn settle(
             });
         }
         steps.go_on(context)?;
-        let all = update.is_of_all(faults.count);
-        changed = Some(match all {
+        changed = match update.is_of_all(faults.count) {
             true => {
                 descent = Descent::default();
                 for (g, wrong) in &faults.wrong {
@@ -84,11 +83,11 @@ pub(super) fn settle(
                         flip(&problem.laws[g], wrong, &solution.at[g], of_group);
                     }
                 }
-                faults.count
+                Some(faults.count)
             }
             false => descent.update(problem, &faults.wrong, &solution.at, &mut open),
-        });
-        if changed == Some(0) {
+        };
+        if changed.is_none() {
             return Ok(Settled {
                 open,
                 solution,

@@ -60,7 +60,7 @@ pub(super) struct Descent(Option<BTreeMap<usize, Vec<f64>>>);
 
 impl Descent {
     /// Goes towards the jumps that a step of a `problem` `found` where those limits were `open`, of which some are `wrong`,
-    /// and changes some; how many. None where rows depend on tangential jumps, that stick: no position near is known in which
+    /// and changes some; how many. `None` where rows depend on tangential jumps, that stick: no position near is known in which
     /// nothing penetrates. Collective.
     pub fn update(
         &mut self,
@@ -68,14 +68,14 @@ impl Descent {
         wrong: &BTreeMap<usize, Vec<usize>>,
         found: &OnGroups<Iterate>,
         open: &mut BTreeMap<usize, Vec<bool>>,
-    ) -> usize {
+    ) -> Option<usize> {
         let Context { comm, plan, .. } = *problem.context;
         let bounds = &problem.bounds;
         let sticks =
             |laws: &ContactLaws<'_>| !laws.rows.is_empty() && laws.is_tangential.contains(&true);
         let any_sticks = problem.laws.values().any(sticks);
         if comm.decide(comm.collect(&any_sticks).contains(&true)) {
-            return 0;
+            return None;
         }
         let begun = self.0.is_some();
         let all = || found.iter().map(|(&g, at)| (g, at.jumps.clone())).collect();
@@ -114,7 +114,7 @@ impl Descent {
             |_, count| sum += count,
         );
         comm.broadcast(&mut sum);
-        sum
+        Some(sum)
     }
 }
 
