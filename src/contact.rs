@@ -19,5 +19,6 @@ pub mod open_factor;
 pub mod pair;
 pub mod patch;
 pub mod projection;
+pub mod sharing;
 pub mod status;
 pub mod tangent;

@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::active_equalities::ActiveEqualities;
+use crate::contact::dependent::DependentConstraints;
 use crate::contact::jumps::NoUnknown;
 use crate::contact::laws::Iterate;
+use crate::contact::sharing::ForceSharing;
 use crate::context::Context;
 use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
@@ -21,8 +24,12 @@ pub struct GroupBetween {
     terms: Vec<Vec<(InterfaceDof, f64)>>,
     /// Which limits are open.
     pub open: Vec<bool>,
+    /// The dependent rows.
+    dependent: DependentConstraints,
     /// The unknowns that closed limits replace.
     replaced: Vec<Replaced>,
+    /// What these share with closed rows that follow from them.
+    sharing: ForceSharing,
 }
 
 impl GroupBetween {
@@ -31,12 +38,15 @@ impl GroupBetween {
     /// # Errors
     /// A contact point that nothing can be replaced for.
     pub fn new(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Self, Failure> {
-        let rows = group.rows_of(&resting_limits(context, g, group)?);
+        let limits = resting_limits(context, g, group)?;
+        let rows = group.rows_of(&limits);
         Ok(Self {
             terms: group.terms_of(&rows),
             rows,
             open: Vec::new(),
+            dependent: limits.rows,
             replaced: Vec::new(),
+            sharing: ForceSharing::default(),
         })
     }
 
@@ -59,7 +69,11 @@ impl GroupBetween {
         open: &[bool],
         eliminated: &[u32],
     ) -> Result<(), NoUnknown> {
-        let closed: Vec<usize> = (0..open.len()).filter(|&t| !open[t]).collect();
+        let equalities = ActiveEqualities::new(&self.dependent, open);
+        let (mut independent, m) = (open.to_vec(), open.len() - self.dependent.len());
+        (equalities.redundant.iter()).for_each(|j| independent[m + j] = true);
+        self.sharing = ForceSharing::new(&self.dependent, &independent, &equalities);
+        let closed: Vec<usize> = (0..open.len()).filter(|&t| !independent[t]).collect();
         self.replaced = group.replaced_by(&self.rows, &closed, eliminated)?;
         self.open = open.to_vec();
         Ok(())
@@ -107,6 +121,7 @@ impl GroupBetween {
                 forces[t] += c * unbalanced[&replaced.dof];
             }
         }
+        self.sharing.share(&mut forces);
         Iterate {
             jumps: self.terms.iter().map(jump).collect(),
             forces,

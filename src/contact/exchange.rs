@@ -9,6 +9,8 @@ use crate::vector::largest;
 
 /// Way beyond a bound, relative to the largest jump and bound, that is none.
 const NO_WAY: f64 = 1e-12;
+/// How often the range is halved in which a point begins to slip.
+const BISECTIONS: usize = 40;
 
 /// An exchange of limits of a group.
 struct Exchange<'a> {
@@ -50,6 +52,14 @@ impl ContactLaws<'_> {
     }
 }
 
+/// What gives way to a force that grows.
+struct Blocking {
+    /// How far that grows until then.
+    growth: f64,
+    /// The normal limit that opens, or the point that slips, with its shares.
+    gives_way: Result<usize, (usize, [f64; 2])>,
+}
+
 impl Exchange<'_> {
     /// Closes limit k, or lets it stick, in exchange for what contradicts that.
     fn close(&mut self, k: usize, now: &mut Statuses) {
@@ -59,51 +69,99 @@ impl Exchange<'_> {
             self.open[k] = false;
             return;
         };
-        let way: f64 = shares.iter().map(|&(i, c)| c * laws.bounds[i]).sum();
-        let beyond = way - laws.bounds[k];
-        let amplified: f64 = shares.iter().map(|(_, c)| c.abs()).sum();
-        let no_way = self.no_way * (1.0 + amplified);
+        let beyond = self.beyond(k, &shares);
         if laws.is_tangential[k] {
-            if beyond.abs() > no_way {
-                self.slip(k, beyond.signum(), now);
+            if beyond != 0.0 {
+                self.slip_of(k, now);
             }
             return;
         }
-        if beyond <= no_way {
-            now.closed[k] &= beyond >= -no_way;
+        if beyond <= 0.0 {
+            now.closed[k] &= beyond == 0.0;
             return;
         }
-        let room = shares.iter().filter_map(|&(i, share)| {
-            let room = self.room(i, share, now)?;
-            Some((i, share, room))
+        let opening = shares.iter().filter(|(i, _)| !laws.is_tangential[*i]);
+        let opening = opening.filter(|(_, share)| *share > NO_SHARE);
+        let opening = opening.map(|&(i, share)| Blocking {
+            growth: self.forces[i].max(0.0) / share,
+            gives_way: Ok(i),
         });
-        let Some((blocking, share, growth)) = room.min_by(|(.., a), (.., b)| a.total_cmp(b)) else {
+        let slipping = (0..laws.points.len()).filter_map(|p| self.slipping(p, &shares, now));
+        let all = opening.chain(slipping);
+        let Some(first) = all.min_by(|a, b| a.growth.total_cmp(&b.growth)) else {
             return;
         };
         for &(i, share) in &shares {
-            self.forces[i] -= growth * share;
+            self.forces[i] -= first.growth * share;
         }
-        self.forces[k] += growth;
+        self.forces[k] += first.growth;
         self.open[k] = false;
-        match laws.is_tangential[blocking] {
-            true => self.slip(blocking, -share.signum(), now),
-            false => self.open(blocking, now),
+        match first.gives_way {
+            Ok(normal) => self.open(normal, now),
+            Err((p, shares)) => {
+                let force = laws.points[p]
+                    .tangents
+                    .map(|t| t.map_or(0.0, |t| self.forces[t]));
+                let size = shares[0].hypot(shares[1]);
+                let direction = match force[0].hypot(force[1]) {
+                    0.0 => shares.map(|share| -share / size),
+                    force_size => force.map(|f| f / force_size),
+                };
+                self.slip(p, direction, beyond / size, now);
+            }
         }
     }
 
-    /// How far a force may grow of which limit i loses so large a `share`, until it opens or slips.
-    fn room(&self, i: usize, share: f64, now: &Statuses) -> Option<f64> {
-        if !self.laws.is_tangential[i] {
-            return (share > NO_SHARE).then(|| self.forces[i].max(0.0) / share);
+    /// How far limit k is beyond its bound where those are at theirs whose `shares` it is made of (m); none within round-off.
+    fn beyond(&self, k: usize, shares: &[(usize, f64)]) -> f64 {
+        let way = shares.iter().map(|&(i, c)| c * self.laws.bounds[i]);
+        let beyond = way.sum::<f64>() - self.laws.bounds[k];
+        let amplified: f64 = shares.iter().map(|(_, c)| c.abs()).sum();
+        match beyond.abs() <= self.no_way * (1.0 + amplified) {
+            true => 0.0,
+            false => beyond,
         }
-        let mut points = self.laws.points.iter();
-        let point = points.find(|point| point.limits().any(|t| t == i))?;
+    }
+
+    /// Point p if it sticks and slips as its limits lose these `shares` of a force that grows.
+    fn slipping(&self, p: usize, shares: &[(usize, f64)], now: &Statuses) -> Option<Blocking> {
+        let point = &self.laws.points[p];
+        let share = |i: usize| {
+            shares
+                .iter()
+                .find(|(j, _)| *j == i)
+                .map_or(0.0, |(_, c)| *c)
+        };
+        let own = point.tangents.map(|t| t.map_or(0.0, share));
+        if own[0].hypot(own[1]) <= NO_SHARE {
+            return None;
+        }
+        let force = point.tangents.map(|t| t.map_or(0.0, |t| self.forces[t]));
         let is_closed = point.is_closed(&now.closed);
-        let bound = point
-            .bound
-            .at(point.normal.map_or(0.0, |n| self.forces[n]), is_closed);
-        let left = bound + share.signum() * self.forces[i];
-        (share.abs() > NO_SHARE).then(|| left.max(0.0) / share.abs())
+        let bound = |normal: f64| point.bound.at(normal, is_closed);
+        let pressure = point.normal.map_or(0.0, |n| self.forces[n]);
+        let loss = point.normal.map_or(0.0, share);
+        let slips = |growth: f64| {
+            let left = [0, 1].map(|k| force[k] - growth * own[k]);
+            left[0].hypot(left[1]) > bound(pressure - growth * loss)
+        };
+        // The force is at its bound no later than where all of the bound acts against the share.
+        let size = own[0].hypot(own[1]);
+        let mut range = [0.0, (bound(pressure) + force[0].hypot(force[1])) / size];
+        while loss < 0.0 && !slips(range[1]) {
+            range[1] *= 2.0;
+            if !range[1].is_normal() {
+                return None;
+            }
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (range[0] + range[1]);
+            range[usize::from(slips(middle))] = middle;
+        }
+        Some(Blocking {
+            growth: range[1],
+            gives_way: Err((p, own)),
+        })
     }
 
     /// Opens the normal limit i, and what has no friction then.
@@ -118,18 +176,32 @@ impl Exchange<'_> {
         }
     }
 
-    /// Lets the point of the tangential limit i slip along it, ahead or back.
-    fn slip(&mut self, i: usize, sign: f64, now: &mut Statuses) {
-        for (point, status) in self.laws.points.iter().zip(&mut now.points) {
-            if let Some(k) = point.tangents.iter().position(|t| *t == Some(i)) {
-                let mut direction = [0.0; 2];
-                direction[k] = sign;
-                *status = PointStatus::Slips {
-                    direction,
-                    turning: point.turning(point.stiffness),
-                };
-                point.limits().for_each(|t| self.open[t] = true);
-            }
-        }
+    /// Lets the point of the tangential limit k slip as what its jumps are made of says.
+    fn slip_of(&mut self, k: usize, now: &mut Statuses) {
+        let rows = self.laws.rows;
+        let mut points = self.laws.points.iter();
+        let Some(p) = points.position(|point| point.limits().any(|t| t == k)) else {
+            return;
+        };
+        let equalities = ActiveEqualities::new(rows, &self.open);
+        let way = |t: usize| {
+            let shares = rows.shares_in(t, &self.open, &equalities);
+            shares.map_or(0.0, |shares| self.beyond(t, &shares))
+        };
+        let slip = self.laws.points[p].tangents.map(|t| t.map_or(0.0, way));
+        let size = slip[0].hypot(slip[1]);
+        self.slip(p, slip.map(|s| s / size), size, now);
+    }
+
+    /// Lets point p slip so far in a direction.
+    fn slip(&mut self, p: usize, direction: [f64; 2], way: f64, now: &mut Statuses) {
+        let point = &self.laws.points[p];
+        let is_closed = point.is_closed(&now.closed);
+        let pressure = point.normal.map_or(0.0, |n| self.forces[n]);
+        now.points[p] = PointStatus::Slips {
+            direction,
+            turning: point.turning(point.bound.at(pressure, is_closed) / way),
+        };
+        point.limits().for_each(|t| self.open[t] = true);
     }
 }

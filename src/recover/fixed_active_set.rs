@@ -181,9 +181,7 @@ impl<'a> FixedActiveSet<'a> {
                 laws.insert(g, of_slipping);
             }
             missing.insert(g, fixed.iter().map(FixedStatus::lacks).collect());
-            let mut of_group: Vec<bool> = fixed.iter().map(|s| !s.is_closed()).collect();
-            limits[&g].rows.open_redundant(&mut of_group);
-            open.insert(g, of_group);
+            open.insert(g, fixed.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();
         let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws, false) else {

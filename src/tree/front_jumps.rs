@@ -14,6 +14,7 @@ use std::borrow::Cow;
 use crate::contact::active_equalities::ActiveEqualities;
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::laws::Iterate;
+use crate::contact::sharing::ForceSharing;
 use crate::schur::substitution::Replaced;
 
 /// The jumps of a group with its closed rows in the place of open jumps.
@@ -25,15 +26,25 @@ pub(super) struct FrontJumps {
     pub open: Vec<bool>,
     /// The closed rows that say more than the closed jumps.
     equalities: ActiveEqualities,
+    /// What others share with closed rows that say no more.
+    sharing: ForceSharing,
 }
 
 impl FrontJumps {
     /// The jumps of a group with these dependent `rows`, of whose limits some are `open`.
     pub fn new(rows: &DependentConstraints, open: &[bool]) -> Self {
+        let equalities = ActiveEqualities::new(rows, open);
+        let mut independent = open.to_vec();
+        let m = open.len() - rows.len();
+        equalities
+            .redundant
+            .iter()
+            .for_each(|j| independent[m + j] = true);
         Self {
             rows: rows.clone(),
             open: open.to_vec(),
-            equalities: ActiveEqualities::new(rows, open),
+            sharing: ForceSharing::new(rows, &independent, &equalities),
+            equalities,
         }
     }
 
@@ -132,6 +143,7 @@ impl FrontJumps {
             *force = if *open { 0.0 } else { *force };
         }
         forces.extend(of_rows);
+        self.sharing.share(&mut forces);
         let values: Vec<f64> = (0..count).map(|j| self.rows.value(j, &jumps)).collect();
         jumps.extend(values);
         Iterate { jumps, forces }

@@ -7,6 +7,7 @@ use faer::Mat;
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::condense::Condensation;
+use crate::contact::active_equalities::ActiveEqualities;
 use crate::contact::dependent::DependentConstraints;
 use crate::context::Context;
 use crate::context::hierarchy::resting_limits;
@@ -108,6 +109,16 @@ impl ActiveSetFronts {
     /// depends on how far that goes.
     pub fn has_to_hold(&self, context: &Context<'_>) -> bool {
         self.spring > 0.0 && context.catalog.dim == 3 && context.catalog.has_friction()
+    }
+
+    /// Closes those of the slipping `limits` of group g that don't follow from what isn't `open`.
+    pub(super) fn hold(&self, g: usize, limits: impl Iterator<Item = usize>, open: &mut [bool]) {
+        let rows = &self.rows[&g];
+        for t in limits {
+            let follows = !rows.is_empty()
+                && (rows.shares_in(t, open, &ActiveEqualities::new(rows, open))).is_some();
+            open[t] = follows;
+        }
     }
 
     /// Number of coarse unknowns of the iterative interface solver, where there is one; 0 but on the root.

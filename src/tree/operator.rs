@@ -84,9 +84,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             .collect();
         let open = |(&g, statuses): (&usize, &Statuses)| {
             let known = all_laws[&g].known(statuses);
-            let mut open: Vec<bool> = known.iter().map(|known| !known).collect();
-            all_laws[&g].rows.open_redundant(&mut open);
-            (g, open)
+            (g, known.iter().map(|known| !known).collect())
         };
         let mut open = statuses.iter().map(open).collect();
         // What slips is held from then on, as its directions turn with springs.

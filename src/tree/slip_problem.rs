@@ -3,7 +3,7 @@
 //! GMRES solves it (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986): a product is a solution of the fronts of the active set
 //! for forces at the slipping points and nothing else. Where friction alone keeps bodies from moving on, these forces would
 //! move them without end: there what slips is held at its slip, as what sticks is held where it is, and slips are the
-//! unknowns; that takes more products.
+//! unknowns; that takes more products. What slips as closed limits make it isn't held, and its force is the unknown.
 
 use std::collections::BTreeMap;
 
@@ -51,21 +51,22 @@ pub fn fix(
     laws: &Laws,
     was_held: bool,
 ) -> Result<bool, Failure> {
-    let hold = |open: &mut BTreeMap<usize, Vec<bool>>| {
+    let hold = |fronts: &ActiveSetFronts, open: &mut BTreeMap<usize, Vec<bool>>| {
         for (g, laws) in laws {
             if let Some(open) = open.get_mut(g) {
-                (laws.iter().flat_map(SlipLaw::limits)).for_each(|t| open[t] = false);
+                let limits = laws.iter().flat_map(SlipLaw::limits);
+                fronts.hold(*g, limits, open);
             }
         }
     };
     if was_held {
-        hold(open);
+        hold(fronts, open);
     }
     fronts.fix(context, open)?;
     if was_held || !fronts.has_to_hold(context) {
         return Ok(was_held);
     }
-    hold(open);
+    hold(fronts, open);
     fronts.fix(context, open)?;
     fronts.release(context, open)?;
     Ok(true)
@@ -78,7 +79,7 @@ pub struct SlipProblem<'a> {
     pub context: &'a Context<'a>,
     /// Which jumps are open, by contact group of this rank; those that slip are unless they are held.
     pub open: &'a BTreeMap<usize, Vec<bool>>,
-    /// Whether what slips is held.
+    /// Whether what slips is held, unless its slip follows from what is closed.
     pub is_held: bool,
     /// Loads on the boundaries of clusters, by node.
     pub clusters: &'a BTreeMap<usize, Vec<f64>>,
@@ -106,29 +107,41 @@ impl SlipProblem<'_> {
             prescribed,
             forces,
         };
-        let (mut held, none) = (prescribed.clone(), OnJumps::new());
+        let (mut held, of_open) = (prescribed.clone(), self.on_open(forces));
         if self.is_held {
             add(&mut held, &self.slips(forces));
-            (loads.prescribed, loads.forces) = (&held, &none);
+            (loads.prescribed, loads.forces) = (&held, &of_open);
         }
         let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
-        for (g, at) in solution.at.iter_mut().filter(|_| !self.is_held) {
-            if let Some(forces) = forces.get(g) {
+        for (g, at) in &mut solution.at {
+            if let Some(forces) = of_open.get(g) {
                 axpy(1.0, forces, &mut at.forces);
             }
         }
         Ok(solution)
     }
 
+    /// These forces where limits are open.
+    fn on_open(&self, forces: &OnJumps) -> OnJumps {
+        let of_group = |(&g, forces): (&usize, &Vec<f64>)| {
+            let both = forces.iter().zip(&self.open[&g]);
+            let on_open = both.map(|(force, open)| if *open { *force } else { 0.0 });
+            (g, on_open.collect())
+        };
+        forces.iter().map(of_group).collect()
+    }
+
     /// The forces from which a solution begins near these iterates.
     pub fn first(&self, laws: &OnGroups<ContactLaws<'_>>, from: &OnGroups<Iterate>) -> OnJumps {
         let of_group = |(&g, from): (&usize, &Iterate)| {
             let mut forces = vec![0.0; from.jumps.len()];
+            let mut holding = forces.clone();
             for law in &self.laws[&g] {
-                match self.is_held {
-                    true => law.set_holding(|t| laws[&g].beyond(t, from), &mut forces),
-                    false => law.set_force(&from.forces, &mut forces),
-                }
+                law.set_force(&from.forces, &mut forces);
+                law.set_holding(|t| laws[&g].beyond(t, from), &mut holding);
+            }
+            for ((force, holding), open) in forces.iter_mut().zip(holding).zip(&self.open[&g]) {
+                *force = if *open { *force } else { holding };
             }
             (g, forces)
         };

@@ -40,7 +40,10 @@ fn corner(force: [f64; 2], words: &str) -> Model {
 /// Three blocks that meet in a node, with these `words` of every contact.
 fn junction(words: &str) -> Model {
     let (scene, mesh) = built_in("junction", 0);
-    model(&scene.replace("[[contact]]", &format!("[[contact]]\n{words}")), mesh)
+    model(
+        &scene.replace("[[contact]]", &format!("[[contact]]\n{words}")),
+        mesh,
+    )
 }
 
 #[test]

@@ -1,0 +1,56 @@
+//! Forces of closed limits that depend on each other: of all that balance the same loads the least ones, so that limits
+//! share what one of them could carry.
+
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, Side};
+
+use super::active_equalities::ActiveEqualities;
+use super::dependent::{DependentConstraints, Terms};
+
+/// The ways in which forces of closed limits act without effect.
+#[derive(Clone, Debug, Default)]
+pub struct ForceSharing {
+    /// N: combinations of forces whose sum is none, one for each redundant row.
+    idle: Vec<Terms>,
+    /// The factor of NᵀN.
+    gram: Option<Llt<f64>>,
+}
+
+impl ForceSharing {
+    /// The forces of a group with these dependent `rows`, of which the redundant ones among the `equalities` are `open` here.
+    pub fn new(rows: &DependentConstraints, open: &[bool], equalities: &ActiveEqualities) -> Self {
+        let first = open.len() - rows.len();
+        let idle = equalities.redundant.iter().filter_map(|&j| {
+            let mut shares = rows.shares_in(first + j, open, equalities)?;
+            shares.iter_mut().for_each(|(_, share)| *share = -*share);
+            shares.push((first + j, 1.0));
+            Some(shares)
+        });
+        let idle: Vec<Terms> = idle.collect();
+        let product = |a: &Terms, b: &Terms| -> f64 {
+            let both = a.iter().flat_map(|&(i, x)| {
+                let same = b.iter().filter(move |(j, _)| *j == i);
+                same.map(move |(_, y)| x * y)
+            });
+            both.sum()
+        };
+        let gram = Mat::from_fn(idle.len(), idle.len(), |k, l| product(&idle[k], &idle[l]));
+        Self {
+            gram: gram.llt(Side::Lower).ok().filter(|_| !idle.is_empty()),
+            idle,
+        }
+    }
+
+    /// Makes the `forces` of all limits the least ones with the same effect.
+    pub fn share(&self, forces: &mut [f64]) {
+        let Some(gram) = &self.gram else { return };
+        let along = |terms: &Terms| terms.iter().map(|&(i, c)| c * forces[i]).sum::<f64>();
+        let along: Vec<f64> = self.idle.iter().map(along).collect();
+        let parts = gram.solve(Mat::from_fn(along.len(), 1, |k, _| along[k]));
+        for (k, terms) in self.idle.iter().enumerate() {
+            for &(i, c) in terms {
+                forces[i] -= c * parts[(k, 0)];
+            }
+        }
+    }
+}
