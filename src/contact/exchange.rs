@@ -1,6 +1,8 @@
 //! Exchange of limits of a contact group that contradict each other where they are closed, or stick, all at once: one
 //! closes in the place of another ([`super::dependence`]), or slips as others make it.
 
+use std::collections::BTreeSet;
+
 use super::active_equalities::ActiveEqualities;
 use super::dependence::NO_SHARE;
 use super::law::PointStatus;
@@ -42,8 +44,12 @@ impl ContactLaws<'_> {
             open,
             no_way: NO_WAY * largest(&finite),
         };
+        // Jumps of no row depend on none.
+        let in_rows: BTreeSet<usize> = self.rows.iter().flatten().map(|(i, _)| *i).collect();
+        let m = known.len() - self.rows.len();
+        let sought = (0..known.len()).filter(|k| *k >= m || in_rows.contains(k));
         let (tangential, normal): (Vec<usize>, Vec<usize>) =
-            (0..known.len()).partition(|&k| self.is_tangential[k]);
+            sought.partition(|&k| self.is_tangential[k]);
         for k in normal.into_iter().chain(tangential) {
             if known[k] && exchange.open[k] && self.known(now)[k] {
                 exchange.close(k, now);
@@ -203,5 +209,66 @@ impl Exchange<'_> {
             turning: point.turning(point.bound.at(pressure, is_closed) / way),
         };
         point.limits().for_each(|t| self.open[t] = true);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::dependent::DependentConstraints;
+    use crate::contact::friction::Status;
+    use crate::contact::limits::{Beside, TangentialLimit};
+    use crate::contact::tangent::ForceBound;
+
+    /// t_0 + t_1 ≤ −1 beside t_0 ≤ 0 and t_1 ≤ 0, or s_1 = 0 where the second jump is a slip.
+    fn contradicting() -> (Vec<f64>, DependentConstraints) {
+        let mut rows = DependentConstraints::default();
+        rows.push(vec![(0, 1.0), (1, 1.0)]);
+        (vec![0.0, 0.0, -1.0], rows)
+    }
+
+    /// The statuses after an exchange where all are to be closed, or stick, under these forces.
+    fn exchanged(tangents: &[TangentialLimit], forces: [f64; 3]) -> Statuses {
+        let (bounds, rows) = contradicting();
+        let laws = ContactLaws::new(&bounds, &rows, tangents, vec![1.0; 3]);
+        let at = Iterate {
+            jumps: vec![0.0; 3],
+            forces: forces.to_vec(),
+        };
+        let before = laws.begin(&[Status::Closed, Status::Closed, Status::Open], &at);
+        let mut now = laws.begin(&[Status::Closed; 3], &at);
+        laws.exchange(&at, &before, &mut now);
+        now
+    }
+
+    #[test]
+    fn what_is_violated_closes_in_the_place_of_the_force_that_vanishes_first() {
+        assert_eq!(exchanged(&[], [3.0, 1.0, 0.0]).closed, [true, false, true]);
+        assert_eq!(exchanged(&[], [1.0, 3.0, 0.0]).closed, [false, true, true]);
+    }
+
+    #[test]
+    fn what_sticks_slips_where_its_force_is_at_its_bound_first() {
+        let bound = ForceBound {
+            coefficient: 0.0,
+            cohesion: 0.5,
+            only_closed: false,
+        };
+        let tangent = TangentialLimit {
+            limit: 1,
+            normal: Some(0),
+            bound,
+            beside: Beside::Nothing,
+        };
+        let now = exchanged(&[tangent], [3.0, 0.2, 0.0]);
+        assert!(now.closed[0] && now.closed[2]);
+        let slips = PointStatus::Slips {
+            direction: [-1.0, 0.0],
+            turning: 0.0,
+        };
+        assert_eq!(now.points, [slips]);
+        let now = exchanged(&[tangent], [0.1, 0.2, 0.0]);
+        assert!(!now.closed[0] && now.closed[2]);
+        assert_eq!(now.points, [PointStatus::Sticks]);
     }
 }

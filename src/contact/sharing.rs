@@ -54,3 +54,39 @@ impl ForceSharing {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rows, of which the second follows from the jumps and the first: forces keep what they do on every jump, and no
+    /// forces that do nothing are left.
+    #[test]
+    fn shared_forces_have_the_same_effect_and_are_the_least() {
+        let mut rows = DependentConstraints::default();
+        rows.push(vec![(0, 0.6), (2, 0.8)]);
+        rows.push(vec![(1, -1.5), (2, 0.4)]);
+        // The third jump follows from the first row.
+        let open = [false, false, true, false, false];
+        let equalities = ActiveEqualities::new(&rows, &open);
+        assert_eq!(equalities.redundant, [1]);
+        let mut independent = open;
+        independent[4] = true;
+        let sharing = ForceSharing::new(&rows, &independent, &equalities);
+        let effect = |forces: &[f64]| -> Vec<f64> {
+            let mut effect = forces[..3].to_vec();
+            let opposite: Vec<f64> = forces[3..].iter().map(|f| -f).collect();
+            rows.subtract_transposed(&opposite, &mut effect);
+            effect
+        };
+        let before = [3.0, -2.0, 0.0, 5.0, 0.0];
+        let mut forces = before.to_vec();
+        sharing.share(&mut forces);
+        assert!(forces[4].abs() > 0.1 && forces[2] == 0.0, "{forces:?}");
+        for (a, b) in effect(&forces).iter().zip(effect(&before)) {
+            assert!((a - b).abs() < 1e-14, "{forces:?}");
+        }
+        let along: f64 = sharing.idle[0].iter().map(|&(i, c)| c * forces[i]).sum();
+        assert!(along.abs() < 1e-14, "{along:e}");
+    }
+}

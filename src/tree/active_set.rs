@@ -214,15 +214,15 @@ impl Faults {
         let of_group = |g: usize| {
             let (mut wrong, mut largest, mut active) = (Vec::new(), 0.0_f64, 0);
             let sticks = &problem.laws[&g].is_tangential;
+            let rows = problem.laws[&g].rows;
+            let equalities = ActiveEqualities::new(rows, &open[&g]);
             for (j, &is_open) in open[&g].iter().enumerate().filter(|&(j, _)| !sticks[j]) {
                 let Iterate { jumps, forces } = &solution.at[&g];
                 let mut excess = match is_open {
                     true => (jumps[j] - problem.bounds[&g][j]) / scales[1],
                     false => -forces[j] / scales[0],
                 };
-                let rows = problem.laws[&g].rows;
-                if is_open && excess > least && !rows.is_empty() {
-                    let equalities = ActiveEqualities::new(rows, &open[&g]);
+                if is_open && excess > least {
                     excess /= rows.amplified(j, &open[&g], &equalities).max(1.0);
                 }
                 active += usize::from(!is_open);

@@ -36,7 +36,7 @@ use support::blocks::{jittered, joined};
 use support::extruded::extruded;
 use support::process::{Ended, Running, send};
 use support::scenes::{
-    BODIES, JOINT, SUPPORTS, built_in_model, model, two_block_scene, two_blocks,
+    BODIES, JOINT, SUPPORTS, built_in_model, corner, model, two_block_scene, two_blocks,
 };
 use support::solids::{between, solid};
 use support::solution::{Solution, datasets};
@@ -227,6 +227,12 @@ fn same_results(trials: &mut Trials) {
         }),
         ("between_clusters::with_friction_in_steps", || {
             Case::in_clusters(&steps::two_blocks_with_friction(), 12, 6)
+        }),
+        ("between_clusters::dependent", || {
+            Case::in_clusters(&corner([-1e4, -25e3], "friction = 0.3"), 12, 6)
+        }),
+        ("in_the_tree::dependent", || {
+            Case::in_clusters(&corner([-1e4, -25e3], "friction = 0.3"), 12, 1)
         }),
         ("between_clusters::in_steps", || {
             Case::in_clusters(&steps::two_blocks_in_steps(), 12, 6)

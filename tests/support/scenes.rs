@@ -148,3 +148,30 @@ pub fn columns(young: [f64; 2], poisson: f64, cells: usize, layers: usize) -> Mo
     let mesh = extruded(&sort("quad4").of(&mesh), &heights);
     model(&scene, mesh.unwrap())
 }
+
+/// A block whose corner lies in that of two walls, across which a third one stands: three conditions on a node, all with
+/// these `words`, under a body force.
+pub fn corner(force: [f64; 2], words: &str) -> Model {
+    let blocks = Blocks::new().rectangle("block", [0.01, 1.01], [0.02, 1.02], [8, 8]);
+    let wall = |name: &str, on: &str, point: &str, normal: &str| {
+        format!(
+            "[[contact]]
+            name = '{name}'
+            sides = ['block {on}']
+            obstacle = {{ point = {point}, normal = {normal} }}
+            {words}\n"
+        )
+    };
+    let text = format!(
+        "plane = 'strain'
+        materials.rock = {{young = 2e9, poisson = 0.22}}
+        bodies.block = {{material = 'rock', body_force = [{}, {}]}}
+        {}{}{}",
+        force[0],
+        force[1],
+        wall("floor", "bottom", "[0.0, 0.0]", "[0.0, 1.0]"),
+        wall("wall", "left", "[0.0, 0.0]", "[1.0, 0.0]"),
+        wall("slope", "bottom", "[0.005, 0.0]", "[1.0, 1.0]"),
+    );
+    model(&text, blocks.mesh)
+}

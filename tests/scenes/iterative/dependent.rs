@@ -3,39 +3,11 @@
 use contact_dd_partition::model::Model;
 
 use super::{ITERATIVE, difference};
-use crate::support::blocks::Blocks;
 use crate::support::close::close;
-use crate::support::scenes::{built_in, model};
+use crate::support::scenes::{built_in, corner, model};
 use crate::support::solver::{Case, LIMIT, built};
 use crate::support::stress::draw_frictional;
 use crate::support::stress::trial::{Interface, Trial, Verdict};
-
-/// A block whose corner lies in that of two walls, across which a third one stands: three conditions on a node, all with
-/// these `words`, under a body force.
-fn corner(force: [f64; 2], words: &str) -> Model {
-    let blocks = Blocks::new().rectangle("block", [0.01, 1.01], [0.02, 1.02], [8, 8]);
-    let wall = |name: &str, on: &str, point: &str, normal: &str| {
-        format!(
-            "[[contact]]
-            name = '{name}'
-            sides = ['block {on}']
-            obstacle = {{ point = {point}, normal = {normal} }}
-            {words}\n"
-        )
-    };
-    let text = format!(
-        "plane = 'strain'
-        materials.rock = {{young = 2e9, poisson = 0.22}}
-        bodies.block = {{material = 'rock', body_force = [{}, {}]}}
-        {}{}{}",
-        force[0],
-        force[1],
-        wall("floor", "bottom", "[0.0, 0.0]", "[0.0, 1.0]"),
-        wall("wall", "left", "[0.0, 0.0]", "[1.0, 0.0]"),
-        wall("slope", "bottom", "[0.005, 0.0]", "[1.0, 1.0]"),
-    );
-    model(&text, blocks.mesh)
-}
 
 /// Three blocks that meet in a node, with these `words` of every contact.
 fn junction(words: &str) -> Model {
