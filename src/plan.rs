@@ -99,8 +99,8 @@ impl Plan {
         assign(&self.tree, &top, &costs, ranks)
     }
 
-    /// Forms the clusters, whatever the owners were chosen for.
-    pub fn form_clusters(&mut self, merging: Merging) {
+    /// Forms the clusters.
+    fn form_clusters(&mut self, merging: Merging) {
         self.merging = merging;
         self.clusters.clear();
         for node in cluster_nodes(&self.tree, merging, &self.merge_roots) {

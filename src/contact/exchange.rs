@@ -58,12 +58,19 @@ impl ContactLaws<'_> {
     }
 }
 
-/// What gives way to a force that grows.
+/// The first limits that give way to a force that grows.
 struct Blocking {
     /// How far that grows until then.
     growth: f64,
-    /// The normal limit that opens, or the point that slips, with its shares.
-    gives_way: Result<usize, (usize, [f64; 2])>,
+    change: Change,
+}
+
+/// What changes there.
+enum Change {
+    /// This normal limit opens.
+    Opens(usize),
+    /// This point slips, whose limits have these shares of the force.
+    Slips(usize, [f64; 2]),
 }
 
 impl Exchange<'_> {
@@ -90,7 +97,7 @@ impl Exchange<'_> {
         let opening = opening.filter(|(_, share)| *share > NO_SHARE);
         let opening = opening.map(|&(i, share)| Blocking {
             growth: self.forces[i].max(0.0) / share,
-            gives_way: Ok(i),
+            change: Change::Opens(i),
         });
         let slipping = (0..laws.points.len()).filter_map(|p| self.slipping(p, &shares, now));
         let all = opening.chain(slipping);
@@ -102,9 +109,9 @@ impl Exchange<'_> {
         }
         self.forces[k] += first.growth;
         self.open[k] = false;
-        match first.gives_way {
-            Ok(normal) => self.open(normal, now),
-            Err((p, shares)) => {
+        match first.change {
+            Change::Opens(normal) => self.open(normal, now),
+            Change::Slips(p, shares) => {
                 let force = laws.points[p]
                     .tangents
                     .map(|t| t.map_or(0.0, |t| self.forces[t]));
@@ -166,7 +173,7 @@ impl Exchange<'_> {
         }
         Some(Blocking {
             growth: range[1],
-            gives_way: Err((p, own)),
+            change: Change::Slips(p, own),
         })
     }
 
