@@ -179,7 +179,7 @@ pub fn substitute_back(
             },
         )
     };
-    let blocks = factors.recover(&step.condensed, boundaries).into_iter();
+    let (blocks, of_ties) = factors.recover(&step.condensed, boundaries);
     let of_block = |(b, x): (usize, Vec<f64>)| {
         let dofs = &factors.condensed.blocks.get(&b)?.dofs;
         let u = step.prescribed.get(&b)?.displacement(dofs, &x);
@@ -187,9 +187,19 @@ pub fn substitute_back(
         Some((b, BlockSolution { u, pushes }))
     };
     let mut solution = DiscreteSolution {
-        blocks: blocks.filter_map(of_block).collect(),
+        blocks: blocks.into_iter().filter_map(of_block).collect(),
         groups: groups.map(of_group).collect(),
     };
+    for (g, of_group) in &mut solution.groups {
+        let of_jumps = of_ties.get(g).into_iter().flatten();
+        for (force, (condition, _)) in of_jumps.zip(&step.tied[g]) {
+            of_group.forces[*condition] = *force;
+        }
+        let conditions = factors.context.groups[g].conditions();
+        for (closed, condition) in of_group.closed.iter_mut().zip(conditions) {
+            *closed |= condition.is_tied;
+        }
+    }
     solution.share(&factors.context, &step.loads);
     solution
 }

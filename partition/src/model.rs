@@ -9,6 +9,7 @@ mod bodies;
 mod clip;
 mod contact;
 mod diagnostics;
+mod equations;
 mod facet_tree;
 mod groups;
 mod held_nodes;
@@ -109,6 +110,9 @@ impl Model {
             found,
         } = MadeContacts::new(&sides, &declared, &mut warnings)?;
         activation::check(scene, &bodies, &contacts)?;
+        let equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
+        let names = equations.iter().map(|of| &of.name[..]);
+        let tables: Vec<&str> = tables.into_iter().chain(names).collect();
         let absent_contacts = activation::contacts(scene, &tables);
         let diagnostics = diagnostics::Diagnostics {
             scene,
@@ -147,7 +151,7 @@ impl Model {
                     ..step
                 })
                 .collect(),
-            contacts,
+            contacts: contacts.into_iter().chain(equations).collect(),
             found,
             prescribed_subdomains,
             // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.

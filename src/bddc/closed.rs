@@ -17,7 +17,7 @@ use crate::schur::substitution::Replaced;
 #[derive(Clone, Debug)]
 pub struct GroupBetween {
     rows: JumpRows,
-    /// The normal jumps, t = b·x.
+    /// The jumps, t = b·x, those of ties last.
     terms: Vec<Vec<(InterfaceDof, f64)>>,
     /// The open ones among the jumps.
     pub open: Vec<bool>,
@@ -75,7 +75,7 @@ impl GroupBetween {
         }
     }
 
-    /// The constants of what is tied, where the closed normal jumps have these `values`.
+    /// The constants of what is tied, where the closed jumps, and those of ties behind them, have these `values`.
     pub fn constants(&self, values: &[f64]) -> Vec<(InterfaceDof, f64)> {
         let constant = |replaced: &Replaced| {
             let terms = replaced.jumps.iter().map(|&(t, c)| c * values[t]);
@@ -91,12 +91,13 @@ impl GroupBetween {
         loads.collect()
     }
 
-    /// Its jumps and forces, 0 where open, for displacements and unbalanced forces at its unknowns.
+    /// Its jumps and forces, 0 where open, and the forces at the jumps of ties, for displacements and unbalanced forces at its
+    /// unknowns.
     pub fn answer(
         &self,
         x: &BTreeMap<InterfaceDof, f64>,
         unbalanced: &BTreeMap<InterfaceDof, f64>,
-    ) -> Iterate {
+    ) -> (Iterate, Vec<f64>) {
         let jump = |terms: &Vec<(InterfaceDof, f64)>| {
             let terms = terms.iter().map(|(dof, c)| c * x[dof]);
             terms.sum()
@@ -107,10 +108,9 @@ impl GroupBetween {
                 forces[t] += c * unbalanced[&replaced.dof];
             }
         }
-        Iterate {
-            jumps: self.terms.iter().map(jump).collect(),
-            forces,
-        }
+        let tied = forces.split_off(self.rows.unknowns());
+        let jumps = self.terms[..forces.len()].iter().map(jump).collect();
+        (Iterate { jumps, forces }, tied)
     }
 }
 

@@ -11,10 +11,15 @@ use super::contact_node::ContactNode;
 use super::frame::{Frame, support_frames};
 use super::jump_row::{NO_ROW, less, only_direction, product};
 use crate::contact::friction::{ForceBound, TangentialCondition};
-use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
+use crate::contact::jumps::{
+    IsTied, JumpRow, Jumps, NoUnknown, OwnJump, Sum, Variable, defining_conditions,
+};
 use crate::contact::law::PointLaw;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
+
+/// Square of the cosine between a direction and those that supports hold from which on they hold it.
+const ALONG: f64 = 0.5;
 
 /// Contact points over nodes of their own numbering.
 #[derive(Clone, Debug, Default)]
@@ -36,11 +41,23 @@ pub struct Condition {
     pub direction: [f64; 3],
     /// Whether it is a tangent.
     pub is_tangential: bool,
+    /// Whether it is one of a tie.
+    pub is_tied: bool,
 }
 
-/// The rows of the normal jumps of a contact group.
+/// The rows of the jumps of a contact group: of those that are unknowns, and of those of ties.
 #[derive(Clone, Debug)]
-pub struct JumpRows(Vec<JumpRow>);
+pub struct JumpRows {
+    unknown: Vec<JumpRow>,
+    tied: Vec<JumpRow>,
+}
+
+impl JumpRows {
+    /// Number of jumps that are unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknown.len()
+    }
+}
 
 /// The loads on a contact group in a load step: gaps and prescribed displacements.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,13 +110,17 @@ impl ContactGroup {
         let frames = group.frames();
         for point in 0..group.points.len() {
             let normal = group.points[point].normal();
-            let tangents = group.points[point].tangents(dim);
+            let tangents = match group.points[point].law.is_tied() {
+                true => &[],
+                false => group.points[point].tangents(dim),
+            };
             if let [first, second] = *tangents {
                 let [n, a, b] = [normal, first, second].map(|direction| {
                     let condition = Condition {
                         point,
                         direction,
                         is_tangential: true,
+                        is_tied: false,
                     };
                     group.row(&condition, &frames)
                 });
@@ -136,19 +157,22 @@ impl ContactGroup {
             && supports.all(|(_, values)| values.iter().all(|&value| value == 0.0))
     }
 
-    /// Conditions: the normal one of every point, then the tangential ones of the points that have friction.
+    /// Conditions: the normal one of every point, then the tangential ones of the points that have friction or are tied.
     pub fn conditions(&self) -> impl Iterator<Item = Condition> + '_ {
         let normal = |(point, of_point): (usize, &ContactPoint<u32>)| Condition {
             point,
             direction: of_point.normal(),
             is_tangential: false,
+            is_tied: of_point.law.is_tied(),
         };
         let tangential = |(point, of_point): (usize, &ContactPoint<u32>)| {
             let tangents = of_point.tangents(self.dim).to_vec().into_iter();
+            let is_tied = of_point.law.is_tied();
             tangents.map(move |direction| Condition {
                 point,
                 direction,
                 is_tangential: true,
+                is_tied,
             })
         };
         let points = self.points.iter().enumerate();
@@ -168,7 +192,7 @@ impl ContactGroup {
         let of_condition = |(number, condition): (usize, Condition)| {
             let point = &self.points[condition.point];
             let (coefficient, bound, only_closed) = match point.law {
-                Law::Frictionless => return None,
+                Law::Frictionless | Law::Tied => return None,
                 Law::Given { bound } => (0.0, bound, false),
                 Law::Coulomb {
                     coefficient,
@@ -238,9 +262,9 @@ impl ContactGroup {
         self.conditions().zip(&loads.gaps).map(left).collect()
     }
 
-    /// The gaps that supports leave where what is free doesn't move (m): the bounds on the normal jumps t = b·x, and
-    /// the tangential jumps at which the sides stick.
-    pub fn bounds(&self, loads: &GroupLoads) -> Vec<f64> {
+    /// The gaps that supports leave where what is free doesn't move (m), and ties: the bounds on the normal jumps t = b·x,
+    /// the tangential jumps at which the sides stick, and the jumps of ties.
+    pub fn bounds(&self, loads: &GroupLoads, jumps: &Jumps) -> Vec<f64> {
         let frames = self.frames();
         let bound = |(condition, gap): (Condition, &f64)| {
             let prescribed = self.row_of(&condition).flat_map(|(node, push)| {
@@ -249,7 +273,9 @@ impl ContactGroup {
             });
             gap - prescribed.sum::<f64>()
         };
-        self.conditions().zip(&loads.gaps).map(bound).collect()
+        let mut bounds: Vec<f64> = self.conditions().zip(&loads.gaps).map(bound).collect();
+        jumps.subtract_known(&mut bounds);
+        bounds
     }
 
     /// The jumps of the conditions, for the displacements along the axes of their nodes that supports leave
@@ -258,7 +284,8 @@ impl ContactGroup {
     /// # Errors
     /// A point that no displacement can be replaced for.
     pub fn jumps(&self, eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
-        self.solve_rows(&self.rows(), eliminated)
+        let is_tied: Vec<bool> = self.conditions().map(|condition| condition.is_tied).collect();
+        self.solve_rows(&self.rows(), &|j| is_tied[j], eliminated)
     }
 
     /// The rows of B on what is free along the axes of the nodes, a condition each.
@@ -270,21 +297,29 @@ impl ContactGroup {
             .collect()
     }
 
-    fn solve_rows(&self, rows: &[JumpRow], eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
+    fn solve_rows(
+        &self,
+        rows: &[JumpRow],
+        is_tied: IsTied<'_>,
+        eliminated: &[u32],
+    ) -> Result<Jumps, NoUnknown> {
         let node = |v: u32| &self.nodes[v as usize / self.dim];
         let may_go = |v: u32| eliminated.binary_search(&node(v).interface).is_ok();
-        Jumps::new(rows, may_go, |v| node(v).stiffness)
+        Jumps::new(rows, is_tied, may_go, |v| node(v).stiffness)
     }
 
-    /// The rows of normal jumps, t = b·x.
+    /// The rows of jumps, t = b·x.
     pub fn rows_of(&self, jumps: &Jumps) -> JumpRows {
         let rows = self.rows();
-        let defining = defining_conditions(&jumps.of, jumps.pivots.len());
-        JumpRows(defining.into_iter().map(|j| rows[j].clone()).collect())
+        let of = |numbers: Vec<usize>| numbers.into_iter().map(|j| rows[j].clone()).collect();
+        JumpRows {
+            unknown: of(defining_conditions(&jumps.of, jumps.pivots.len())),
+            tied: of(jumps.tied_conditions()),
+        }
     }
 
-    /// The unknowns that the `closed` jumps replace where all others are none; they keep their numbers among the `rows`
-    /// of all.
+    /// The unknowns that the `closed` jumps and those of ties replace where all others are none; they keep their numbers among
+    /// the `rows` of all, of which those of ties come last.
     ///
     /// # Errors
     /// One that no displacement of a node that is `eliminated` can be replaced for: its number among the closed ones.
@@ -294,20 +329,25 @@ impl ContactGroup {
         closed: &[usize],
         eliminated: &[u32],
     ) -> Result<Vec<Replaced>, NoUnknown> {
-        let of_closed: Vec<JumpRow> = closed.iter().map(|&t| rows.0[t].clone()).collect();
-        let jumps = self.solve_rows(&of_closed, eliminated)?;
-        let defining = defining_conditions(&jumps.of, jumps.pivots.len());
+        let mut known: Vec<JumpRow> = closed.iter().map(|&t| rows.unknown[t].clone()).collect();
+        known.extend(rows.tied.iter().cloned());
+        let jumps = self.solve_rows(&known, &|j| j >= closed.len(), eliminated)?;
+        let mut defining = defining_conditions(&jumps.of, jumps.pivots.len());
+        defining.extend(jumps.tied_conditions());
         let mut replaced = self.replaced(&jumps);
         for (t, _) in replaced.iter_mut().flat_map(|replaced| &mut replaced.jumps) {
-            *t = closed[defining[*t]];
+            *t = match closed.get(defining[*t]) {
+                Some(&number) => number,
+                None => rows.unknowns() + defining[*t] - closed.len(),
+            };
         }
         Ok(replaced)
     }
 
-    /// The terms of every normal jump, in the words of Γ.
+    /// The terms of every jump, those of ties last, in the words of Γ.
     pub fn terms_of(&self, rows: &JumpRows) -> Vec<Vec<(InterfaceDof, f64)>> {
         let terms = |row: &JumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
-        rows.0.iter().map(terms).collect()
+        rows.unknown.iter().chain(&rows.tied).map(terms).collect()
     }
 
     /// An unknown of the group in the words of Γ.
@@ -318,9 +358,10 @@ impl ContactGroup {
         }
     }
 
-    /// Traces that normal jumps replace, by the numbers of Γ.
+    /// Traces that jumps replace, by the numbers of Γ, those that jumps of ties replace last.
     pub fn replaced(&self, jumps: &Jumps) -> Vec<Replaced> {
-        let replaced = |pivot: &u32| {
+        let unknowns = jumps.pivots.len();
+        let replaced = |(pivot, is_tied): (&u32, bool)| {
             let Sum { terms } = &jumps.replaced[pivot];
             let staying = terms.iter().filter_map(|(&variable, &c)| match variable {
                 Variable::Displacement(v) => Some((self.dof(v), c)),
@@ -328,15 +369,21 @@ impl ContactGroup {
             });
             let of_jumps = terms.iter().filter_map(|(&variable, &c)| match variable {
                 Variable::Displacement(_) => None,
-                Variable::Jump(t) => Some((t as usize, c)),
+                Variable::Jump(t) => Some(match jumps.own(t) {
+                    OwnJump::Unknown(number) => (number, c),
+                    OwnJump::Tied(number) => (unknowns + number, c),
+                }),
             });
             Replaced {
                 dof: self.dof(*pivot),
                 staying: staying.collect(),
                 jumps: of_jumps.collect(),
+                is_tied,
             }
         };
-        jumps.pivots.iter().map(replaced).collect()
+        let unknown = jumps.pivots.iter().map(|pivot| (pivot, false));
+        let tied = jumps.tied.iter().map(|pivot| (pivot, true));
+        unknown.chain(tied).map(replaced).collect()
     }
 
     /// Bᵀλ of contact `forces`, one a condition: on every node its parts.
@@ -367,9 +414,34 @@ impl ContactGroup {
         self.nodes.iter().map(of_node).collect()
     }
 
+    /// Whether a condition of a tie is left out, as a support has its place.
+    pub fn is_left_out(&self, condition: &Condition) -> bool {
+        condition.is_tied && self.is_dropped(condition, &self.frames())
+    }
+
+    /// Whether a condition of a tie is left to the support of the node that has it: of several nodes opposite, which lie beside
+    /// it, it would ask what the support asks of it alone.
+    fn is_dropped(&self, condition: &Condition, frames: &[Frame]) -> bool {
+        let point = &self.points[condition.point];
+        let own = point.entries.iter().find(|(node, _)| {
+            let tag = self.nodes[*node as usize].tag;
+            tag == point.tag()
+        });
+        let is_held = |node: u32| {
+            let Frame { axes, prescribed } = frames[node as usize];
+            let held = axes.iter().zip(prescribed);
+            let along = held.filter_map(|(axis, held)| held.map(|_| dot(*axis, condition.direction)));
+            along.map(|c| c * c).sum::<f64>() > ALONG
+        };
+        point.entries.len() > 2 && !point.is_equation() && own.is_some_and(|&(node, _)| is_held(node))
+    }
+
     /// The jump of a condition in terms of what is free along the axes of its nodes' frames.
     fn row(&self, condition: &Condition, frames: &[Frame]) -> JumpRow {
         let mut row: BTreeMap<u32, f64> = BTreeMap::new();
+        if condition.is_tied && self.is_dropped(condition, frames) {
+            return JumpRow::new();
+        }
         for (node, push) in self.row_of(condition) {
             let frame = &frames[node as usize];
             for axis in (0..self.dim).filter(|&axis| frame.prescribed[axis].is_none()) {

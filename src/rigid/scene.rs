@@ -46,6 +46,8 @@ pub struct RigidRow {
     pub gap: f64,
     /// The bound of its force if that is tangential; a normal one presses.
     pub friction: Option<Friction>,
+    /// Whether it is one of a tie, which holds both ways.
+    pub is_tied: bool,
 }
 
 /// The bodies and conditions from which rigid motions follow. On the root.
@@ -61,6 +63,22 @@ pub struct Scene {
     pub rows: Vec<RigidRow>,
     /// Number of conditions of every group.
     pub conditions: Vec<usize>,
+}
+
+impl Scene {
+    /// The conditions, and those of ties once more the other way: what holds both ways is two that press.
+    pub(super) fn both_ways(&self) -> Vec<RigidRow> {
+        let mut rows = self.rows.clone();
+        for row in self.rows.iter().filter(|row| row.is_tied) {
+            let mut other = row.clone();
+            other.gap = -row.gap;
+            for (_, action) in &mut other.bodies {
+                action.iter_mut().for_each(|a| *a = -*a);
+            }
+            rows.push(other);
+        }
+        rows
+    }
 }
 
 /// The bound of the force of a tangential condition, in space that of both tangents of a point.

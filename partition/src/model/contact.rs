@@ -1,5 +1,7 @@
 //! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
+mod tie;
+
 use std::collections::{HashMap, HashSet};
 
 use super::held_nodes::{HeldNodes, ROUNDING};
@@ -82,6 +84,9 @@ impl<'a> Contacts<'a> {
         keys: &contact::Contact,
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
+        if let (Some(reach), Partner::Side(names)) = (keys.tie, &keys.partner) {
+            return self.tie(number, keys, (names, reach), warnings);
+        }
         let what = format!("contact '{}'", keys.name);
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut paired = match &keys.partner {
@@ -363,7 +368,7 @@ fn give_friction(
 fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
     let coefficients = points.iter().map(|point| match point.law {
         Law::Coulomb { coefficient, .. } => coefficient,
-        Law::Given { .. } | Law::Frictionless => 0.0,
+        Law::Given { .. } | Law::Frictionless | Law::Tied => 0.0,
     });
     let largest = coefficients.fold(0.0, f64::max);
     (largest > STEEP).then(|| {

@@ -61,7 +61,7 @@ fn a_merge_is_the_schur_complement_of_the_sum() {
     let (children, loads, a, f) = example();
     let (merge, condensed) =
         Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
-    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[]);
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
     let gone = [2, 5, 7];
     let kept = [9, 10, 11, 0, 1, 3, 4, 6, 8];
     let part = |rows: &[usize], columns: &[usize]| {
@@ -89,12 +89,12 @@ fn what_is_recovered_solves_the_sum() {
         .solve(Mat::from_fn(12, 1, |i, _| f[i]));
     let (merge, _) =
         Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
-    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[]);
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
     let kept: Vec<f64> = [9, 10, 11, 0, 1, 3, 4, 6, 8]
         .map(|i| exact[(i, 0)])
         .to_vec();
-    let (x, _) = merge.recover(&load, &kept);
-    for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+    let x = merge.recover(&load, &kept);
+    for (x, node) in x.children[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
         assert!((x - exact[(node, 0)]).abs() < 1e-14);
     }
 }
@@ -114,6 +114,7 @@ fn a_normal_jump_takes_the_place_of_a_displacement() {
         dof: trace(5),
         staying: vec![(trace(6), 0.5)],
         jumps: vec![(0, 2.0)],
+        is_tied: false,
     };
     let (merge, condensed) = Merge::new(
         children,
@@ -135,10 +136,10 @@ fn a_normal_jump_takes_the_place_of_a_displacement() {
             assert!((condensed.s[(i, j)] - s[(i, j)]).abs() < 1e-12);
         }
     }
-    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[]);
-    let (x, _) = merge.recover(&load, &kept.map(|i| exact[(i, 0)]));
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
+    let x = merge.recover(&load, &kept.map(|i| exact[(i, 0)]));
     let u = &t * &exact;
-    for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+    for (x, node) in x.children[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
         assert!((x - u[(node, 0)]).abs() < 1e-14);
     }
 }
