@@ -166,7 +166,12 @@ pub fn substitute_back(
     boundaries: BTreeMap<usize, Vec<f64>>,
     conditions: BTreeMap<usize, Vec<(f64, bool)>>,
 ) -> DiscreteSolution {
-    let groups = conditions.into_iter();
+    // Groups of ties alone are those of no cluster in contact.
+    let all = factors.context.groups.iter();
+    let none = all.map(|(&g, group)| (g, vec![(0.0, false); group.conditions().count()]));
+    let mut known: BTreeMap<usize, Vec<(f64, bool)>> = none.collect();
+    known.extend(conditions);
+    let groups = known.into_iter();
     let of_group = |(g, conditions): (usize, Vec<(f64, bool)>)| {
         let (forces, closed) = conditions.into_iter().unzip();
         let gaps = Vec::new();

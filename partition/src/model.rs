@@ -4,6 +4,7 @@
 //! behind this point knows how they came about.
 
 mod activation;
+mod adjust;
 mod blend;
 mod bodies;
 mod clip;
@@ -99,11 +100,13 @@ impl Model {
         let mut bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
+        adjust::adjust(scene, &mut bodies, &topology, &mut warnings)?;
         let materials = bodies.with_modes(bodies::materials(scene, plane));
         let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let springs = springs::Springs::new(scene, &bodies, &topology, loads.names.len())?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
+        let held = held_nodes::HeldNodes::new(&loads);
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, held, scene);
         let MadeContacts {
             contacts,
             tables,

@@ -358,7 +358,13 @@ impl Catalog {
 
     /// Number of contact conditions.
     pub fn conditions(&self) -> usize {
-        self.contacts.iter().map(|contact| contact.conditions).sum()
+        self.conditions_of(ContactKind::Unilateral)
+    }
+
+    /// Number of points of the contacts of a kind.
+    pub fn conditions_of(&self, kind: ContactKind) -> usize {
+        let contacts = self.contacts.iter().filter(|contact| contact.kind == kind);
+        contacts.map(|contact| contact.conditions).sum()
     }
 }
 

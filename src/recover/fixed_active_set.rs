@@ -156,11 +156,19 @@ impl<'a> FixedActiveSet<'a> {
         let tied = self.missing_of_ties(&conditions);
         let limits = self.limits(factors.collect_conditions(conditions));
         let condensed = factors.condense(loads, &tied);
-        let (forces, boundaries) = self.solve_interface(&limits, &condensed);
+        let (forces_of_clusters, boundaries) = self.solve_interface(&limits, &condensed);
         let (blocks, of_ties) = factors.recover(&condensed, boundaries);
-        let mut forces = factors.spread_conditions(forces);
+        let mut forces = self.no_forces();
+        forces.extend(factors.spread_conditions(forces_of_clusters));
         put_tied(&mut forces, &of_ties, &tied);
         Change { blocks, forces }
+    }
+
+    /// No force at any condition of the contact groups of this rank.
+    fn no_forces(&self) -> BTreeMap<usize, Vec<f64>> {
+        let groups = self.context.groups.iter();
+        let none = groups.map(|(&g, group)| (g, vec![0.0; group.conditions().count()]));
+        none.collect()
     }
 
     /// What the jumps of ties lack, where their conditions have these statuses.

@@ -65,22 +65,6 @@ pub struct Scene {
     pub conditions: Vec<usize>,
 }
 
-impl Scene {
-    /// The conditions, and those of ties once more the other way: what holds both ways is two that press.
-    pub(super) fn both_ways(&self) -> Vec<RigidRow> {
-        let mut rows = self.rows.clone();
-        for row in self.rows.iter().filter(|row| row.is_tied) {
-            let mut other = row.clone();
-            other.gap = -row.gap;
-            for (_, action) in &mut other.bodies {
-                action.iter_mut().for_each(|a| *a = -*a);
-            }
-            rows.push(other);
-        }
-        rows
-    }
-}
-
 /// The bound of the force of a tangential condition, in space that of both tangents of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Friction {

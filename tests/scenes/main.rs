@@ -35,6 +35,7 @@ mod stability;
 mod stages;
 mod steps;
 mod strains;
+mod tie;
 mod touching;
 mod unloaded;
 mod validation;

@@ -8,7 +8,6 @@ use super::held_nodes::{HeldNodes, ROUNDING};
 use super::mortar::{self, Mortar};
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
-use super::steps::Loads;
 use super::surface::{CORNER, Surface, SurfaceFacet, Turn};
 use super::{Contact, groups, node_pairs, obstacle};
 use crate::contact_point::{ContactPoint, Law, Probe};
@@ -65,12 +64,17 @@ pub(super) struct Contacts<'a> {
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads, scene: &Scene) -> Self {
+    pub fn new(
+        mesh: &'a Mesh,
+        topology: &'a Topology,
+        held: HeldNodes,
+        scene: &Scene,
+    ) -> Self {
         let coordinates = mesh.points.iter().flatten();
         Self {
             mesh,
             topology,
-            held: HeldNodes::new(loads),
+            held,
             size: coordinates.map(|c| c.abs()).fold(0.0, f64::max),
             plane: scene.plane,
             units: scene.units,

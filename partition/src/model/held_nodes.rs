@@ -19,6 +19,7 @@ struct Held {
 }
 
 /// The nodes that supports hold, each with its directions.
+#[derive(Default)]
 pub(super) struct HeldNodes(HashMap<u32, Vec<Held>>);
 
 impl HeldNodes {
