@@ -1,7 +1,8 @@
 //! Ties: points whose jump is 0, made like those of a contact.
 
 use super::super::Contact;
-use super::{Contacts, Paired};
+use super::super::surface::{Surface, SurfaceFacet};
+use super::Contacts;
 use crate::contact_point::{ContactPoint, Law};
 use crate::error::InputError;
 use crate::magnitude::short;
@@ -72,11 +73,43 @@ impl Contacts<'_> {
         (names, reach): (&Names, TieReach),
         what: &str,
     ) -> Result<Tied, InputError> {
-        let (facets, side_a) = self.side(&keys.side_a, what)?;
-        let on_a = facets.into_iter().collect();
-        let Paired { points, .. } =
-            self.sides(number, (&on_a, &side_a), names, keys.pairing, what)?;
-        let size = side_a.facet_size().max(self.side(names, what)?.1.facet_size());
+        let (facets_a, side_a) = self.side(&keys.side_a, what)?;
+        let (facets_b, side_b) = self.side(names, what)?;
+        let [held_a, held_b] = [&side_a, &side_b].map(|side| self.held_shares(side));
+        let is_more = |a: [f64; 3], b: [f64; 3]| (0..3).any(|k| a[k] > b[k]);
+        let mut warnings = Vec::new();
+        let points = match (is_more(held_a, held_b), is_more(held_b, held_a)) {
+            // What carries the conditions is to be free.
+            (true, false) => {
+                let on_b = facets_b.into_iter().collect();
+                let paired = self.sides(
+                    number,
+                    (&on_b, &side_b),
+                    &keys.side_a,
+                    keys.pairing,
+                    what,
+                )?;
+                let of_a = side_a.nodes();
+                let at = |node: u32| self.mesh.points[node as usize];
+                let points = paired.points.into_iter();
+                points
+                    .map(|point| point.turned(|node| of_a.contains_key(&node), at))
+                    .collect()
+            }
+            (is_held, _) => {
+                if is_held {
+                    warnings.push(format!(
+                        "{what}: supports hold facets of both sides in other directions, and what they hold of side a isn't \
+                         tied; expected supports of one side"
+                    ));
+                }
+                let on_a = facets_a.into_iter().collect();
+                let paired =
+                    self.sides(number, (&on_a, &side_a), names, keys.pairing, what)?;
+                paired.points
+            }
+        };
+        let size = side_a.facet_size().max(side_b.facet_size());
         let tolerance = reach.tolerance.unwrap_or(NEAR * size);
         let least = points.iter().fold(f64::INFINITY, |m, p| m.min(p.gap.abs()));
         let count = points.len();
@@ -92,19 +125,31 @@ impl Contacts<'_> {
             )));
         }
         let farthest = far.iter().fold(0.0, |m: f64, p| m.max(p.gap.abs()));
-        let warnings = (!far.is_empty()).then(|| {
-            format!(
+        if !far.is_empty() {
+            warnings.push(format!(
                 "{what}: {} of its {count} nodes are up to {} {unit} from the other side, farther than {} {unit}, and aren't \
                  tied",
                 far.len(),
                 short(farthest),
                 short(tolerance)
-            )
-        });
+            ));
+        }
         Ok(Tied {
             points: near,
             size,
-            warnings: warnings.into_iter().collect(),
+            warnings,
+        })
+    }
+
+    /// The parts of a side's facets all of whose nodes supports hold along each axis.
+    fn held_shares(&self, side: &Surface) -> [f64; 3] {
+        let count = side.facets.len().max(1) as f64;
+        std::array::from_fn(|k| {
+            let is_held = |facet: &&SurfaceFacet| {
+                let mut nodes = facet.nodes.iter();
+                nodes.all(|&node| self.held.is_held_along(node, k))
+            };
+            side.facets.iter().filter(is_held).count() as f64 / count
         })
     }
 }
