@@ -69,7 +69,10 @@ impl<'a> Loading<'a> {
         let prescribed = |(&b, loads)| Some((b, Prescribed::new(context.blocks.get(&b)?, loads)));
         let prescribed = loads.blocks.iter().filter_map(prescribed).collect();
         let of_groups = limits_of_groups(context, &loads)?;
-        let (limits, tied) = (limits_of_clusters(context, &of_groups), tied_jumps(&of_groups));
+        let (limits, tied) = (
+            limits_of_clusters(context, &of_groups),
+            tied_jumps(&of_groups),
+        );
         let earlier = before.scales;
         let (condensed, largest_load) = self.condense(&loads, &prescribed, &tied);
         let pairs = self.pairs(limits, &condensed, before);

@@ -9,7 +9,8 @@ use crate::contact::laws::Iterate;
 use crate::context::Context;
 use crate::context::hierarchy::jumps;
 use crate::error::Failure;
-use crate::fem::contact_group::{ContactGroup, JumpRows};
+use crate::fem::contact_group::ContactGroup;
+use crate::fem::group_jumps::JumpRows;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 

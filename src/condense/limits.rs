@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::contact::jumps::JumpOf;
-use crate::contact::limits::Limits;
 use crate::contact::jumps::Jumps;
+use crate::contact::limits::Limits;
 use crate::context::hierarchy::jumps;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
@@ -15,7 +15,9 @@ pub type TiedJumps = BTreeMap<usize, Vec<(usize, f64)>>;
 
 /// The jumps of ties among limits of groups.
 pub fn tied_jumps(of_groups: &BTreeMap<usize, Limits>) -> TiedJumps {
-    let tied = of_groups.iter().map(|(&g, limits)| (g, limits.tied.clone()));
+    let tied = of_groups
+        .iter()
+        .map(|(&g, limits)| (g, limits.tied.clone()));
     tied.collect()
 }
 

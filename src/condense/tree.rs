@@ -70,7 +70,8 @@ pub fn condense_clusters(
         ..
     } = merging;
     let (context, loads) = (&condensation.context, condensation.loads);
-    let of_groups = limits_of_groups(context, loads).map_err(|failure| context.in_step(failure, 0))?;
+    let of_groups =
+        limits_of_groups(context, loads).map_err(|failure| context.in_step(failure, 0))?;
     let limits = limits_of_clusters(context, &of_groups);
     take_clusters(plan, modes, limits, waiting, &mut condensed);
     Ok(condensed)

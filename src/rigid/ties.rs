@@ -58,17 +58,20 @@ fn joined(bodies: &[usize], of_bodies: Vec<Vec<f64>>) -> Vec<RigidRow> {
     let rows = compressed(of_bodies, entries);
     let size = |row: &[f64]| largest(&row[..entries - 1]);
     let nothing = ROUND_OFF * rows.iter().map(|row| size(row)).fold(0.0, f64::max);
-    let both = rows.iter().filter(|row| size(row) > nothing).flat_map(|row| {
-        [1.0, -1.0].map(|sign| {
-            let actions = row[..entries - 1].chunks(modes);
-            let turned = actions.map(|part| part.iter().map(|a| sign * a).collect());
-            RigidRow {
-                bodies: bodies.iter().copied().zip(turned).collect(),
-                gap: sign * row[entries - 1],
-                friction: None,
-                is_tied: true,
-            }
-        })
-    });
+    let both = rows
+        .iter()
+        .filter(|row| size(row) > nothing)
+        .flat_map(|row| {
+            [1.0, -1.0].map(|sign| {
+                let actions = row[..entries - 1].chunks(modes);
+                let turned = actions.map(|part| part.iter().map(|a| sign * a).collect());
+                RigidRow {
+                    bodies: bodies.iter().copied().zip(turned).collect(),
+                    gap: sign * row[entries - 1],
+                    friction: None,
+                    is_tied: true,
+                }
+            })
+        });
     both.collect()
 }

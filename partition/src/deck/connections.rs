@@ -12,7 +12,12 @@ use crate::mesh::abaqus::{Block, LinePlace, Of};
 use crate::name;
 
 /// Parameters of `*TIE` that are something else than sides which hang together.
-const REFUSED: [&str; 4] = ["CYCLIC SYMMETRY", "MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"];
+const REFUSED: [&str; 4] = [
+    "CYCLIC SYMMETRY",
+    "MULTISTAGE",
+    "FLUID PERIODIC",
+    "FLUID CYCLIC",
+];
 
 /// A tie of two surfaces, by name in capitals.
 struct Tie {
@@ -134,7 +139,8 @@ impl Connections {
         let mut sets = terms.iter().filter(|(nodes, ..)| nodes.len() > 1);
         let set = sets.next();
         if sets.next().is_some() {
-            let message = "an equation between several sets isn't read; expected nodes, and one set at most";
+            let message =
+                "an equation between several sets isn't read; expected nodes, and one set at most";
             return Err(places.source.error(place, message));
         }
         for i in 0..set.map_or(1, |(nodes, ..)| nodes.len()) {

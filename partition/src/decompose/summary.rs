@@ -114,7 +114,10 @@ impl fmt::Display for Summary<'_> {
                 ContactKind::Tie => ", tied",
                 ContactKind::Unilateral | ContactKind::Equation => "",
             };
-            writeln!(f, "              {points:>6} on {name}{pairing}{friction}{tied}")?;
+            writeln!(
+                f,
+                "              {points:>6} on {name}{pairing}{friction}{tied}"
+            )?;
         }
         write!(f, "groups        {}", self.sizes_of_groups())
     }

@@ -195,7 +195,10 @@ impl Tree {
             let mut kept: Vec<u32> = Vec::new();
             let points = self.nodes[v].points.iter();
             let points = points.map(|&j| &catalog.points[j as usize]);
-            let all: usize = points.clone().map(|p| p.directions(catalog.dim).count()).sum();
+            let all: usize = points
+                .clone()
+                .map(|p| p.directions(catalog.dim).count())
+                .sum();
             let mut conditions = points.map(|p| p.unknown_jumps(catalog.dim)).sum();
             let tied = all - conditions;
             for child in self.nodes[v].children.clone() {

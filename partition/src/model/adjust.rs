@@ -36,16 +36,16 @@ pub(super) fn adjust(
         let before = bodies.mesh.points.clone();
         for _ in 0..PAIRINGS {
             let sides = Contacts::new(&bodies.mesh, topology, HeldNodes::default(), scene);
-            let tied = sides.tied(0, &keys, (names, tie.reach), &what)?;
+            let tied = sides.tied(&keys, (names, tie.reach), &what)?;
             if !close(&mut bodies.mesh.points, &tied.points, NOTHING * tied.size) {
                 break;
             }
         }
         let ways = before.iter().zip(&bodies.mesh.points);
         let ways = ways.map(|(before, after)| length(advance(*after, -1.0, *before)));
-        let (moved, farthest) = ways.filter(|&way| way > 0.0).fold((0, 0.0), |(n, most), way| {
-            (n + 1, f64::max(most, way))
-        });
+        let (moved, farthest) = ways
+            .filter(|&way| way > 0.0)
+            .fold((0, 0.0), |(n, most), way| (n + 1, f64::max(most, way)));
         if moved > 0 {
             warnings.push(format!(
                 "{what}: {moved} nodes are moved by up to {} {} onto the other side",
@@ -67,9 +67,8 @@ fn close(positions: &mut [[f64; 3]], points: &[ContactPoint<u32>], nothing: f64)
             let Some(&(node, weight)) = point.entries.first() else {
                 continue;
             };
-            let at = |sum, &(node, weight): &(u32, f64)| {
-                advance(sum, weight, positions[node as usize])
-            };
+            let at =
+                |sum, &(node, weight): &(u32, f64)| advance(sum, weight, positions[node as usize]);
             let apart = point.entries.iter().fold([0.0; 3], at);
             let way = apart.map(|c| -c / weight);
             farthest = farthest.max(length(way));

@@ -64,12 +64,7 @@ pub(super) struct Contacts<'a> {
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(
-        mesh: &'a Mesh,
-        topology: &'a Topology,
-        held: HeldNodes,
-        scene: &Scene,
-    ) -> Self {
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, held: HeldNodes, scene: &Scene) -> Self {
         let coordinates = mesh.points.iter().flatten();
         Self {
             mesh,

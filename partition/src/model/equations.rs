@@ -17,7 +17,11 @@ const NOTHING: f64 = 1e-14;
 ///
 /// # Errors
 /// Groups that don't exist, terms that cancel.
-pub(super) fn equations(scene: &Scene, mesh: &Mesh, first: usize) -> Result<Vec<Contact>, InputError> {
+pub(super) fn equations(
+    scene: &Scene,
+    mesh: &Mesh,
+    first: usize,
+) -> Result<Vec<Contact>, InputError> {
     let mut all: Vec<Contact> = Vec::new();
     for (index, equation) in scene.equation.iter().enumerate() {
         let what = format!("equation[{}]", index + 1);
@@ -64,7 +68,9 @@ fn point(equation: &Equation, mesh: &Mesh, what: &str) -> Result<ContactPoint<u3
     }
     nodes.retain(|node| length(factors[node]) > NOTHING * scale);
     let Some(&node) = nodes.first() else {
-        return Err(InputError::new(format!("{what}: its terms cancel; expected factors that don't")));
+        return Err(InputError::new(format!(
+            "{what}: its terms cancel; expected factors that don't"
+        )));
     };
     let size = |node: &u32| length(factors[node]);
     let axes: Vec<[f64; 3]> = (nodes.iter())

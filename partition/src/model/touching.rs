@@ -239,7 +239,11 @@ struct Explicit {
 impl Explicit {
     fn new(scene: &Scene, mesh: &Mesh, topology: &Topology) -> Self {
         let mut of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>> = HashMap::new();
-        let contacts = scene.contact.iter().filter_map(Declaration::contact).cloned();
+        let contacts = scene
+            .contact
+            .iter()
+            .filter_map(Declaration::contact)
+            .cloned();
         let ties = scene.tie.iter().map(Tie::contact);
         for (number, contact) in contacts.chain(ties).enumerate() {
             for (side, names) in contact.sides().enumerate() {

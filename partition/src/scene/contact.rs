@@ -273,7 +273,9 @@ pub(super) fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result
     }
 }
 
-pub(super) fn distance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+pub(super) fn distance<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<f64>, D::Error> {
     let is_positive = |value| value > 0.0;
     Constant::checked(deserializer, is_positive, "the distance", "more than 0").map(Some)
 }

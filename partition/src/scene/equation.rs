@@ -22,10 +22,7 @@ pub struct Equation {
 
 /// A multiple of a displacement.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(
-    deny_unknown_fields,
-    expecting = "a table of at, component and factor"
-)]
+#[serde(deny_unknown_fields, expecting = "a table of at, component and factor")]
 pub struct Term {
     /// A point, or a group whose mean displacement it is.
     pub at: Names,
@@ -62,7 +59,10 @@ fn terms<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Term>, D::Err
     if terms.is_empty() {
         return wrong("expected a term at least");
     }
-    match terms.iter().all(|term| term.factor.is_finite() && term.factor != 0.0) {
+    match terms
+        .iter()
+        .all(|term| term.factor.is_finite() && term.factor != 0.0)
+    {
         true => Ok(terms),
         false => wrong("expected factors that are finite numbers and not 0"),
     }

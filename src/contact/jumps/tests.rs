@@ -152,10 +152,66 @@ fn conditions_that_are_nearly_parallel_to_others_are_combinations_of_little() {
         let (sin, cos) = degrees.to_radians().sin_cos();
         row(&[(0, cos), (1, sin)])
     };
-    let jumps = Jumps::new(&[at(50.0), at(51.0), at(80.0)], &|_| false, |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(
+        &[at(50.0), at(51.0), at(80.0)],
+        &|_| false,
+        |_| true,
+        |_| 1.0,
+    )
+    .unwrap();
     assert_eq!(jumps.pivots.len(), 2);
     let JumpOf::Combination(terms) = &jumps.of[1] else {
         panic!("{:?}", jumps.of);
     };
     assert!(terms.iter().all(|(_, factor)| factor.abs() < 2.0));
+}
+
+/// A tie of 0 to 1, a contact that says the same of them and one beside it, and another tie around the corner.
+#[test]
+fn what_ties_prescribe_is_no_unknown_of_others() {
+    let rows = vec![
+        row(&[(0, 1.0), (1, -1.0)]),
+        row(&[(0, 1.0), (2, -1.0)]),
+        row(&[(0, 2.0), (1, -2.0)]),
+        row(&[(1, 1.0), (3, -1.0)]),
+        row(&[(3, 1.0), (0, -1.0)]),
+    ];
+    let is_tied = |j: usize| [0, 3, 4].contains(&j);
+    let jumps = Jumps::new(&rows, &is_tied, |_| true, |_| 1.0).unwrap();
+    assert_eq!((jumps.tied.len(), jumps.pivots.len()), (2, 1));
+    // Two ties, and a third one that these are, less than nothing of it.
+    let of_ties: Vec<JumpOf> = [0, 3, 4].map(|j| jumps.of[j].clone()).to_vec();
+    let is_own = |of: &&JumpOf| matches!(of, JumpOf::Tied(_));
+    assert_eq!(of_ties.iter().filter(is_own).count(), 2);
+    assert_eq!(
+        of_ties
+            .iter()
+            .filter(|of| **of == JumpOf::Prescribed)
+            .count(),
+        1
+    );
+    assert!(matches!(jumps.of[1], JumpOf::Unknown { number: 0, .. }));
+    assert_eq!(jumps.of[2], JumpOf::Prescribed);
+    // With the jumps of ties 0.5 and 0.25 that of the third is −0.75, and twice the first is that of the contact.
+    let mut bounds = vec![0.5, 3.0, 7.0, 0.25, 0.0];
+    for (condition, value) in [(0, 0.5), (3, 0.25), (4, -0.75)] {
+        bounds[condition] = value;
+    }
+    jumps.subtract_known(&mut bounds);
+    assert_eq!(bounds[2], 7.0 - 2.0 * 0.5);
+    let dependent = [0, 3, 4]
+        .into_iter()
+        .find(|&j| jumps.of[j] == JumpOf::Prescribed)
+        .unwrap();
+    assert!(bounds[dependent].abs() < 1e-15);
+    // Whatever stays, each is what it is called.
+    let order = jumps
+        .tied_conditions()
+        .into_iter()
+        .map(|j| [0.5, 0.0, 0.0, 0.25, -0.75][j]);
+    let t: Vec<f64> = order.chain([2.0]).collect();
+    let v = |i: u32| f64::from(i) + 0.7;
+    for (j, expected) in [(0, 0.5), (1, 2.0), (2, 1.0), (3, 0.25), (4, -0.75)] {
+        assert!((jump(&rows[j], &jumps, v, &t) - expected).abs() < 1e-14);
+    }
 }

@@ -121,8 +121,7 @@ impl Table {
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
         let is_tied = contact.kind == ContactKind::Tie;
-        let is_there =
-            |when: In| contact.has_friction || is_tied || when != In::EachWithFriction;
+        let is_there = |when: In| contact.has_friction || is_tied || when != In::EachWithFriction;
         let columns = COLUMNS.iter().filter(|(_, when, _)| is_there(*when));
         let columns = columns.map(|(name, when, values)| {
             let steps = if *when == In::First { 0 } else { steps };

@@ -36,7 +36,7 @@ impl Contacts<'_> {
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
         let what = format!("tie '{}'", keys.name);
-        let tied = self.tied(number, keys, (names, reach), &what)?;
+        let tied = self.tied(keys, (names, reach), &what)?;
         warnings.extend(tied.warnings);
         let widest = tied.points.iter().fold(0.0, |m: f64, p| m.max(p.gap.abs()));
         if !reach.adjust && widest > FELT * tied.size {
@@ -68,48 +68,14 @@ impl Contacts<'_> {
     /// Sides that don't face each other, or are apart.
     pub(in crate::model) fn tied(
         &self,
-        number: u32,
         keys: &contact::Contact,
         (names, reach): (&Names, TieReach),
         what: &str,
     ) -> Result<Tied, InputError> {
-        let (facets_a, side_a) = self.side(&keys.side_a, what)?;
-        let (facets_b, side_b) = self.side(names, what)?;
-        let [held_a, held_b] = [&side_a, &side_b].map(|side| self.held_shares(side));
-        let is_more = |a: [f64; 3], b: [f64; 3]| (0..3).any(|k| a[k] > b[k]);
+        let (side_a, side_b) = (self.side(&keys.side_a, what)?, self.side(names, what)?);
         let mut warnings = Vec::new();
-        let points = match (is_more(held_a, held_b), is_more(held_b, held_a)) {
-            // What carries the conditions is to be free.
-            (true, false) => {
-                let on_b = facets_b.into_iter().collect();
-                let paired = self.sides(
-                    number,
-                    (&on_b, &side_b),
-                    &keys.side_a,
-                    keys.pairing,
-                    what,
-                )?;
-                let of_a = side_a.nodes();
-                let at = |node: u32| self.mesh.points[node as usize];
-                let points = paired.points.into_iter();
-                points
-                    .map(|point| point.turned(|node| of_a.contains_key(&node), at))
-                    .collect()
-            }
-            (is_held, _) => {
-                if is_held {
-                    warnings.push(format!(
-                        "{what}: supports hold facets of both sides in other directions, and what they hold of side a isn't \
-                         tied; expected supports of one side"
-                    ));
-                }
-                let on_a = facets_a.into_iter().collect();
-                let paired =
-                    self.sides(number, (&on_a, &side_a), names, keys.pairing, what)?;
-                paired.points
-            }
-        };
-        let size = side_a.facet_size().max(side_b.facet_size());
+        let points = self.points_of_tie(keys, (names, [&side_a, &side_b]), &mut warnings, what)?;
+        let size = side_a.1.facet_size().max(side_b.1.facet_size());
         let tolerance = reach.tolerance.unwrap_or(NEAR * size);
         let least = points.iter().fold(f64::INFINITY, |m, p| m.min(p.gap.abs()));
         let count = points.len();
@@ -139,6 +105,38 @@ impl Contacts<'_> {
             size,
             warnings,
         })
+    }
+
+    /// The points of a tie, whatever their gaps are: the nodes of side a have them unless supports hold those of its facets,
+    /// but not of side b's. What carries conditions is to be free.
+    fn points_of_tie(
+        &self,
+        keys: &contact::Contact,
+        (names, [a, b]): (&Names, [&(Vec<u32>, Surface); 2]),
+        warnings: &mut Vec<String>,
+        what: &str,
+    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+        let [held_a, held_b] = [a, b].map(|(_, side)| self.held_shares(side));
+        let is_more = |a: [f64; 3], b: [f64; 3]| (0..3).any(|k| a[k] > b[k]);
+        let of_sides = |(facets, side): &(Vec<u32>, Surface), other: &Names| {
+            let facets = facets.iter().copied().collect();
+            self.sides(0, (&facets, side), other, keys.pairing, what)
+        };
+        match (is_more(held_a, held_b), is_more(held_b, held_a)) {
+            (true, false) => {
+                let of_a = a.1.nodes();
+                let at = |node: u32| self.mesh.points[node as usize];
+                let points = of_sides(b, &keys.side_a)?.points.into_iter();
+                let turned = points.map(|p| p.turned(|node| of_a.contains_key(&node), at));
+                return Ok(turned.collect());
+            }
+            (true, true) => warnings.push(format!(
+                "{what}: supports hold facets of both sides in other directions, and what they hold of side a isn't tied; \
+                 expected supports of one side"
+            )),
+            (false, _) => {}
+        }
+        Ok(of_sides(a, names)?.points)
     }
 
     /// The parts of a side's facets all of whose nodes supports hold along each axis.
