@@ -14,6 +14,7 @@ pub mod elasticity;
 pub mod estimate;
 pub mod frame;
 pub mod gradients;
+pub mod group_jumps;
 pub mod interaction_integral;
 mod jump_row;
 pub mod load;

@@ -109,6 +109,7 @@ impl Plan {
                 node,
                 owner: self.node_owners[node],
                 groups: under.filter_map(|v| self.group_of(v)).collect(),
+                conditions: self.tree.nodes[node].conditions,
             });
         }
         self.contact = (0..self.clusters.len())
@@ -277,15 +278,22 @@ impl Plan {
         of
     }
 
-    /// All groups, cluster by cluster.
+    /// Number of groups with contact points that aren't tied.
+    pub fn contact_groups(&self) -> usize {
+        let nodes = self.groups.iter().map(|group| group.node);
+        nodes.filter(|&v| self.tree.own_conditions(v) > 0).count()
+    }
+
+    /// All groups of clusters in contact, cluster by cluster.
     pub fn groups_by_cluster(&self) -> Vec<usize> {
-        let clusters = self.clusters.iter();
+        let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
-    /// From the owner of every group to that of its cluster, cluster by cluster.
+    /// From the owner of every such group to that of its cluster, cluster by cluster.
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.clusters.iter().flat_map(|cluster| {
+        let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
+        clusters.flat_map(|cluster| {
             let groups = cluster.groups.iter();
             groups.map(|&g| (self.node_owners[self.groups[g].node], cluster.owner))
         })

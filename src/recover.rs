@@ -167,7 +167,12 @@ pub fn substitute_back(
     boundaries: BTreeMap<usize, Vec<f64>>,
     conditions: BTreeMap<usize, Vec<(f64, bool)>>,
 ) -> DiscreteSolution {
-    let groups = conditions.into_iter();
+    // Groups of ties alone are those of no cluster in contact.
+    let all = factors.context.groups.iter();
+    let none = all.map(|(&g, group)| (g, vec![(0.0, false); group.conditions().count()]));
+    let mut known: BTreeMap<usize, Vec<(f64, bool)>> = none.collect();
+    known.extend(conditions);
+    let groups = known.into_iter();
     let of_group = |(g, conditions): (usize, Vec<(f64, bool)>)| {
         let (forces, closed) = conditions.into_iter().unzip();
         let gaps = Vec::new();
@@ -180,7 +185,7 @@ pub fn substitute_back(
             },
         )
     };
-    let blocks = factors.recover(&step.condensed, boundaries).into_iter();
+    let (blocks, of_ties) = factors.recover(&step.condensed, boundaries);
     let of_block = |(b, x): (usize, Vec<f64>)| {
         let dofs = &factors.condensed.blocks.get(&b)?.dofs;
         let u = step.prescribed.get(&b)?.displacement(dofs, &x);
@@ -188,9 +193,19 @@ pub fn substitute_back(
         Some((b, BlockSolution { u, pushes }))
     };
     let mut solution = DiscreteSolution {
-        blocks: blocks.filter_map(of_block).collect(),
+        blocks: blocks.into_iter().filter_map(of_block).collect(),
         groups: groups.map(of_group).collect(),
     };
+    for (g, of_group) in &mut solution.groups {
+        let of_jumps = of_ties.get(g).into_iter().flatten();
+        for (force, (condition, _)) in of_jumps.zip(&step.tied[g]) {
+            of_group.forces[*condition] = *force;
+        }
+        let conditions = factors.context.groups[g].conditions();
+        for (closed, condition) in of_group.closed.iter_mut().zip(conditions) {
+            *closed |= condition.is_tied;
+        }
+    }
     solution.share(&factors.context, &step.loads);
     solution
 }

@@ -78,7 +78,7 @@ pub fn report(totals: &Totals<'_>, settings: &Settings, comm: &Comm) -> Report {
         contact_conditions: catalog.conditions(),
         active_contacts: last.map_or(0, |step| step.active),
         subdomains: catalog.subdomains.len(),
-        contact_pairs: plan.groups.len(),
+        contact_pairs: plan.contact_groups(),
         ranks: comm.size(),
         hosts: comm.hosts(),
         threads: usize::from(settings.threads),
@@ -210,7 +210,7 @@ fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     if !comm.has_mpi() {
         skipped.push("MPI: a single rank has nobody to send messages to".into());
     }
-    if totals.plan.groups.is_empty() {
+    if totals.plan.contact_groups() == 0 {
         skipped.push("sweeps: no contact, the interface problem is linear".into());
     }
     if totals.catalog.interface_nodes == 0 {
@@ -246,7 +246,7 @@ pub fn reason(totals: &Totals<'_>) -> String {
     };
     match failures(totals).first() {
         Some(why) => format!("not converged: {why}"),
-        None if totals.plan.groups.is_empty() => "solved: the scene is linear".into(),
+        None if totals.plan.contact_groups() == 0 => "solved: the scene is linear".into(),
         None => format!(
             "converged after {sweeps} sweep{}: the residual is below the tolerance and no contact \
              changes any more; {} of {} conditions are closed{in_the_end}",

@@ -33,4 +33,5 @@ mod rows;
 pub mod scene;
 #[cfg(test)]
 mod squares;
+mod ties;
 mod unheld_motions;

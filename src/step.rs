@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use crate::certificate::scales::Scales;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::condense::clusters::make_load_exact;
-use crate::condense::limits::limits_of_clusters;
+use crate::condense::limits::{TiedJumps, limits_of_clusters, limits_of_groups, tied_jumps};
 use crate::condense::substitute::Factors;
 use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
@@ -34,6 +34,8 @@ pub struct StepProblem<'a> {
     pub loads: Loads,
     /// Displacements that supports prescribe in them.
     pub prescribed: BTreeMap<usize, Prescribed>,
+    /// The jumps of ties.
+    pub tied: TiedJumps,
     /// The condensed load of every node of the hierarchy.
     pub condensed: BTreeMap<usize, CondensedLoad>,
     /// ϑ: the clusters in contact, by their place among those.
@@ -66,15 +68,20 @@ impl<'a> Loading<'a> {
         let context = &self.context;
         let prescribed = |(&b, loads)| Some((b, Prescribed::new(context.blocks.get(&b)?, loads)));
         let prescribed = loads.blocks.iter().filter_map(prescribed).collect();
-        let limits = limits_of_clusters(context, &loads)?;
+        let of_groups = limits_of_groups(context, &loads)?;
+        let (limits, tied) = (
+            limits_of_clusters(context, &of_groups),
+            tied_jumps(&of_groups),
+        );
         let earlier = before.scales;
-        let (condensed, largest_load) = self.condense(&loads, &prescribed);
+        let (condensed, largest_load) = self.condense(&loads, &prescribed, &tied);
         let pairs = self.pairs(limits, &condensed, before);
         let elsewhere = earlier.terms.max(largest_load);
         let interface = self.assemble(&pairs, &condensed, elsewhere);
         Ok(StepProblem {
             loads,
             prescribed,
+            tied,
             condensed,
             pairs,
             interface,
@@ -88,6 +95,7 @@ impl<'a> Loading<'a> {
         &self,
         loads: &Loads,
         prescribed: &BTreeMap<usize, Prescribed>,
+        tied: &TiedJumps,
     ) -> (BTreeMap<usize, CondensedLoad>, f64) {
         let Context {
             comm,
@@ -111,7 +119,7 @@ impl<'a> Loading<'a> {
         let own = of_blocks.values().map(|load| largest(load));
         let largest_loads = comm.collect(&own.fold(0.0, f64::max)).into_iter();
         let largest_load = largest_loads.fold(0.0, f64::max);
-        (factors.condense(of_blocks), largest_load)
+        (factors.condense(of_blocks, tied), largest_load)
     }
 
     /// The clusters in contact of this rank under their loads.

@@ -20,6 +20,9 @@ pub struct ContactPoint<N> {
     pub place: u32,
     /// Nodes and their weights. Those of side a sum to 1, those of side b to −1; an obstacle has none.
     pub entries: Vec<(N, f64)>,
+    /// Of an equation the direction of every entry, whose displacement along it has the weight as its factor; none where all
+    /// have those of the frame.
+    pub axes: Vec<[f64; 3]>,
     /// The directions in which jumps and forces are told apart.
     pub frame: LocalFrame,
     /// The gap g (m), negative for an interference: of the undeformed bodies, or of what came later in the position in which it
@@ -63,6 +66,8 @@ pub enum Law {
         /// Cohesion (Pa).
         cohesion: f64,
     },
+    /// A tie: the jump has no component but what is prescribed, whatever the force is.
+    Tied,
 }
 
 impl Law {
@@ -85,9 +90,14 @@ impl Law {
         }
     }
 
-    /// Whether there are tangential forces.
+    /// Whether there are tangential forces with a bound.
     pub fn has_friction(&self) -> bool {
-        *self != Self::Frictionless
+        !matches!(self, Self::Frictionless | Self::Tied)
+    }
+
+    /// Whether forces of either sign hold the sides together.
+    pub fn is_tied(&self) -> bool {
+        *self == Self::Tied
     }
 }
 
@@ -128,6 +138,7 @@ impl<N: Copy> ContactPoint<N> {
             contact: 0,
             place: 0,
             entries,
+            axes: Vec::new(),
             frame: LocalFrame::new(normal),
             gap: 0.0,
             since: [0.0; 3],
@@ -153,17 +164,37 @@ impl<N: Copy> ContactPoint<N> {
         self.frame.normal
     }
 
-    /// The directions in which friction acts, where space has `dim` dimensions; none without friction.
+    /// Whether it is a linear equation between displacements, which has one condition.
+    pub fn is_equation(&self) -> bool {
+        !self.axes.is_empty()
+    }
+
+    /// The tangents along which it has conditions, where space has `dim` dimensions; none without friction or tie.
     pub fn tangents(&self, dim: usize) -> &[[f64; 3]] {
-        match self.law.has_friction() {
-            true => &self.frame.tangents[..dim - 1],
-            false => &[],
+        match self.law == Law::Frictionless || self.is_equation() {
+            false => &self.frame.tangents[..dim - 1],
+            true => &[],
         }
     }
 
-    /// The directions in which it has conditions: its normal, and its tangents where it has friction.
+    /// Number of its jumps that are unknowns of the contact problem, where space has `dim` dimensions: those of a tie are
+    /// known.
+    pub fn unknown_jumps(&self, dim: usize) -> usize {
+        match self.law.is_tied() {
+            true => 0,
+            false => self.directions(dim).count(),
+        }
+    }
+
+    /// The directions in which it has conditions: its normal, and its tangents where it has friction or is tied.
     pub fn directions(&self, dim: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
         std::iter::once(self.normal()).chain(self.tangents(dim).iter().copied())
+    }
+
+    /// The directions in which it has conditions on the displacement of entry i.
+    pub fn directions_at(&self, i: usize, dim: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let normal = self.axes.get(i).copied().unwrap_or(self.normal());
+        std::iter::once(normal).chain(self.tangents(dim).iter().copied())
     }
 
     /// Row of B: every node with weight·n.
@@ -171,10 +202,13 @@ impl<N: Copy> ContactPoint<N> {
         self.row_along(self.frame.normal)
     }
 
-    /// The row of its jump along a `direction`: every node with weight·direction.
+    /// The row of its jump along a `direction`: every node with weight·direction, or along the axes of an equation.
     pub fn row_along(&self, direction: [f64; 3]) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
-        let entries = self.entries.iter();
-        entries.map(move |&(node, weight)| (node, direction.map(|n| n * weight)))
+        let entries = self.entries.iter().enumerate();
+        entries.map(move |(i, &(node, weight))| {
+            let along = self.axes.get(i).copied().unwrap_or(direction);
+            (node, along.map(|n| n * weight))
+        })
     }
 
     /// The same point with its nodes named otherwise; those that have no other name drop out.
@@ -184,6 +218,7 @@ impl<N: Copy> ContactPoint<N> {
             entries: entries
                 .filter_map(|&(node, weight)| Some((name(node)?, weight)))
                 .collect(),
+            axes: self.axes.clone(),
             contact: self.contact,
             place: self.place,
             frame: self.frame,

@@ -5,6 +5,7 @@
 
 mod amplitude;
 mod axes;
+mod connections;
 mod contacts;
 mod content;
 mod document;

@@ -4,12 +4,14 @@
 //! behind this point knows how they came about.
 
 mod activation;
+mod adjust;
 mod blend;
 mod bodies;
 mod clip;
 mod contact;
 mod crack_tips;
 mod diagnostics;
+mod equations;
 mod facet_tree;
 mod groups;
 mod held_nodes;
@@ -102,17 +104,22 @@ impl Model {
         let mut bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
+        adjust::adjust(scene, &mut bodies, &topology, &mut warnings)?;
         let materials = bodies.with_modes(bodies::materials(scene, plane));
         let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let springs = springs::Springs::new(scene, &bodies, &topology, loads.names.len())?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, &loads, scene);
+        let held = held_nodes::HeldNodes::new(&loads);
+        let sides = contact::Contacts::new(&bodies.mesh, &topology, held, scene);
         let MadeContacts {
             contacts,
             tables,
             found,
         } = MadeContacts::new(&sides, &declared, &mut warnings)?;
         activation::check(scene, &bodies, &contacts)?;
+        let equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
+        let names = equations.iter().map(|of| &of.name[..]);
+        let tables: Vec<&str> = tables.into_iter().chain(names).collect();
         let absent_contacts = activation::contacts(scene, &tables);
         let diagnostics = diagnostics::Diagnostics {
             scene,
@@ -154,7 +161,7 @@ impl Model {
                     ..step
                 })
                 .collect(),
-            contacts,
+            contacts: contacts.into_iter().chain(equations).collect(),
             tips,
             found,
             prescribed_subdomains,

@@ -207,6 +207,40 @@ pub struct ContactSummary {
     pub conditions: usize,
     /// Whether one of its points has friction.
     pub has_friction: bool,
+    /// The kind of its conditions.
+    pub kind: ContactKind,
+}
+
+/// Kind of the conditions of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactKind {
+    /// Sides that press on each other and part.
+    #[default]
+    Unilateral,
+    /// Sides that are tied to each other.
+    Tie,
+    /// A linear equation between displacements.
+    Equation,
+}
+
+impl ContactKind {
+    /// The kind of the contact of a point.
+    pub fn of<N>(point: &ContactPoint<N>) -> Self {
+        match (point.law.is_tied(), point.axes.is_empty()) {
+            (false, _) => Self::Unilateral,
+            (true, true) => Self::Tie,
+            (true, false) => Self::Equation,
+        }
+    }
+
+    /// Its name in messages.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Unilateral => "contact",
+            Self::Tie => "tie",
+            Self::Equation => "equation",
+        }
+    }
 }
 
 /// A load step: quasi-static and without friction its solution depends on its own loads alone.
@@ -327,7 +361,13 @@ impl Catalog {
 
     /// Number of contact conditions.
     pub fn conditions(&self) -> usize {
-        self.contacts.iter().map(|contact| contact.conditions).sum()
+        self.conditions_of(ContactKind::Unilateral)
+    }
+
+    /// Number of points of the contacts of a kind.
+    pub fn conditions_of(&self, kind: ContactKind) -> usize {
+        let contacts = self.contacts.iter().filter(|contact| contact.kind == kind);
+        contacts.map(|contact| contact.conditions).sum()
     }
 }
 

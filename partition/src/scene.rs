@@ -3,6 +3,7 @@
 mod activation;
 pub mod condition;
 pub mod contact;
+pub mod equation;
 pub mod expression;
 mod fault;
 pub mod friction;
@@ -15,6 +16,7 @@ pub mod spring;
 pub mod step;
 pub mod suggest;
 mod syntax;
+pub mod tie;
 pub mod units;
 
 use std::collections::BTreeMap;
@@ -28,9 +30,11 @@ use crate::solver::SolverSettings;
 use crate::source;
 use condition::{Bilateral, Body, Displacement, Force, Names, Pressure, Traction};
 use contact::Declaration;
+use equation::Equation;
 use material::{Elasticity, PlaneState};
 use spring::Spring;
 use step::LoadStep;
+use tie::Tie;
 use units::Units;
 
 /// A scene as it was written, with every value checked that can be without the mesh.
@@ -76,6 +80,12 @@ pub struct Scene {
     /// Γ_c: contacts, and bodies between which they are to be found.
     #[serde(default, deserialize_with = "place::list")]
     pub contact: Vec<Declaration>,
+    /// Sides that are tied to each other.
+    #[serde(default, deserialize_with = "place::list")]
+    pub tie: Vec<Tie>,
+    /// Linear equations between displacements.
+    #[serde(default, deserialize_with = "place::list")]
+    pub equation: Vec<Equation>,
     /// Load steps, one after the other; without any the loads of the scene are there at once.
     #[serde(default, deserialize_with = "place::list")]
     pub step: Vec<LoadStep>,

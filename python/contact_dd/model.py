@@ -198,6 +198,23 @@ class Model:
         entry = self._add("contact", name=name_of, sides=[side], obstacle=shape, **keys)
         self._calls.add(entry, call("obstacle", side, **shape, name=name, **keys))
 
+    def tie(
+        self, a: Groups, b: Groups, *, name: str | None = None, tolerance: float | None = None,
+        adjust: bool | None = None, pairing: str | None = None,
+    ) -> None:
+        """Ties two sides, whose meshes match or not, to each other where they are no farther apart than `tolerance`.
+        Nodes of side `a`, best the one with the finer mesh, follow side `b`; with `adjust` they are moved onto it."""
+        keys = given(tolerance=tolerance, adjust=adjust, pairing=pairing)
+        entry = self._add("tie", name=name or f"{joined(a)} on {joined(b)}", sides=[a, b], **keys)
+        self._calls.add(entry, call("tie", a, b, name=name, **keys))
+
+    def equation(self, *terms: tuple[Groups, str, float], value: float | None = None, name: str | None = None) -> None:
+        """A linear equation between displacements: the sum of factor times displacement over the terms, each a point,
+        "x", "y" or "z", and a factor, is `value`, 0 where it isn't given. Of a group it is the mean displacement."""
+        tables = [{"at": at, "component": component, "factor": factor} for at, component, factor in terms]
+        entry = self._add("equation", name=name, terms=tables, value=value)
+        self._calls.add(entry, call("equation", *terms, value=value, name=name))
+
     def steps(self, *steps: Step) -> None:
         """Load steps, one after the other."""
         known: list[dict[str, Any]] = self.scene.setdefault("step", [])

@@ -12,7 +12,8 @@ use crate::contact::sharing::ForceSharing;
 use crate::context::Context;
 use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
-use crate::fem::contact_group::{ContactGroup, JumpRows};
+use crate::fem::contact_group::ContactGroup;
+use crate::fem::group_jumps::JumpRows;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 
@@ -20,7 +21,7 @@ use crate::schur::substitution::Replaced;
 #[derive(Clone, Debug)]
 pub struct GroupBetween {
     rows: JumpRows,
-    /// The limits: jumps t = b·x, and dependent rows D t = b·x.
+    /// The limits: jumps t = b·x, and dependent rows D t = b·x, then the jumps of ties.
     terms: Vec<Vec<(InterfaceDof, f64)>>,
     /// Which limits are open.
     pub open: Vec<bool>,
@@ -89,7 +90,7 @@ impl GroupBetween {
         }
     }
 
-    /// The constants of what is tied, where the closed limits have these `values`.
+    /// The constants of what is tied, where the closed limits, and the jumps of ties behind them, have these `values`.
     pub fn constants(&self, values: &[f64]) -> Vec<(InterfaceDof, f64)> {
         let constant = |replaced: &Replaced| {
             let terms = replaced.jumps.iter().map(|&(t, c)| c * values[t]);
@@ -105,12 +106,13 @@ impl GroupBetween {
         loads.collect()
     }
 
-    /// The jumps and forces of its limits, 0 where open, for displacements and unbalanced forces at its unknowns.
+    /// The jumps and forces of its limits, 0 where open, and the forces at the jumps of ties, for displacements and unbalanced
+    /// forces at its unknowns.
     pub fn answer(
         &self,
         x: &BTreeMap<InterfaceDof, f64>,
         unbalanced: &BTreeMap<InterfaceDof, f64>,
-    ) -> Iterate {
+    ) -> (Iterate, Vec<f64>) {
         let jump = |terms: &Vec<(InterfaceDof, f64)>| {
             let terms = terms.iter().map(|(dof, c)| c * x[dof]);
             terms.sum()
@@ -121,11 +123,10 @@ impl GroupBetween {
                 forces[t] += c * unbalanced[&replaced.dof];
             }
         }
+        let tied = forces.split_off(self.rows.limits());
         self.sharing.share(&mut forces);
-        Iterate {
-            jumps: self.terms.iter().map(jump).collect(),
-            forces,
-        }
+        let jumps = self.terms[..forces.len()].iter().map(jump).collect();
+        (Iterate { jumps, forces }, tied)
     }
 }
 

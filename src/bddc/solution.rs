@@ -19,7 +19,7 @@ use crate::schur::condensed::InterfaceDof;
 pub struct ClusterLoads<'a> {
     /// Loads on the boundaries of clusters, by node.
     pub clusters: &'a BTreeMap<usize, Vec<f64>>,
-    /// The values of the closed jumps of every contact group (m).
+    /// The values of the closed jumps of every contact group, and of those of its ties behind all that are unknowns (m).
     pub prescribed: &'a BTreeMap<usize, Vec<f64>>,
     /// The forces on the open ones of every group with friction (N/m); others have none.
     pub forces: &'a BTreeMap<usize, Vec<f64>>,
@@ -49,6 +49,8 @@ pub struct BddcSolution {
     pub clusters: BTreeMap<usize, Vec<f64>>,
     /// The jumps and forces of every contact group between clusters; no force where open.
     pub groups: OnGroups<Iterate>,
+    /// The forces at the jumps of their ties.
+    pub tied: OnGroups<Vec<f64>>,
     /// Iterations that it took.
     pub iterations: usize,
     /// Whether they sufficed.
@@ -107,11 +109,17 @@ impl Bddc {
             r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
             (c, r)
         });
-        let groups = self.answers(comm, &solved, &unbalanced.collect());
+        let answers = self.answers(comm, &solved, &unbalanced.collect());
+        let (mut groups, mut tied) = (OnGroups::new(), OnGroups::new());
+        for (g, (at, forces)) in answers {
+            groups.insert(g, at);
+            tied.insert(g, forces);
+        }
         let by_node = solved.into_iter().map(|(c, x)| (plan.merge_roots[c], x));
         BddcSolution {
             clusters: by_node.collect(),
             groups,
+            tied,
             iterations,
             is_solved,
         }
@@ -230,9 +238,14 @@ impl Bddc {
         constants
     }
 
-    /// Jumps and forces of the contact groups of this rank, for the unknowns of clusters and what is `unbalanced` there.
-    /// Collective.
-    fn answers(&self, comm: &Comm, clusters: &Vectors, unbalanced: &Vectors) -> OnGroups<Iterate> {
+    /// Jumps and forces of the contact groups of this rank, and those of their ties, for the unknowns of clusters and what is
+    /// `unbalanced` there. Collective.
+    fn answers(
+        &self,
+        comm: &Comm,
+        clusters: &Vectors,
+        unbalanced: &Vectors,
+    ) -> OnGroups<(Iterate, Vec<f64>)> {
         let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();

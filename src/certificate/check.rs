@@ -148,7 +148,17 @@ impl Most {
     pub fn at_points(group: &ContactGroup, gaps: &[f64], forces: &[f64], closed: &[bool]) -> Self {
         let mut most = Self::default();
         let no_force = NO_FORCE * largest(forces);
-        for (&gap, &force) in gaps.iter().zip(forces).take(group.points.len()) {
+        for ((&gap, &force), condition) in gaps.iter().zip(forces).zip(group.conditions()) {
+            if condition.is_tied {
+                // One that is left to a support has no force, and may have any jump.
+                let jump = if force == 0.0 { 0.0 } else { gap };
+                most.penetration = larger(most.penetration, jump);
+                most.contact_force = larger(most.contact_force, force);
+                continue;
+            }
+            if condition.is_tangential {
+                continue;
+            }
             most.penetration = larger(most.penetration, gap.min(0.0));
             most.tension = larger(most.tension, force.min(0.0));
             most.contact_force = larger(most.contact_force, force);

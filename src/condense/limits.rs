@@ -3,23 +3,31 @@
 use std::collections::BTreeMap;
 
 use crate::contact::jumps::JumpOf;
+use crate::contact::jumps::Jumps;
 use crate::contact::limits::Limits;
 use crate::context::hierarchy::jumps;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 
+/// The jumps of the ties of every contact group of this rank, by its number, each with its condition (m).
+pub type TiedJumps = BTreeMap<usize, Vec<(usize, f64)>>;
+
+/// The jumps of ties among limits of groups.
+pub fn tied_jumps(of_groups: &BTreeMap<usize, Limits>) -> TiedJumps {
+    let tied = of_groups
+        .iter()
+        .map(|(&g, limits)| (g, limits.tied.clone()));
+    tied.collect()
+}
+
 /// The bounds on the normal jumps of every cluster in contact of this rank in a load step, by its place among
-/// those. Collective.
-///
-/// # Errors
-/// Supports that make two sides penetrate.
+/// those, joined from those `made` of its groups. Collective.
 pub fn limits_of_clusters(
     context: &Context<'_>,
-    loads: &Loads,
-) -> Result<BTreeMap<usize, Limits>, Failure> {
+    made: &BTreeMap<usize, Limits>,
+) -> BTreeMap<usize, Limits> {
     let Context { comm, plan, .. } = context;
-    let made = limits_of_groups(context, loads)?;
     let groups = plan.groups_by_cluster();
     let mut arrived: BTreeMap<usize, Limits> = BTreeMap::new();
     comm.route(
@@ -31,13 +39,12 @@ pub fn limits_of_clusters(
     );
     let contact = plan.contact.iter().map(|&c| &plan.clusters[c]);
     let own = (contact.enumerate()).filter(|(_, cluster)| cluster.owner == comm.rank());
-    Ok(own
-        .map(|(p, cluster)| {
-            let groups = cluster.groups.iter();
-            let limits: Vec<Limits> = groups.filter_map(|g| arrived.remove(g)).collect();
-            (p, Limits::join(&limits))
-        })
-        .collect())
+    own.map(|(p, cluster)| {
+        let groups = cluster.groups.iter();
+        let limits: Vec<Limits> = groups.filter_map(|g| arrived.remove(g)).collect();
+        (p, Limits::join(&limits))
+    })
+    .collect()
 }
 
 /// The bounds on the normal jumps of every contact group of this rank in a load step, by its number. Collective.
@@ -64,9 +71,10 @@ fn of_group(
 ) -> Result<Limits, Failure> {
     let scale = loads.largest_prescribed();
     let jumps = jumps(context, g, group)?;
-    let bounds = group.bounds(loads);
+    let bounds = group.bounds(loads, &jumps);
+    check_ties(context, group, &jumps, (&bounds, scale))?;
     for ((point, &bound), of) in group.points.iter().zip(&bounds).zip(&jumps.of) {
-        if *of == JumpOf::Prescribed && bound < -1e-12 * scale {
+        if *of == JumpOf::Prescribed && !point.law.is_tied() && bound < -1e-12 * scale {
             let contact = &context.catalog.contacts[point.contact as usize].name;
             return Err(Failure::input(format!(
                 "contact '{contact}': nodes {} and {} are prescribed to penetrate by {:.3e}; \
@@ -82,4 +90,34 @@ fn of_group(
         &group.friction(),
         scale,
     ))
+}
+
+/// Checks that supports and other ties prescribe no other jump than a tie has, where they prescribe all of it: `bounds` are
+/// what is missing to it, of displacements up to a scale.
+///
+/// # Errors
+/// The first condition with another one.
+fn check_ties(
+    context: &Context<'_>,
+    group: &ContactGroup,
+    jumps: &Jumps,
+    (bounds, scale): (&[f64], f64),
+) -> Result<(), Failure> {
+    for (j, condition) in group.conditions().enumerate() {
+        let is_prescribed = condition.is_tied && jumps.of[j] == JumpOf::Prescribed;
+        if !is_prescribed || bounds[j].abs() <= 1e-12 * scale || group.is_left_out(&condition) {
+            continue;
+        }
+        let point = &group.points[condition.point];
+        let contact = &context.catalog.contacts[point.contact as usize];
+        return Err(Failure::input(format!(
+            "{} '{}': at node {} what supports and others prescribe contradicts it, by {:.3e}; expected displacements that \
+             leave it as it is",
+            contact.kind.word(),
+            contact.name,
+            point.tag(),
+            bounds[j].abs()
+        )));
+    }
+    Ok(())
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::condense::blocks::CondensedBlocks;
+use crate::condense::limits::TiedJumps;
 use crate::context::Context;
 use crate::context::hierarchy::{Direction, carry};
 use crate::schur::local::CondensedLoad;
@@ -17,9 +18,13 @@ pub struct Factors<'a> {
 }
 
 impl Factors<'_> {
-    /// Condenses `loads` on the blocks up to the clusters; returns the load of every node of this rank.
-    /// Collective.
-    pub fn condense(&self, mut loads: BTreeMap<usize, Vec<f64>>) -> BTreeMap<usize, CondensedLoad> {
+    /// Condenses `loads` on the blocks up to the clusters, where ties have these jumps; returns the load of every node of this
+    /// rank. Collective.
+    pub fn condense(
+        &self,
+        mut loads: BTreeMap<usize, Vec<f64>>,
+        tied: &TiedJumps,
+    ) -> BTreeMap<usize, CondensedLoad> {
         let (context, condensed) = (&self.context, self.condensed);
         let mut of_nodes: BTreeMap<usize, CondensedLoad> = BTreeMap::new();
         let mut arrived = BTreeMap::new();
@@ -35,21 +40,24 @@ impl Factors<'_> {
             } else if let Some(merge) = condensed.merges.get(&v) {
                 let of_children: Vec<&[f64]> =
                     children.iter().map(|child| &arrived[child][..]).collect();
-                of_nodes.insert(v, merge.condense(&of_children, &[]));
+                let group = context.plan.group_of(v);
+                let known = group.and_then(|g| tied.get(&g)).into_iter().flatten();
+                let known: Vec<f64> = known.map(|&(_, jump)| jump).collect();
+                of_nodes.insert(v, merge.condense(&of_children, &[], &known));
             }
         }
         of_nodes
     }
 
     /// The unknowns of every block of this rank for those on the `boundaries` of its clusters, by node,
-    /// where `loads` are the condensed ones. Collective.
+    /// where `loads` are the condensed ones, and the forces of ties below clusters, by contact group. Collective.
     pub fn recover(
         &self,
         loads: &BTreeMap<usize, CondensedLoad>,
         mut boundaries: BTreeMap<usize, Vec<f64>>,
-    ) -> BTreeMap<usize, Vec<f64>> {
+    ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
         let (context, condensed) = (&self.context, self.condensed);
-        let mut of_blocks = BTreeMap::new();
+        let (mut of_blocks, mut of_ties) = (BTreeMap::new(), BTreeMap::new());
         for v in self.nodes().into_iter().rev() {
             let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
             let children = &context.plan.tree.nodes[v].children;
@@ -57,8 +65,11 @@ impl Factors<'_> {
                 if let Some(block) = condensed.blocks.get(&v) {
                     of_blocks.insert(v, block.factor.recover(load, &x));
                 } else if let Some(merge) = condensed.merges.get(&v) {
-                    let x = merge.recover(load, &x).0;
-                    of_children.extend(children.iter().copied().zip(x));
+                    let recovered = merge.recover(load, &x);
+                    of_children.extend(children.iter().copied().zip(recovered.children));
+                    if let Some(g) = context.plan.group_of(v) {
+                        of_ties.insert(g, recovered.forces);
+                    }
                 }
             }
             for &child in children {
@@ -66,7 +77,7 @@ impl Factors<'_> {
                 carry(context, child, Some(v), x, &mut boundaries, Direction::Down);
             }
         }
-        of_blocks
+        (of_blocks, of_ties)
     }
 
     /// The nodes of all clusters, children before parents, on all ranks the same.

@@ -6,7 +6,7 @@ use crate::comm::is_asked_to_stop;
 use crate::condense::Condensation;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::clusters::take_clusters;
-use crate::condense::limits::limits_of_clusters;
+use crate::condense::limits::{limits_of_clusters, limits_of_groups};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
@@ -70,8 +70,9 @@ pub fn condense_clusters(
         ..
     } = merging;
     let (context, loads) = (&condensation.context, condensation.loads);
-    let limits =
-        limits_of_clusters(context, loads).map_err(|failure| context.in_step(failure, 0))?;
+    let of_groups =
+        limits_of_groups(context, loads).map_err(|failure| context.in_step(failure, 0))?;
+    let limits = limits_of_clusters(context, &of_groups);
     take_clusters(plan, modes, limits, waiting, &mut condensed);
     Ok(condensed)
 }

@@ -47,20 +47,25 @@ impl Sum {
         self.terms.iter().map(coefficient).fold(0.0, f64::max)
     }
 
-    /// This in terms of jumps alone, if it is so but for round-off.
-    fn of_jumps(&self) -> Option<JumpOf> {
-        let mut terms = Vec::new();
+    /// This in terms of jumps alone, if it is so but for round-off: of unknown ones, and what the first `tied` ones, which
+    /// are known, add to it.
+    fn of_jumps(&self, tied: usize) -> Option<(JumpOf, Vec<(usize, f64)>)> {
+        let (mut terms, mut known) = (Vec::new(), Vec::new());
         for (&variable, &factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
             let Variable::Jump(number) = variable else {
                 return None;
             };
-            terms.push((number as usize, factor));
+            match (number as usize).checked_sub(tied) {
+                Some(number) => terms.push((number, factor)),
+                None => known.push((number as usize, factor)),
+            }
         }
-        Some(match terms[..] {
+        let of = match terms[..] {
             [] => JumpOf::Prescribed,
             [(number, factor)] if factor > 0.0 => JumpOf::Unknown { number, factor },
             _ => JumpOf::Combination(terms),
-        })
+        };
+        Some((of, known))
     }
 
     /// Puts `value` in the place of `variable`.
@@ -87,8 +92,10 @@ pub enum JumpOf {
     },
     /// It is Σ factor·t of several unknown jumps, or a negative multiple of one: numbers and factors.
     Combination(Vec<(usize, f64)>),
-    /// Supports prescribe it on both sides.
+    /// Supports prescribe it on both sides, or ties whose jumps make it.
     Prescribed,
+    /// It is that of a tie, which is known: its number among those.
+    Tied(usize),
 }
 
 /// For each of `jumps` the condition that it is the unknown of.
@@ -119,10 +126,57 @@ pub struct Jumps {
     pub replaced: BTreeMap<u32, Sum>,
     /// Where the jump of each condition is found.
     pub of: Vec<JumpOf>,
+    /// The unknowns that the jumps of ties replace; in terms of others these come first.
+    pub tied: Vec<u32>,
+    /// For each condition the known jumps that are a part of it: their numbers, and factors.
+    pub known: BTreeMap<usize, Vec<(usize, f64)>>,
+}
+
+/// Which conditions are those of ties.
+pub type IsTied<'a> = &'a dyn Fn(usize) -> bool;
+
+/// A jump of those that have unknowns of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OwnJump {
+    /// An unknown of the contact problem, by its number among these.
+    Unknown(usize),
+    /// That of a tie, by its number among those.
+    Tied(usize),
 }
 
 impl Jumps {
-    /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns.
+    /// The jump that a variable of that number is.
+    pub fn own(&self, number: u32) -> OwnJump {
+        let number = number as usize;
+        match number.checked_sub(self.tied.len()) {
+            Some(unknown) => OwnJump::Unknown(unknown),
+            None => OwnJump::Tied(number),
+        }
+    }
+
+    /// The condition that each jump of a tie is that of.
+    pub fn tied_conditions(&self) -> Vec<usize> {
+        let mut conditions = vec![0; self.tied.len()];
+        for (j, of) in self.of.iter().enumerate() {
+            if let JumpOf::Tied(number) = *of {
+                conditions[number] = j;
+            }
+        }
+        conditions
+    }
+
+    /// Takes from the bounds of conditions what known jumps are of their jumps.
+    pub fn subtract_known(&self, bounds: &mut [f64]) {
+        let tied = self.tied_conditions();
+        let values: Vec<f64> = tied.iter().map(|&j| bounds[j]).collect();
+        for (&j, known) in &self.known {
+            let sum: f64 = known.iter().map(|&(k, factor)| factor * values[k]).sum();
+            bounds[j] -= sum;
+        }
+    }
+
+    /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns, first those that are `tied`: in terms of
+    /// their jumps, which are known, others are found.
     ///
     /// `may_go` tells which unknowns may be replaced (not those that others share), `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
     /// a stiff side in terms of a soft one is a small difference of large forces. Where some depend
@@ -133,13 +187,18 @@ impl Jumps {
     /// The first condition none of whose unknowns may be replaced.
     pub fn new(
         rows: &[JumpRow],
+        tied: IsTied<'_>,
         may_go: impl Fn(u32) -> bool,
         stiffness: impl Fn(u32) -> f64,
     ) -> Result<Self, NoUnknown> {
-        let as_given = Self::solve(rows, 0.0, &may_go, &stiffness)?;
-        let depends = |of: &JumpOf| matches!(of, JumpOf::Combination(_));
-        match as_given.of.iter().any(depends) {
-            true => Self::solve(rows, PARALLEL, &may_go, &stiffness),
+        let as_given = Self::solve(rows, tied, 0.0, &may_go, &stiffness)?;
+        let depends = |(j, of): (usize, &JumpOf)| match of {
+            JumpOf::Combination(_) => true,
+            JumpOf::Prescribed => tied(j) && !rows[j].is_empty(),
+            JumpOf::Unknown { .. } | JumpOf::Tied(_) => false,
+        };
+        match as_given.of.iter().enumerate().any(depends) {
+            true => Self::solve(rows, tied, PARALLEL, &may_go, &stiffness),
             false => Ok(as_given),
         }
     }
@@ -148,6 +207,7 @@ impl Jumps {
     /// coefficient.
     fn solve(
         rows: &[JumpRow],
+        tied: IsTied<'_>,
         least: f64,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
@@ -162,21 +222,31 @@ impl Jumps {
             of: vec![JumpOf::Prescribed; rows.len()],
             ..Self::default()
         };
-        let mut waiting: Vec<usize> = (0..rows.len()).filter(|&j| !rows[j].is_empty()).collect();
-        for least in [least, 0.0] {
-            for j in std::mem::take(&mut waiting) {
-                let terms = &rows[j];
-                let rest = jumps.remainder(&rows[j]);
-                let largest = terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
-                if rest.largest_displacement() < least * largest {
-                    waiting.push(j);
-                    continue;
+        let of_kind = |is_tied: bool| -> Vec<usize> {
+            let all = 0..rows.len();
+            all.filter(|&j| !rows[j].is_empty() && tied(j) == is_tied)
+                .collect()
+        };
+        for is_tied in [true, false] {
+            let mut waiting = of_kind(is_tied);
+            for least in [least, 0.0] {
+                for j in std::mem::take(&mut waiting) {
+                    let terms = &rows[j];
+                    let rest = jumps.remainder(&rows[j]);
+                    let largest = terms.iter().fold(0.0, |m: f64, (_, c)| m.max(c.abs()));
+                    if rest.largest_displacement() < least * largest {
+                        waiting.push(j);
+                        continue;
+                    }
+                    let elsewhere =
+                        |v: u32| uses[&v] - usize::from(terms.iter().any(|&(own, _)| own == v));
+                    let found = jumps.solve_for_one(rest, is_tied, elsewhere, may_go, stiffness);
+                    let (of, known) = found.ok_or(NoUnknown(j))?;
+                    jumps.of[j] = of;
+                    if !known.is_empty() {
+                        jumps.known.insert(j, known);
+                    }
                 }
-                let elsewhere =
-                    |v: u32| uses[&v] - usize::from(terms.iter().any(|&(own, _)| own == v));
-                jumps.of[j] = jumps
-                    .solve_for_one(rest, elsewhere, may_go, stiffness)
-                    .ok_or(NoUnknown(j))?;
             }
         }
         Ok(jumps)
@@ -202,17 +272,18 @@ impl Jumps {
     fn solve_for_one(
         &mut self,
         mut rest: Sum,
+        is_tied: bool,
         elsewhere: impl Fn(u32) -> usize,
         may_go: &impl Fn(u32) -> bool,
         stiffness: &impl Fn(u32) -> f64,
-    ) -> Option<JumpOf> {
+    ) -> Option<(JumpOf, Vec<(usize, f64)>)> {
         let candidates = rest.terms.iter().filter_map(|(&v, &c)| match v {
             Variable::Displacement(v) if may_go(v) => Some((v, c)),
             _ => None,
         });
         let largest = candidates.clone().map(|(_, c)| c.abs()).fold(0.0, f64::max);
         if largest < ROUND_OFF {
-            return rest.of_jumps();
+            return rest.of_jumps(self.tied.len());
         }
         let (pivot, coefficient) = candidates
             .filter(|(_, c)| c.abs() >= 0.5 * largest)
@@ -221,9 +292,21 @@ impl Jumps {
                     .then(stiffness(v).total_cmp(&stiffness(w)))
                     .then(v.cmp(&w))
             })?;
-        let number = self.pivots.len();
-        self.pivots.push(pivot);
-        rest.add(Variable::Jump(number as u32), -1.0);
+        let own = match is_tied {
+            true => JumpOf::Tied(self.tied.len()),
+            false => JumpOf::Unknown {
+                number: self.pivots.len(),
+                factor: 1.0,
+            },
+        };
+        rest.add(
+            Variable::Jump((self.tied.len() + self.pivots.len()) as u32),
+            -1.0,
+        );
+        match is_tied {
+            true => self.tied.push(pivot),
+            false => self.pivots.push(pivot),
+        }
         let gone = Variable::Displacement(pivot);
         rest.terms.retain(|&v, c| v != gone && c.abs() > 1e-15);
         rest.terms.values_mut().for_each(|c| *c /= -coefficient);
@@ -233,10 +316,7 @@ impl Jumps {
             }
         }
         self.replaced.insert(pivot, rest);
-        Some(JumpOf::Unknown {
-            number,
-            factor: 1.0,
-        })
+        Some((own, Vec::new()))
     }
 }
 

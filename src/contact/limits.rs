@@ -62,6 +62,8 @@ pub struct Limits {
     /// Those of tangential jumps, ascending.
     pub tangents: Vec<TangentialLimit>,
     prescribed_slips: Vec<PrescribedSlip>,
+    /// The conditions of ties and their jumps (m), of one group alone.
+    pub tied: Vec<(usize, f64)>,
 }
 
 impl Limits {
@@ -83,8 +85,12 @@ impl Limits {
             scale,
             tangents: Vec::new(),
             prescribed_slips: Vec::new(),
+            tied: Vec::new(),
         };
-        let is_tangential = |j: usize| j >= of.len() - friction.len();
+        let is_tangential = |j: usize| {
+            let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
+            found.is_ok()
+        };
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
             match of {
                 // A tangential jump is no bound for others, nor they for it.
@@ -108,9 +114,11 @@ impl Limits {
                     limits.bounds.push(*gap);
                     limits.tightest.push((j, 1.0));
                 }
+                JumpOf::Tied(_) => limits.tied.push((j, *gap)),
                 JumpOf::Prescribed => {}
             }
         }
+        limits.tied.sort_by_key(|&(j, _)| number_of_tied(&of[j]));
         let prescribed = |j: usize| {
             let slip = -gaps[j];
             let slips = slip.abs() > ROUND_OFF * scale;
@@ -260,6 +268,13 @@ impl Limits {
         forces
     }
 
+    /// Puts the forces at the jumps of ties where their conditions are.
+    pub fn put_tied(&self, of_jumps: &[f64], forces: &mut [f64]) {
+        for (&(condition, _), force) in self.tied.iter().zip(of_jumps) {
+            forces[condition] = *force;
+        }
+    }
+
     /// Which conditions are closed where the limits are; tangential ones that stick are.
     pub fn closed(&self, limits: impl IntoIterator<Item = bool>) -> Vec<bool> {
         let mut closed = vec![false; self.conditions];
@@ -281,6 +296,14 @@ impl Limits {
             other => other,
         };
         self.tightest.iter().map(of_condition).collect()
+    }
+}
+
+/// The number of a jump of a tie.
+fn number_of_tied(of: &JumpOf) -> Option<usize> {
+    match of {
+        JumpOf::Tied(number) => Some(*number),
+        _ => None,
     }
 }
 

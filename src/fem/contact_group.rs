@@ -1,21 +1,13 @@
 //! A contact group: the contact points that belong to one node of the hierarchy, where all that have one of
 //! their nodes come together, and what they need to know of these nodes.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::contact_point::{ContactPoint, Law};
-use contact_dd_partition::element::geometry::{advance, dot, length};
-use contact_dd_partition::model::Support;
+use contact_dd_partition::element::geometry::advance;
 
 use super::contact_node::ContactNode;
-use super::frame::{Frame, support_frames};
 use super::jump_row::{NO_ROW, less, only_direction, product};
 use crate::contact::friction::{ForceBound, TangentialCondition};
-use crate::contact::jumps::{JumpRow, Jumps, NoUnknown, Sum, Variable, defining_conditions};
 use crate::contact::law::PointLaw;
-use crate::contact::limits::Limits;
-use crate::schur::condensed::InterfaceDof;
-use crate::schur::substitution::Replaced;
 
 /// Contact points over nodes of their own numbering.
 #[derive(Clone, Debug, Default)]
@@ -37,11 +29,9 @@ pub struct Condition {
     pub direction: [f64; 3],
     /// Whether it is a tangent.
     pub is_tangential: bool,
+    /// Whether it is one of a tie.
+    pub is_tied: bool,
 }
-
-/// The rows of the limits of a contact group.
-#[derive(Clone, Debug)]
-pub struct JumpRows(Vec<JumpRow>);
 
 /// The loads on a contact group in a load step: gaps and prescribed displacements.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,13 +84,17 @@ impl ContactGroup {
         let frames = group.frames();
         for point in 0..group.points.len() {
             let normal = group.points[point].normal();
-            let tangents = group.points[point].tangents(dim);
+            let tangents = match group.points[point].law.is_tied() {
+                true => &[],
+                false => group.points[point].tangents(dim),
+            };
             if let [first, second] = *tangents {
                 let [n, a, b] = [normal, first, second].map(|direction| {
                     let condition = Condition {
                         point,
                         direction,
                         is_tangential: true,
+                        is_tied: false,
                     };
                     group.row(&condition, &frames)
                 });
@@ -137,19 +131,22 @@ impl ContactGroup {
             && supports.all(|(_, values)| values.iter().all(|&value| value == 0.0))
     }
 
-    /// Conditions: the normal one of every point, then the tangential ones of the points that have friction.
+    /// Conditions: the normal one of every point, then the tangential ones of the points that have friction or are tied.
     pub fn conditions(&self) -> impl Iterator<Item = Condition> + '_ {
         let normal = |(point, of_point): (usize, &ContactPoint<u32>)| Condition {
             point,
             direction: of_point.normal(),
             is_tangential: false,
+            is_tied: of_point.law.is_tied(),
         };
         let tangential = |(point, of_point): (usize, &ContactPoint<u32>)| {
             let tangents = of_point.tangents(self.dim).to_vec().into_iter();
+            let is_tied = of_point.law.is_tied();
             tangents.map(move |direction| Condition {
                 point,
                 direction,
                 is_tangential: true,
+                is_tied,
             })
         };
         let points = self.points.iter().enumerate();
@@ -169,7 +166,7 @@ impl ContactGroup {
         let of_condition = |(number, condition): (usize, Condition)| {
             let point = &self.points[condition.point];
             let (coefficient, bound, only_closed) = match point.law {
-                Law::Frictionless => return None,
+                Law::Frictionless | Law::Tied => return None,
                 Law::Given { bound } => (0.0, bound, false),
                 Law::Coulomb {
                     coefficient,
@@ -239,108 +236,6 @@ impl ContactGroup {
         self.conditions().zip(&loads.gaps).map(left).collect()
     }
 
-    /// The gaps that supports leave where what is free doesn't move (m): the bounds on the normal jumps t = b·x, and
-    /// the tangential jumps at which the sides stick.
-    pub fn bounds(&self, loads: &GroupLoads) -> Vec<f64> {
-        let frames = self.frames();
-        let bound = |(condition, gap): (Condition, &f64)| {
-            let prescribed = self.row_of(&condition).flat_map(|(node, push)| {
-                let (axes, held) = (frames[node as usize].axes, &loads.held[node as usize]);
-                (held.iter().zip(axes)).map(move |(value, axis)| dot(push, axis) * value)
-            });
-            gap - prescribed.sum::<f64>()
-        };
-        self.conditions().zip(&loads.gaps).map(bound).collect()
-    }
-
-    /// The jumps of the conditions, for the displacements along the axes of their nodes that supports leave
-    /// free. They replace displacements of nodes that are `eliminated` where the points belong.
-    ///
-    /// # Errors
-    /// A point that no displacement can be replaced for.
-    pub fn jumps(&self, eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
-        self.solve_rows(&self.rows(), eliminated)
-    }
-
-    /// The rows of B on what is free along the axes of the nodes, a condition each.
-    fn rows(&self) -> Vec<JumpRow> {
-        let frames = self.frames();
-        let conditions = self.conditions();
-        conditions
-            .map(|condition| self.row(&condition, &frames))
-            .collect()
-    }
-
-    fn solve_rows(&self, rows: &[JumpRow], eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
-        let node = |v: u32| &self.nodes[v as usize / self.dim];
-        let may_go = |v: u32| eliminated.binary_search(&node(v).interface).is_ok();
-        Jumps::new(rows, may_go, |v| node(v).stiffness)
-    }
-
-    /// The rows of `limits`, t = b·x and D t = b·x.
-    pub fn rows_of(&self, limits: &Limits) -> JumpRows {
-        let rows = self.rows();
-        let dependent = limits.conditions_of_limits().split_off(limits.jumps());
-        let conditions = limits.defining.iter().copied().chain(dependent);
-        JumpRows(conditions.map(|j| rows[j].clone()).collect())
-    }
-
-    /// The unknowns that the `closed` limits replace where all others are none; they keep their numbers among the `rows`
-    /// of all.
-    ///
-    /// # Errors
-    /// One that no displacement of a node that is `eliminated` can be replaced for: its number among the closed ones.
-    pub fn replaced_by(
-        &self,
-        rows: &JumpRows,
-        closed: &[usize],
-        eliminated: &[u32],
-    ) -> Result<Vec<Replaced>, NoUnknown> {
-        let of_closed: Vec<JumpRow> = closed.iter().map(|&t| rows.0[t].clone()).collect();
-        let jumps = self.solve_rows(&of_closed, eliminated)?;
-        let defining = defining_conditions(&jumps.of, jumps.pivots.len());
-        let mut replaced = self.replaced(&jumps);
-        for (t, _) in replaced.iter_mut().flat_map(|replaced| &mut replaced.jumps) {
-            *t = closed[defining[*t]];
-        }
-        Ok(replaced)
-    }
-
-    /// The terms of every limit, in the words of Γ.
-    pub fn terms_of(&self, rows: &JumpRows) -> Vec<Vec<(InterfaceDof, f64)>> {
-        let terms = |row: &JumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
-        rows.0.iter().map(terms).collect()
-    }
-
-    /// An unknown of the group in the words of Γ.
-    fn dof(&self, v: u32) -> InterfaceDof {
-        InterfaceDof {
-            node: self.nodes[v as usize / self.dim].interface,
-            axis: v % self.dim as u32,
-        }
-    }
-
-    /// Traces that normal jumps replace, by the numbers of Γ.
-    pub fn replaced(&self, jumps: &Jumps) -> Vec<Replaced> {
-        let replaced = |pivot: &u32| {
-            let Sum { terms } = &jumps.replaced[pivot];
-            let staying = terms.iter().filter_map(|(&variable, &c)| match variable {
-                Variable::Displacement(v) => Some((self.dof(v), c)),
-                Variable::Jump(_) => None,
-            });
-            let of_jumps = terms.iter().filter_map(|(&variable, &c)| match variable {
-                Variable::Displacement(_) => None,
-                Variable::Jump(t) => Some((t as usize, c)),
-            });
-            Replaced {
-                dof: self.dof(*pivot),
-                staying: staying.collect(),
-                jumps: of_jumps.collect(),
-            }
-        };
-        jumps.pivots.iter().map(replaced).collect()
-    }
-
     /// Bᵀλ of contact `forces`, one a condition: on every node its parts.
     pub fn pushes(&self, forces: &[f64]) -> Vec<Vec<[f64; 3]>> {
         let mut pushes = vec![Vec::new(); self.nodes.len()];
@@ -350,39 +245,5 @@ impl ContactGroup {
             }
         }
         pushes
-    }
-
-    /// The frames of the nodes; what supports prescribe in the first load step stands for all.
-    fn frames(&self) -> Vec<Frame> {
-        let of_node = |node: &ContactNode| {
-            let support = |(direction, values): &([f64; 3], Vec<f64>)| Support {
-                node: 0,
-                direction: *direction,
-                value: values[0],
-                condition: 0,
-            };
-            let supports: Vec<Support> = node.supports.iter().map(support).collect();
-            let frame = support_frames(&supports, self.dim).remove(&0);
-            let along = node.slides.map(|normal| Frame::along(&[normal], self.dim));
-            frame.or(along).unwrap_or(Frame::CARTESIAN)
-        };
-        self.nodes.iter().map(of_node).collect()
-    }
-
-    /// The jump of a condition in terms of what is free along the axes of its nodes' frames.
-    fn row(&self, condition: &Condition, frames: &[Frame]) -> JumpRow {
-        let mut row: BTreeMap<u32, f64> = BTreeMap::new();
-        for (node, push) in self.row_of(condition) {
-            let frame = &frames[node as usize];
-            for axis in (0..self.dim).filter(|&axis| frame.prescribed[axis].is_none()) {
-                let v = node * self.dim as u32 + axis as u32;
-                *row.entry(v).or_default() += dot(push, frame.axes[axis]);
-            }
-        }
-        // A frame along the point's own normal leaves round-off on its other axes.
-        let sizes = self.row_of(condition).map(|(_, push)| length(push));
-        let scale = sizes.fold(0.0, f64::max);
-        row.retain(|_, c| c.abs() > 1e-14 * scale);
-        row.into_iter().collect()
     }
 }

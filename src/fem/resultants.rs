@@ -45,11 +45,13 @@ impl Resultant {
 pub struct ContactResultant {
     /// Name of the contact.
     pub name: String,
+    /// Its kind: "contact", "tie" or "equation".
+    pub kind: String,
     /// Number of conditions.
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
-    /// Resultant on side a.
+    /// Resultant on side a, of equations on the first node of each.
     #[serde(flatten)]
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
@@ -112,6 +114,11 @@ impl ContactResultant {
                 dissipated_work: state.dissipated,
             });
             self.parting += usize::from(is_parting(point, state));
+        }
+        if let (true, Some((_, factor))) = (point.is_equation(), point.entries.first()) {
+            let force = point.normal().map(|n| -factor * state.force * n);
+            self.resultant.add(point.position, force);
+            return;
         }
         let force = advance(state.tangential_force, -state.force, point.normal());
         self.resultant.add(point.force_point, force);
@@ -229,6 +236,7 @@ impl Resultants {
     pub fn new(catalog: &Catalog, reactions: Vec<Reaction>) -> Self {
         let contacts = catalog.contacts.iter().map(|contact| ContactResultant {
             name: contact.name.clone(),
+            kind: contact.kind.word().into(),
             conditions: contact.conditions,
             friction: contact.has_friction.then(Friction::default),
             ..ContactResultant::default()

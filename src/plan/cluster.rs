@@ -47,12 +47,14 @@ pub struct ClusterPlan {
     pub owner: usize,
     /// Its groups, by their place among all of the plan, in the order in which they are merged.
     pub groups: Vec<usize>,
+    /// Number of conditions of its contact points, without those of ties.
+    pub conditions: usize,
 }
 
 impl ClusterPlan {
     /// Whether anything in it is in contact.
     pub fn is_in_contact(&self) -> bool {
-        !self.groups.is_empty()
+        self.conditions > 0
     }
 }
 

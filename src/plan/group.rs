@@ -47,7 +47,7 @@ impl GroupPlan {
             node: v,
             nodes,
             numbers,
-            conditions: tree.own_conditions(v),
+            conditions: tree.own_conditions(v) + tree.nodes[v].tied,
         }
     }
 

@@ -60,6 +60,9 @@ fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec
 fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
     let (gaps, forces) = (&solution.gaps, &solution.forces);
     let normal = |j: usize| {
+        if group.points[j].law.is_tied() {
+            return 0.0;
+        }
         let r = group.stiffness_at(j);
         (forces[j] - (forces[j] - r * gaps[j]).max(0.0)).abs()
     };

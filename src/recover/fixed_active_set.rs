@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::bddc::solution::Accuracy;
 use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
+use crate::condense::limits::TiedJumps;
 use crate::condense::substitute::Factors;
 use crate::contact::laws::Iterate;
 use crate::contact::limits::Limits;
@@ -152,13 +153,31 @@ impl<'a> FixedActiveSet<'a> {
         if let Some(fronts) = self.fronts {
             return self.solve_by_fronts(fronts, loads, conditions, forces, tolerance);
         }
+        let tied = self.missing_of_ties(&conditions);
         let limits = self.limits(factors.collect_conditions(conditions));
-        let condensed = factors.condense(loads);
-        let (forces, boundaries) = self.solve_interface(&limits, &condensed);
-        Change {
-            forces: factors.spread_conditions(forces),
-            blocks: factors.recover(&condensed, boundaries),
-        }
+        let condensed = factors.condense(loads, &tied);
+        let (forces_of_clusters, boundaries) = self.solve_interface(&limits, &condensed);
+        let (blocks, of_ties) = factors.recover(&condensed, boundaries);
+        let mut forces = self.no_forces();
+        forces.extend(factors.spread_conditions(forces_of_clusters));
+        put_tied(&mut forces, &of_ties, &tied);
+        Change { blocks, forces }
+    }
+
+    /// No force at any condition of the contact groups of this rank.
+    fn no_forces(&self) -> BTreeMap<usize, Vec<f64>> {
+        let groups = self.context.groups.iter();
+        let none = groups.map(|(&g, group)| (g, vec![0.0; group.conditions().count()]));
+        none.collect()
+    }
+
+    /// What the jumps of ties lack, where their conditions have these statuses.
+    fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
+        let of_group = |(&g, tied): (&usize, &Vec<(usize, f64)>)| {
+            let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
+            (g, tied.iter().map(lacks).collect())
+        };
+        self.step.tied.iter().map(of_group).collect()
     }
 
     /// The same by the fronts of a fixed active set. Collective.
@@ -171,6 +190,7 @@ impl<'a> FixedActiveSet<'a> {
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
+        let tied = self.missing_of_ties(&conditions);
         let (mut open, mut missing): (BTreeMap<usize, Vec<bool>>, OnJumps) = Default::default();
         let mut laws = Laws::new();
         for (g, of_group) in conditions {
@@ -180,7 +200,9 @@ impl<'a> FixedActiveSet<'a> {
                 let of_slipping = SlipLaw::of_slipping(group, &limits[&g], &fixed, forces);
                 laws.insert(g, of_slipping);
             }
-            missing.insert(g, fixed.iter().map(FixedStatus::lacks).collect());
+            let lacks = fixed.iter().map(FixedStatus::lacks);
+            let of_ties = tied[&g].iter().map(|&(_, jump)| jump);
+            missing.insert(g, lacks.chain(of_ties).collect());
             open.insert(g, fixed.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();
@@ -188,7 +210,7 @@ impl<'a> FixedActiveSet<'a> {
             // The contacts that are left hold nothing: no change is better than any.
             return Change::default();
         };
-        let condensed = factors.condense(loads);
+        let condensed = factors.condense(loads, &tied);
         let on_clusters = condensed
             .iter()
             .map(|(&v, load)| (v, load.boundary().to_vec()));
@@ -204,12 +226,13 @@ impl<'a> FixedActiveSet<'a> {
             return Change::default();
         };
         let forces = solution.at.iter();
-        Change {
-            forces: forces
-                .map(|(&g, at)| (g, limits[&g].forces(&at.forces)))
-                .collect(),
-            blocks: factors.recover(&condensed, solution.boundaries),
-        }
+        let mut forces = forces
+            .map(|(&g, at)| (g, limits[&g].forces(&at.forces)))
+            .collect();
+        put_tied(&mut forces, &solution.tied, &tied);
+        let (blocks, of_ties) = factors.recover(&condensed, solution.boundaries);
+        put_tied(&mut forces, &of_ties, &tied);
+        Change { blocks, forces }
     }
 
     /// The limits of every cluster in contact of this rank.
@@ -267,6 +290,21 @@ impl<'a> FixedActiveSet<'a> {
             },
         );
         (forces, boundaries)
+    }
+}
+
+/// Puts the forces at the jumps of ties among those of all conditions, by contact group.
+fn put_tied(
+    forces: &mut BTreeMap<usize, Vec<f64>>,
+    of_jumps: &BTreeMap<usize, Vec<f64>>,
+    tied: &TiedJumps,
+) {
+    for (g, of_jumps) in of_jumps {
+        if let Some(forces) = forces.get_mut(g) {
+            for (force, (condition, _)) in of_jumps.iter().zip(&tied[g]) {
+                forces[*condition] = *force;
+            }
+        }
     }
 }
 

@@ -81,7 +81,7 @@ fn turned(solution: &mut GroupSolution, point: &PointLaw, here: PointState) -> (
     (force.map(|force| force / here.size()), 0.0)
 }
 
-/// Changes the forces of a contact group, whose conditions have these statuses: none holds its sides together, and
+/// Changes the forces of a contact group, whose conditions have these statuses: none but a tie's holds its sides together, and
 /// friction stays at its bound.
 pub fn change_forces(
     group: &ContactGroup,
@@ -91,8 +91,11 @@ pub fn change_forces(
     changes: &[f64],
 ) {
     let normals = group.points.len();
-    for (j, (force, change)) in solution.forces.iter_mut().zip(changes).enumerate() {
-        if j < normals {
+    let all = solution.forces.iter_mut().zip(changes).enumerate();
+    for ((j, (force, change)), condition) in all.zip(group.conditions()) {
+        if condition.is_tied {
+            *force += change;
+        } else if j < normals {
             *force = (*force + change).max(0.0);
         } else if group.dim == 2 || !prescribed[j] {
             *force += change;

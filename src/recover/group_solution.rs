@@ -35,7 +35,9 @@ impl GroupSolution {
     /// whether there was any.
     pub fn open_or_close(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
-        for j in 0..group.points.len() {
+        let unilateral = group.points.iter().enumerate();
+        let unilateral = unilateral.filter(|(_, point)| !point.law.is_tied());
+        for (j, _) in unilateral {
             let is_wrong = match self.closed[j] {
                 true => self.forces[j] <= 0.0,
                 false => self.gaps[j] < 0.0,

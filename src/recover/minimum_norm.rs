@@ -212,7 +212,8 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
 /// doesn't stick any more, and an open contact has no friction of its pressure.
 fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
-    for (j, Condition { is_tangential, .. }) in group.conditions().enumerate() {
+    let may_open = |(_, condition): &(usize, Condition)| !condition.is_tied;
+    for (j, Condition { is_tangential, .. }) in group.conditions().enumerate().filter(may_open) {
         let gap = solution.gaps[j];
         let gap = if is_tangential { gap.abs() } else { gap };
         if solution.closed[j] && gap > closed_up_to {
@@ -282,7 +283,8 @@ fn condition_states(
                     force
                 };
                 ConditionState {
-                    carrying: size > ROUND_OFF * scale(&groups[&g].points[condition.point]),
+                    carrying: condition.is_tied
+                        || size > ROUND_OFF * scale(&groups[&g].points[condition.point]),
                     closed: of_group.closed[j],
                     gap: of_group.gaps[j],
                     force,

@@ -149,7 +149,7 @@ impl<'a> RunLog<'a> {
             dofs: catalog.dofs(),
             interface_dofs: catalog.dim * catalog.interface_nodes,
             subdomains: catalog.subdomains.len(),
-            contact_pairs: plan.groups.len(),
+            contact_pairs: plan.contact_groups(),
             contact_conditions: catalog.conditions(),
             conditions_with_friction: catalog.conditions_with_friction(),
             ranks: self.comm.size(),

@@ -73,12 +73,8 @@ impl Scene {
     /// # Errors
     /// The load drives a motion that neither supports nor contact hold: body and motion are named.
     pub fn analyse(&self) -> Result<RigidMotions, Failure> {
-        let Self {
-            bodies,
-            names,
-            rows,
-            ..
-        } = self;
+        let Self { bodies, names, .. } = self;
+        let rows = &self.both_ways();
         let kinematics = Kinematics::new(self.dim, bodies);
         if kinematics.len == 0 {
             return Ok(RigidMotions::default());
@@ -137,8 +133,8 @@ impl Scene {
     /// The failure of bodies that only friction could hold, where it turns out that it doesn't: where elastic bodies
     /// aren't pressed as much as rigid ones could be.
     pub fn unheld(&self) -> Option<Failure> {
-        let normals = self.rows.iter().filter(|row| row.friction.is_none());
-        let normals: Vec<RigidRow> = normals.cloned().collect();
+        let normals = self.both_ways().into_iter();
+        let normals: Vec<RigidRow> = normals.filter(|row| row.friction.is_none()).collect();
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         let load = kinematics.load(&self.bodies);
         let scale: f64 = self.bodies.iter().map(|body| body.load_scale).sum();

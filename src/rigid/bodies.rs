@@ -172,7 +172,7 @@ fn of_subdomain(
 
 /// Rows with the same null space and least squares solution as `rows`, at most as many as their
 /// `entries`.
-fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
+pub(super) fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
     if rows.len() <= entries {
         return rows;
     }

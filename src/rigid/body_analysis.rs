@@ -69,7 +69,12 @@ pub fn analyse_bodies(
             motions.fixing_dofs.extend(pins);
             Found {
                 movable: scene.is_movable(),
-                closing_motions: closing_motions(scene.dim, &scene.bodies, &scene.rows, before),
+                closing_motions: closing_motions(
+                    scene.dim,
+                    &scene.bodies,
+                    &scene.both_ways(),
+                    before,
+                ),
                 motions,
             }
         });

@@ -60,8 +60,10 @@ impl Scene {
         let mut rows = against(&mut conditions.iter().map(|&j| self.rows[j].clone()));
         let mut load = kinematics.load(&self.bodies).select_rows(&columns);
         let pins = fixing_dofs.iter();
-        let pins = &mut pins.filter_map(|pin| self.fixing_row(pin, &own));
-        let pinned = against(pins);
+        let pins = pins.filter_map(|pin| self.fixing_row(pin, &own));
+        // Nor do ties let bodies move as they like.
+        let ties = self.rows.iter().filter(|row| row.is_tied).cloned();
+        let pinned = against(&mut pins.chain(ties));
         if pinned.iter().any(|&p| p != 0.0) {
             let kept = null_space(&pinned);
             (rows, load) = (rows * &kept, kept.transpose() * load);
@@ -84,6 +86,7 @@ impl Scene {
                 bodies: vec![(b, body.frame.action(self.dim, x, &axis))],
                 gap: 0.0,
                 friction: None,
+                is_tied: false,
             })
         })
     }

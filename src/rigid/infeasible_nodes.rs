@@ -25,8 +25,8 @@ type HalfSpace = ([f64; 3], f64);
 pub fn check(group: &ContactGroup, loads: &GroupLoads, catalog: &Catalog) -> Result<(), Failure> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (j, point) in group.points.iter().enumerate() {
-        if let [(node, _)] = point.entries[..] {
-            at_node.entry(node).or_default().push(j);
+        if let ([(node, _)], false) = (&point.entries[..], point.law.is_tied()) {
+            at_node.entry(*node).or_default().push(j);
         }
     }
     for (node, at) in at_node {

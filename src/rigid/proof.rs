@@ -321,6 +321,7 @@ mod tests {
         let coefficient = 0.1 + noise(seed + 1).abs();
         let bound = coulomb(coefficient);
         let rows = (0..3 * points).map(|i| RigidRow {
+            is_tied: false,
             bodies: Vec::new(),
             gap: 0.0,
             friction: (i % 3 > 0).then_some(Friction {

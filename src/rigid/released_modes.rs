@@ -124,7 +124,8 @@ impl Scene {
         let in_doubt = IN_DOUBT * largest(&before);
         let is_in_doubt = |&(j, ref row): &(usize, SparseRow)| {
             let size = row.iter().map(|(_, b)| b * b).sum::<f64>().sqrt();
-            self.rows[j].friction.is_none() && size * conditions[j].force <= in_doubt
+            let presses = self.rows[j].friction.is_none() && !self.rows[j].is_tied;
+            presses && size * conditions[j].force <= in_doubt
         };
         rows.retain(|condition| is_in_doubt(condition));
         loop {

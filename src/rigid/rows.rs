@@ -43,6 +43,7 @@ fn of_group(group: &ContactGroup, frames: &[BodyFrame]) -> Vec<RigidRow> {
             false => group.points[condition.point].gap,
         },
         friction: None,
+        is_tied: condition.is_tied,
     };
     let mut rows: Vec<RigidRow> = group.conditions().map(row).collect();
     for TangentialCondition {

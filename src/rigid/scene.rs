@@ -46,6 +46,8 @@ pub struct RigidRow {
     pub gap: f64,
     /// The bound of its force if that is tangential; a normal one presses.
     pub friction: Option<Friction>,
+    /// Whether it is one of a tie, which holds both ways.
+    pub is_tied: bool,
 }
 
 /// The bodies and conditions from which rigid motions follow. On the root.

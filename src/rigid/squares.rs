@@ -34,6 +34,7 @@ impl BodyState {
     pub fn row(&self, b: usize, x: [f64; 3], along: [f64; 3]) -> RigidRow {
         let dim = if self.load.len() == 6 { 3 } else { 2 };
         RigidRow {
+            is_tied: false,
             bodies: vec![(b, self.frame.action(dim, &x, &along))],
             gap: 0.0,
             friction: None,

@@ -87,6 +87,7 @@ impl LocalSchur {
         CondensedLoad {
             y: load,
             interior: self.interior,
+            tied: TiedLoad::default(),
         }
     }
 
@@ -104,12 +105,27 @@ impl LocalSchur {
 pub struct CondensedLoad {
     y: Vec<f64>,
     interior: usize,
+    /// Jumps of ties, and what acts on them.
+    pub tied: TiedLoad,
+}
+
+/// The jumps of the ties of a front (m), and the loads on them (N/m).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TiedLoad {
+    /// The jumps.
+    pub jumps: Vec<f64>,
+    /// The loads.
+    pub loads: Vec<f64>,
 }
 
 impl CondensedLoad {
     /// A load whose first `interior` entries stay behind.
     pub fn new(y: Vec<f64>, interior: usize) -> Self {
-        Self { y, interior }
+        Self {
+            y,
+            interior,
+            tied: TiedLoad::default(),
+        }
     }
 
     /// Load that is left on I.

@@ -18,9 +18,10 @@ use faer::{Accum, Mat, MatMut, Par};
 
 use super::condensed::Condensed;
 use super::front::partial_cholesky;
-use super::local::CondensedLoad;
+use super::local::{CondensedLoad, TiedLoad};
 use super::substitution::{Front, Replaced, Substitution};
 use crate::schur::condensed::InterfaceDof;
+use crate::vector::{axpy, dot};
 
 /// The factor that a merge leaves for solving.
 #[derive(Debug)]
@@ -32,6 +33,8 @@ pub struct Merge {
     places: Vec<Vec<u32>>,
     /// Traces that normal jumps replace here.
     substitution: Substitution,
+    /// Columns of A at the jumps of ties: [E | K], then these jumps.
+    tied: Mat<f64>,
 }
 
 /// Square matrices that were used: memory that is new costs a page fault every 4 KiB, more than all
@@ -143,7 +146,8 @@ impl Merge {
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
         let (mut gone, mut interface_dofs) = union_of_interface_dofs(children, eliminated);
-        let numbers = 0..own.replaced.len();
+        let count = own.replaced.iter().filter(|r| !r.is_tied).count();
+        let numbers = 0..count;
         let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
         let replaced: BTreeSet<InterfaceDof> = own.replaced.iter().map(|r| r.dof).collect();
         gone.retain(|dof| !replaced.contains(dof));
@@ -154,11 +158,14 @@ impl Merge {
         let places_of_own =
             (open.iter().zip(gone.len()..)).chain(closed.iter().zip(e + of_children..));
         let pivots = places_of_own.map(|(&j, place)| (own.replaced[j].dof, place));
-        let pivots: BTreeMap<InterfaceDof, usize> = pivots.collect();
         let k = jumps + interface_dofs.len();
-        let mut columns = Mat::<f64>::zeros(e + k, e);
-        let mut s = spare.zeros(k);
-        let mut diagonal = vec![0.0; e + k];
+        let tied = own.replaced[count..].iter().zip(e + k..);
+        let tied = tied.map(|(replaced, place)| (replaced.dof, place));
+        let pivots: BTreeMap<InterfaceDof, usize> = pivots.chain(tied).collect();
+        let n = e + k + own.replaced.len() - count;
+        let mut columns = Mat::<f64>::zeros(n, e);
+        let mut s = spare.zeros(n - e);
+        let mut diagonal = vec![0.0; n];
         let (mut places, mut first_jump) = (Vec::with_capacity(children.len()), e);
         let place = |dof: &InterfaceDof| place_of(dof, &gone, &pivots, &interface_dofs, e + jumps);
         for child in children {
@@ -176,6 +183,7 @@ impl Merge {
             s: &mut s,
         });
         substitution.transform_diagonal(&mut diagonal);
+        let tied = known_columns(&mut columns, &mut s, e + k);
         for j in gone.len()..e {
             columns[(j, j)] += own.spring * diagonal[j];
         }
@@ -184,6 +192,7 @@ impl Merge {
             columns,
             places,
             substitution,
+            tied,
         };
         let dof_of = |j: usize| match gone.get(j) {
             Some(dof) => *dof,
@@ -198,16 +207,17 @@ impl Merge {
             jumps,
             interface_dofs,
             s,
-            diagonal: diagonal[e..].to_vec(),
+            diagonal: diagonal[e..e + k].to_vec(),
             smallest_pivot: below.chain(pivots).fold(f64::INFINITY, f64::min),
         };
         Ok((merge, condensed))
     }
 
     /// Condenses the loads on the children's boundaries, in their order, where the front's own normal jumps that are
-    /// eliminated carry these `forces`; none where there are none.
-    pub fn condense(&self, loads: &[&[f64]], forces: &[f64]) -> CondensedLoad {
-        let mut load = vec![0.0; self.columns.nrows()];
+    /// eliminated carry these `forces`; none where there are none; and the jumps of ties are `known`, 0 where none are given.
+    pub fn condense(&self, loads: &[&[f64]], forces: &[f64], known: &[f64]) -> CondensedLoad {
+        let n = self.columns.nrows();
+        let mut load = vec![0.0; n + self.tied.ncols()];
         for (place, of_child) in self.places.iter().zip(loads) {
             for (&to, f) in place.iter().zip(*of_child) {
                 load[to as usize] += f;
@@ -218,13 +228,24 @@ impl Merge {
         for (load, force) in load[first..].iter_mut().zip(forces) {
             *load -= force;
         }
+        for (j, known) in known.iter().enumerate().filter(|(_, known)| **known != 0.0) {
+            axpy(-known, self.tied.col_as_slice(j), &mut load);
+        }
+        let loads = load.split_off(n);
         self.forward(&mut load);
-        CondensedLoad::new(load, self.eliminated)
+        let mut condensed = CondensedLoad::new(load, self.eliminated);
+        condensed.tied = TiedLoad {
+            jumps: match known.is_empty() {
+                true => vec![0.0; loads.len()],
+                false => known.to_vec(),
+            },
+            loads,
+        };
+        condensed
     }
 
-    /// The unknowns on the children's boundaries for the unknowns `x_k` that are kept, and the front's own normal
-    /// jumps.
-    pub fn recover(&self, load: &CondensedLoad, x_k: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
+    /// The unknowns on the children's boundaries for the unknowns `x_k` that are kept, and the front's own jumps.
+    pub fn recover(&self, load: &CondensedLoad, x_k: &[f64]) -> Recovered {
         let e = self.eliminated;
         let mut x = load.interior().to_vec();
         x.extend_from_slice(x_k);
@@ -233,10 +254,19 @@ impl Merge {
         let mut x_e = x_e;
         matmul(x_e.as_mut(), Accum::Add, p.transpose(), x_k, -1.0, Par::Seq);
         solve_upper_triangular_in_place(l_e.transpose(), x_e, Par::Seq);
-        let jumps = self.substitution.jumps(&x);
+        let forces = load.tied.loads.iter().enumerate();
+        let forces = forces.map(|(j, load)| load - dot(&self.tied.col_as_slice(j)[..x.len()], &x));
+        let forces = forces.collect();
+        x.extend(&load.tied.jumps);
+        let mut jumps = self.substitution.jumps(&x);
+        jumps.truncate(jumps.len() - load.tied.jumps.len());
         self.substitution.resolve(&mut x);
         let of_child = |place: &Vec<u32>| place.iter().map(|&i| x[i as usize]).collect();
-        (self.places.iter().map(of_child).collect(), jumps)
+        Recovered {
+            children: self.places.iter().map(of_child).collect(),
+            jumps,
+            forces,
+        }
     }
 
     /// x_E ← L_E⁻¹ x_E and x_K ← x_K − P x_E.
@@ -246,6 +276,30 @@ impl Merge {
         solve_lower_triangular_in_place(l_e, x_e.as_mut(), Par::Seq);
         matmul(x_k, Accum::Add, p, x_e, -1.0, Par::Seq);
     }
+}
+
+/// The unknowns under a front.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recovered {
+    /// Those on the boundary of every child.
+    pub children: Vec<Vec<f64>>,
+    /// The front's own jumps that are unknowns.
+    pub jumps: Vec<f64>,
+    /// The forces at the jumps of its ties.
+    pub forces: Vec<f64>,
+}
+
+/// The columns of a front at the jumps that are known, the last ones from `first` on, which it has no more.
+fn known_columns(columns: &mut Mat<f64>, s: &mut Mat<f64>, first: usize) -> Mat<f64> {
+    let (n, e) = (columns.nrows(), columns.ncols());
+    let entry = |i: usize, j: usize| match i.min(j) < e {
+        true => columns[(i.max(j), i.min(j))],
+        false => s[(i.max(j) - e, i.min(j) - e)],
+    };
+    let known = Mat::from_fn(n, n - first, |i, j| entry(i, first + j));
+    columns.truncate(first, e);
+    s.truncate(first - e, first - e);
+    known
 }
 
 fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {

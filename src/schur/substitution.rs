@@ -22,6 +22,8 @@ pub struct Replaced {
     pub staying: Vec<(InterfaceDof, f64)>,
     /// Normal jumps, the one in its place among them, and γ.
     pub jumps: Vec<(usize, f64)>,
+    /// Whether the jump in its place is that of a tie, which is known; those come last.
+    pub is_tied: bool,
 }
 
 /// T of a front.

@@ -81,9 +81,14 @@ impl StageTransfer {
         };
         for &j in coming.iter().filter(|_| comm.is_root()) {
             let mut jump = [0.0; 3];
-            for (at, weight) in &whole.points[j].entries {
+            let point = &whole.points[j];
+            for (i, (at, weight)) in point.entries.iter().enumerate() {
                 let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
-                jump = advance(jump, *weight, u.unwrap_or_default());
+                let u = u.unwrap_or_default();
+                jump = match point.axes.get(i) {
+                    Some(axis) => advance(jump, weight * dot(*axis, u), point.normal()),
+                    None => advance(jump, *weight, u),
+                };
             }
             transfer.since[j] = jump;
         }

@@ -175,9 +175,15 @@ fn conclude(
     outcome.is_settled = is_finite && outcome.records[sweep].changed == Some(0);
     end(&mut outcome);
     solution.cut();
-    let conditions = (problem.limits.iter())
+    let mut conditions: BTreeMap<usize, Vec<(f64, bool)>> = (problem.limits.iter())
         .map(|(&g, limits)| (g, conditions(limits, &problem.laws[&g], &found, g)))
         .collect();
+    for (g, of_group) in &mut conditions {
+        let tied = solution.tied.get(g).into_iter().flatten();
+        for (force, (condition, _)) in tied.zip(&problem.limits[g].tied) {
+            of_group[*condition].0 = *force;
+        }
+    }
     let statuses = match outcome.status {
         SweepStatus::Converged => found.statuses,
         SweepStatus::NotConverged(_) => BTreeMap::new(),

@@ -301,7 +301,8 @@ impl ActiveSetFronts {
                 .get(&plan.groups[g].node)
                 .map(|front| &front.jumps.open);
             let between = || self.bddc.as_ref().and_then(|bddc| bddc.open(g));
-            front.or_else(between) != Some(&open[&g])
+            // Of ties alone nothing ever changes.
+            !open[&g].is_empty() && front.or_else(between) != Some(&open[&g])
         };
         let mut touched = vec![!is_known; plan.tree.nodes.len()];
         comm.gather(&plan.group_owners(), changed, |g, changed| {

@@ -22,7 +22,7 @@ pub(super) struct TreeProblem<'a> {
     pub laws: OnGroups<ContactLaws<'a>>,
     /// The stiffness that the round-off of the force of every limit is relative to (N/m).
     pub stiffest: OnGroups<Vec<f64>>,
-    /// Where closed jumps are (m).
+    /// Where closed jumps are, and those of ties (m).
     pub bounds: OnGroups<Vec<f64>>,
     /// Loads on the boundaries of clusters, by node.
     pub loads: &'a BTreeMap<usize, Vec<f64>>,
@@ -54,15 +54,18 @@ impl<'a> TreeProblem<'a> {
             let stiffest = of_points(ContactGroup::largest_stiffness_at);
             problem.laws.insert(g, of_group);
             problem.stiffest.insert(g, stiffest);
-            problem.bounds.insert(g, limits.bounds.clone());
+            // Those of ties come behind.
+            let bounds = limits.bounds.iter().copied();
+            let of_ties = limits.tied.iter().map(|&(_, jump)| jump);
+            problem.bounds.insert(g, bounds.chain(of_ties).collect());
         }
         problem
     }
 
     /// No open limit.
     pub fn all_closed(&self) -> OnGroups<Vec<bool>> {
-        let all = self.bounds.iter();
-        all.map(|(&g, bounds)| (g, vec![false; bounds.len()]))
+        let all = self.limits.iter();
+        all.map(|(&g, limits)| (g, vec![false; limits.bounds.len()]))
             .collect()
     }
 }

@@ -21,6 +21,8 @@ type CondensedLoads = BTreeMap<usize, (CondensedLoad, Vec<f64>)>;
 pub struct ActiveSetSolution {
     /// The jumps and forces of every contact group; no force where open.
     pub at: OnGroups<Iterate>,
+    /// The forces at the jumps of the ties of every contact group above clusters.
+    pub tied: OnGroups<Vec<f64>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: BTreeMap<usize, Vec<f64>>,
     /// The unknowns of the nodes between which an iterative solver works.
@@ -91,6 +93,9 @@ impl ActiveSetFronts {
     ) -> ActiveSetSolution {
         let (condensed, arrived) = self.condense(context, loads);
         let mut solution = ActiveSetSolution::default();
+        // Groups of ties alone are below clusters.
+        let all = context.groups.keys().map(|&g| (g, Iterate::default()));
+        solution.at.extend(all);
         let below = match &self.bddc {
             // Roots keep nothing.
             None => {
@@ -107,7 +112,8 @@ impl ActiveSetFronts {
                 solution.is_too_far = is_rough && !between.is_solved;
                 solution.merge_roots = between.clusters.clone();
                 solution.iterations = between.iterations;
-                solution.at = between.groups;
+                solution.at.extend(between.groups);
+                solution.tied = between.tied;
                 between.clusters
             }
         };
@@ -138,9 +144,10 @@ impl ActiveSetFronts {
                 let group = plan.group_of(v);
                 let forces = group.and_then(|g| loads.forces.get(&g));
                 let forces = forces.map_or_else(Vec::new, |of| front.jumps.open_forces(of));
-                let load = front.merge.condense(&of_children, &forces);
-                let values = group.map(|g| front.jumps.closed_values(&loads.prescribed[&g]));
-                let values = values.unwrap_or_default();
+                let prescribed = group.map_or(&[][..], |g| &loads.prescribed[&g]);
+                let (of_limits, known) = prescribed.split_at(front.jumps.open.len());
+                let load = front.merge.condense(&of_children, &forces, known);
+                let values = front.jumps.closed_values(of_limits);
                 let closed = values.len();
                 let mut kept = load.boundary()[closed..].to_vec();
                 for (j, value) in values.iter().enumerate() {
@@ -171,13 +178,15 @@ impl ActiveSetFronts {
             {
                 let mut boundary = values.clone();
                 boundary.extend(x);
-                let (x, jumps) = front.merge.recover(load, &boundary);
-                of_children.extend(plan.tree.nodes[v].children.iter().copied().zip(x));
+                let recovered = front.merge.recover(load, &boundary);
+                let children = plan.tree.nodes[v].children.iter().copied();
+                of_children.extend(children.zip(recovered.children));
                 if let Some(g) = plan.group_of(v) {
                     let balance = front.balance(load, &boundary);
                     let given = loads.forces.get(&g).map_or(&[][..], Vec::as_slice);
-                    let at = front.jumps.answer(jumps, balance, given);
+                    let at = front.jumps.answer(recovered.jumps, balance, given);
                     solution.at.insert(g, at);
+                    solution.tied.insert(g, recovered.forces);
                 }
             }
             for &child in &plan.tree.nodes[v].children {

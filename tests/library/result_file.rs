@@ -13,7 +13,7 @@ use contact_dd_mpi::output::vtkhdf::kept::Kept;
 use contact_dd_mpi::output::vtkhdf::{Layout, ResultFile};
 use contact_dd_mpi::sweep::SweepRecord;
 use contact_dd_partition::contact_point::ContactPoint;
-use contact_dd_partition::problem::ContactSummary;
+use contact_dd_partition::problem::{ContactKind, ContactSummary};
 use contact_dd_partition::scene::units::Units;
 use hdf5::File;
 
@@ -83,6 +83,7 @@ fn row(contact: usize, place: usize) -> ContactRow {
 
 fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
     let contact = |(c, &conditions): (usize, &usize)| ContactSummary {
+        kind: ContactKind::default(),
         name: format!("crack {c}"),
         conditions,
         has_friction: c == 0,

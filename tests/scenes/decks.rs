@@ -102,3 +102,52 @@ fn a_column_of_a_deck_is_as_short_as_by_hooke() {
         close(force.abs(), p + weight, 1e-12);
     }
 }
+
+/// The same column, pulled at one node, whose other nodes at the top move as that one does: what is tied holds.
+const PULLED: &str = "\
+*EQUATION
+2
+16, 3, 1., 15, 3, -1.
+2
+17, 3, 1., 15, 3, -1.
+2
+18, 3, 1., 15, 3, -1.
+*STEP
+*STATIC
+*CLOAD
+15, 3, 4.
+*END STEP
+";
+
+#[test]
+fn a_tied_column_of_a_deck_is_as_long_as_by_hooke() {
+    let (mesh, _) = COLUMN.split_once("*SURFACE INTERACTION").unwrap();
+    let (_, held) = COLUMN.split_once("High, Low\n").unwrap();
+    let (held, _) = held.split_once("*AMPLITUDE").unwrap();
+    for (tie, tables) in [
+        ("*TIE, NAME=Glue, POSITION TOLERANCE=0.1\nHigh, Low\n", 1),
+        ("*TIE, NAME=Glue, ADJUST=NO\nHigh, Low\n", 1),
+        (
+            "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e7\n\
+             *CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nHigh, Low\n",
+            1,
+        ),
+        (
+            "*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I, TIED\nHigh, Low\n",
+            1,
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("column.inp");
+        std::fs::write(&path, [mesh, tie, held, PULLED].concat()).unwrap();
+        let translation = deck::read(&path).unwrap();
+        assert_eq!(translation.scene.matches("[[tie]]").count(), tables);
+        assert_eq!(translation.scene.matches("[[equation]]").count(), 3);
+        let scene = Scene::parse(&translation.scene).unwrap();
+        let model = Model::new(&scene, translation.mesh).unwrap();
+        let solution = &solve_steps(&model, 2)[0];
+        for tag in 15..=18 {
+            close(solution.displacement[&tag][2], 4.0 * 2.0 / 1000.0, 1e-12);
+        }
+    }
+}

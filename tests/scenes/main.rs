@@ -36,6 +36,7 @@ mod stability;
 mod stages;
 mod steps;
 mod strains;
+mod tie;
 mod touching;
 mod unloaded;
 mod validation;

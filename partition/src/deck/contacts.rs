@@ -14,6 +14,8 @@ struct Interaction {
     friction: f64,
     /// What is taken as hard contact though it isn't, in words.
     soft: Option<String>,
+    /// Whether the sides hang together.
+    is_tied: bool,
 }
 
 /// A pair of surfaces, by name in capitals.
@@ -25,6 +27,8 @@ pub(super) struct Pair {
     /// Whether nodes of the slave should be moved onto the master.
     pub(super) adjust: bool,
     pub(super) gap: Option<f64>,
+    /// Whether the pair says that its sides hang together.
+    tied: bool,
 }
 
 /// Contact wherever bodies touch.
@@ -85,8 +89,11 @@ impl Contacts {
                 self.open = Some(name);
             }
             "SURFACE BEHAVIOR" => {
+                let law = block.parameter("PRESSURE-OVERCLOSURE").unwrap_or("HARD");
+                let is_tied = law.eq_ignore_ascii_case("TIED");
                 let soft = soft(places, block)?;
-                self.interaction(places, block)?.soft = soft;
+                let interaction = self.interaction(places, block)?;
+                (interaction.soft, interaction.is_tied) = (soft, is_tied);
             }
             "FRICTION" => {
                 let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
@@ -157,10 +164,6 @@ impl Contacts {
     fn pairs(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         let interaction = source.required(block, "INTERACTION")?.to_uppercase();
-        if block.parameter("TIED").is_some() {
-            let message = "a *CONTACT PAIR with TIED isn't supported yet; instead give the bodies the same nodes";
-            return Err(source.error(block.place, message));
-        }
         for data in &block.data {
             let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
             if master.is_empty() || slave == master {
@@ -179,6 +182,7 @@ impl Contacts {
                 place: data.place,
                 adjust: block.parameter("ADJUST").is_some(),
                 gap: None,
+                tied: block.parameter("TIED").is_some(),
             });
         }
         Ok(())
@@ -213,6 +217,12 @@ impl Contacts {
         warnings: &mut Vec<String>,
     ) -> Result<f64, InputError> {
         self.law(places, pair.place, &pair.interaction, warnings)
+    }
+
+    /// Whether the sides of a pair hang together.
+    pub(super) fn is_tied(&self, pair: &Pair) -> bool {
+        let interaction = self.interactions.get(&pair.interaction);
+        pair.tied || interaction.is_some_and(|interaction| interaction.is_tied)
     }
 
     /// The coefficient of friction of general contact; `None` without any.
@@ -269,8 +279,11 @@ fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
         "EXPONENTIAL" => format!("p0 = {} at no clearance, 0 at {}", number(1), number(0)),
         "TABULAR" => "a table of pressures over overclosures".into(),
         "TIED" => {
-            let message = "PRESSURE-OVERCLOSURE=TIED isn't supported yet; instead give the bodies the same nodes";
-            return Err(source.error(block.place, message));
+            return Ok(Some(format!(
+                "{}: the stiffness {} of what is tied is left out: sides don't move against each other",
+                source.place(block.place),
+                number(0)
+            )));
         }
         _ => {
             let message = format!(

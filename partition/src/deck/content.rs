@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::amplitude::Amplitude;
 use super::axes::{Axes, System};
+use super::connections::Connections;
 use super::contacts::Contacts;
 use super::loads::item;
 use super::material::Material;
@@ -27,6 +28,7 @@ pub(super) struct Content {
     /// Temperatures of nodes at the beginning.
     pub(super) temperatures: BTreeMap<u32, f64>,
     pub(super) contacts: Contacts,
+    pub(super) connections: Connections,
     pub(super) steps: Steps,
     /// The first step that asks for large displacements.
     pub(super) nlgeom: Option<LinePlace>,
@@ -106,6 +108,7 @@ impl Content {
             "BOUNDARY" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" => {
                 self.steps.read(places, block)?
             }
+            "TIE" | "EQUATION" => self.connections.read(places, block)?,
             _ => self.contacts.read(places, block)?,
         }
         Ok(())

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::place::Places;
-use crate::mesh::abaqus::Face;
+use crate::error::InputError;
+use crate::mesh::abaqus::{Face, LinePlace};
 
 /// Names of groups by what is in them.
 pub(super) struct Groups<'a, 'b> {
@@ -112,6 +113,11 @@ impl<'a, 'b> Groups<'a, 'b> {
         let name = names.next().unwrap_or_default();
         self.count.insert(name.to_uppercase(), 1);
         name
+    }
+
+    /// The error of what is wrong at a place of the deck.
+    pub(super) fn error(&self, at: LinePlace, message: &str) -> InputError {
+        self.places.source.error(at, message)
     }
 
     /// The group of nodes; `None` where cells have none of them.

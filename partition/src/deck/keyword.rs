@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 37] = [
+const READ: [&str; 39] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -43,6 +43,8 @@ const READ: [&str; 37] = [
     "CONTACT",
     "CONTACT INCLUSIONS",
     "CONTACT PROPERTY ASSIGNMENT",
+    "TIE",
+    "EQUATION",
     "STEP",
     "END STEP",
     "STATIC",
@@ -96,7 +98,7 @@ const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the answer: what is said of them, and what to do instead.
-const REFUSED: [(&[&str], &str, &str); 23] = [
+const REFUSED: [(&[&str], &str, &str); 22] = [
     (
         &[
             "PLASTIC",
@@ -160,14 +162,9 @@ const REFUSED: [(&[&str], &str, &str); 23] = [
         "give the temperatures that result, by *TEMPERATURE",
     ),
     (
-        &["TIE"],
+        &["MPC"],
         NOT_YET,
-        "give bodies that hang together the same nodes, or a *CONTACT PAIR if nothing pulls",
-    ),
-    (
-        &["EQUATION", "MPC"],
-        NOT_YET,
-        "hold a plane of symmetry by *BOUNDARY",
+        "write it as *EQUATION, or hold a plane of symmetry by *BOUNDARY",
     ),
     (
         &[

@@ -5,7 +5,7 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 24] = [
+const PARAMETERS: [(&str, &[&str]); 26] = [
     ("MATERIAL", &["NAME", "RTOL"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
     ("EXPANSION", &["TYPE", "ZERO"]),
@@ -82,6 +82,22 @@ const PARAMETERS: [(&str, &[&str]); 24] = [
             "MECHANICAL CONSTRAINT",
         ],
     ),
+    (
+        "TIE",
+        &[
+            "NAME",
+            "POSITION TOLERANCE",
+            "ADJUST",
+            "TYPE",
+            "NO ROTATION",
+            "NO THICKNESS",
+            "CYCLIC SYMMETRY",
+            "MULTISTAGE",
+            "FLUID PERIODIC",
+            "FLUID CYCLIC",
+        ],
+    ),
+    ("EQUATION", &[]),
     ("CLEARANCE", &["MASTER", "SLAVE", "VALUE"]),
     ("CONTACT", &["OP"]),
     ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),

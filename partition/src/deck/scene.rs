@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::connections::SceneTie;
 use super::content::Content;
 use super::document::{Document, Linear, quoted};
 use super::elastic::Elastic;
@@ -55,6 +56,9 @@ pub(super) fn text(
     let sides: Vec<[String; 2]> = (content.contacts.pairs.iter())
         .map(|pair| [&pair.slave, &pair.master].map(|side| loads.groups.of_surface(side)))
         .collect();
+    let ties = content.connections.ties(&mut loads.groups);
+    let systems = &content.steps.systems;
+    let equations = content.connections.equations(&mut loads.groups, systems)?;
     let dim = loads.dim;
     let mut document = Document::default();
     if let Some(title) = &content.title {
@@ -71,7 +75,10 @@ pub(super) fn text(
     for load in &on_groups {
         load.write(0, "", &mut document);
     }
-    content.contact(places, &sides, &mut document, warnings)?;
+    content.contact(places, (&sides, ties), &mut document, warnings)?;
+    for equation in &equations {
+        equation.write(&mut document);
+    }
     if content.steps.done.len() > 1 {
         for number in 0..content.steps.done.len() {
             content.step(
@@ -242,16 +249,33 @@ impl Content {
         Ok(force)
     }
 
-    /// Writes the contacts.
+    /// Writes the contacts and ties.
     fn contact(
         &self,
         places: &Places,
-        sides: &[[String; 2]],
+        (sides, mut ties): (&[[String; 2]], Vec<SceneTie>),
         document: &mut Document,
         warnings: &mut Vec<String>,
     ) -> Result<(), InputError> {
         let mut taken = BTreeSet::new();
+        let mut unique = |plain: String| {
+            let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
+            let mut names = std::iter::once(plain.clone()).chain(numbered);
+            let name = names.find(|name| taken.insert(name.clone()));
+            name.unwrap_or_default()
+        };
         for (pair, [slave, master]) in self.contacts.pairs.iter().zip(sides) {
+            let plain = format!("{slave} on {master}").replace('/', " ");
+            if self.contacts.is_tied(pair) {
+                self.contacts.friction(places, pair, warnings)?;
+                ties.push(SceneTie {
+                    name: plain,
+                    sides: [slave.clone(), master.clone()],
+                    tolerance: None,
+                    adjust: pair.adjust,
+                });
+                continue;
+            }
             let friction = self.contacts.friction(places, pair, warnings)?;
             if pair.adjust && pair.gap.is_none() {
                 let place = places.source.place(pair.place);
@@ -259,14 +283,8 @@ impl Content {
                     "{place}: ADJUST is left out: no node is moved, and gaps are those of the mesh"
                 ));
             }
-            let plain = format!("{slave} on {master}").replace('/', " ");
-            let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
-            let mut names = std::iter::once(plain.clone()).chain(numbered);
-            let name = names
-                .find(|name| taken.insert(name.clone()))
-                .unwrap_or_default();
             document.table("[[contact]]");
-            document.key("name", quoted(&name));
+            document.key("name", quoted(&unique(plain)));
             document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
             if let Some(gap) = pair.gap {
                 document.key("gap", format!("{gap:?}"));
@@ -274,6 +292,9 @@ impl Content {
             if friction != 0.0 {
                 document.key("friction", format!("{friction:?}"));
             }
+        }
+        for tie in &ties {
+            tie.write(&unique(tie.name.clone()), document);
         }
         if let Some(friction) = self.contacts.general(places, warnings)? {
             document.table("[[contact]]");

@@ -15,8 +15,8 @@ use crate::element::Elements;
 use crate::error::InputError;
 use crate::model::{self, Model};
 use crate::problem::{
-    Absent, Body, Catalog, ContactSummary, InitialStress, InterfaceNode, LoadStep, Problem,
-    StepLoads, Subdomain, SubdomainNode, SubdomainSummary,
+    Absent, Body, Catalog, ContactKind, ContactSummary, InitialStress, InterfaceNode, LoadStep,
+    Problem, StepLoads, Subdomain, SubdomainNode, SubdomainSummary,
 };
 
 impl Problem {
@@ -98,6 +98,10 @@ fn summary(contact: &model::Contact) -> ContactSummary {
         name: contact.name.clone(),
         conditions: contact.points.len(),
         has_friction: contact.points.iter().any(|point| point.law.has_friction()),
+        kind: contact
+            .points
+            .first()
+            .map_or_else(ContactKind::default, ContactKind::of),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::hierarchy::work::Work;
-use crate::problem::Problem;
+use crate::problem::{ContactKind, Problem};
 
 /// Sizes and balance of a problem; its `Display` is what the partition tool prints.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,7 @@ impl Summary<'_> {
         for point in &self.0.catalog.points {
             let weights: f64 = point.entries.iter().map(|(_, weight)| weight).sum();
             pairings[point.contact as usize] = match (weights > 0.5, point.tag_a, point.tag_b) {
+                _ if point.is_equation() => "",
                 (true, ..) => ", obstacle",
                 (_, -1, _) => ", mortar, conditions at the nodes of side b",
                 (_, _, -1) => ", mortar",
@@ -109,7 +110,14 @@ impl fmt::Display for Summary<'_> {
             let (points, name) = (contact.conditions, &contact.name);
             let friction = catalog.friction(index).map(|words| format!(", {words}"));
             let friction = friction.unwrap_or_default();
-            writeln!(f, "              {points:>6} on {name}{pairing}{friction}")?;
+            let tied = match contact.kind {
+                ContactKind::Tie => ", tied",
+                ContactKind::Unilateral | ContactKind::Equation => "",
+            };
+            writeln!(
+                f,
+                "              {points:>6} on {name}{pairing}{friction}{tied}"
+            )?;
         }
         write!(f, "groups        {}", self.sizes_of_groups())
     }

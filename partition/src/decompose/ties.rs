@@ -1,5 +1,6 @@
 //! Ties between cells that share no facet: contact points, and nodes at which pieces hang together.
 
+use crate::contact_point::Law;
 use crate::lists::Lists;
 use crate::model::Model;
 
@@ -73,9 +74,10 @@ pub(super) fn ties(model: &Model) -> Vec<(u32, u32, u32)> {
         };
         let (side_a, side_b) = (side(1.0), side(-1.0));
         let pairs = side_a.len() * side_b.len();
-        let of_point = match point.law.has_friction() {
-            true => NODE * NODES_OF_POINT,
-            false => NODE / mesh.dim as u32,
+        let of_point = match point.law {
+            Law::Frictionless => NODE / mesh.dim as u32,
+            Law::Tied => NODE,
+            Law::Given { .. } | Law::Coulomb { .. } => NODE * NODES_OF_POINT,
         };
         let weight = (of_point / pairs.max(1) as u32).max(1);
         for &a in &side_a {

@@ -126,7 +126,8 @@ impl OperatorTimes {
             );
             times.left_out.push(why);
         }
-        let is_node_by_node = (catalog.points.iter()).all(|point| point.entries.len() <= 2);
+        let mut in_contact = catalog.points.iter().filter(|point| !point.law.is_tied());
+        let is_node_by_node = in_contact.all(|point| point.entries.len() <= 2);
         let why_not = match catalog.hierarchy.clusters.len() {
             _ if dim == 2 => Some("iterations pay in space alone"),
             0 | 1 => Some("there are no clusters to iterate between"),

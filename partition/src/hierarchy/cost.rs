@@ -14,7 +14,7 @@ impl Tree {
         let kept = kept + node.conditions;
         let eliminated = match v < self.subdomains {
             true => (dim * node.of_subdomain).saturating_sub(kept),
-            false => eliminated.saturating_sub(self.own_conditions(v)),
+            false => eliminated.saturating_sub(self.own_conditions(v) + node.tied),
         };
         Front { eliminated, kept }
     }

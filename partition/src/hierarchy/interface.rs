@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Law};
 use crate::disjoint_sets::DisjointSets;
 use crate::element::geometry::{cross, length};
 use crate::lists::Lists;
@@ -27,7 +27,7 @@ pub struct UnsharedNode {
     pub at: SubdomainNode,
     /// Its number on Γ.
     pub number: u32,
-    /// The normal of all points that name it, if they have one and no friction: where it has no supports, its
+    /// The normal of all points that name it, if they have one, no friction and no tie: where it has no supports, its
     /// displacement along this normal alone is on Γ, and the rest belongs to the interior of the subdomain.
     pub slides: Option<[f64; 3]>,
 }
@@ -51,7 +51,8 @@ impl Interface {
         let mut number: BTreeMap<SubdomainNode, Option<u32>> = BTreeMap::new();
         let mut slides: BTreeMap<SubdomainNode, Option<[f64; 3]>> = BTreeMap::new();
         for (point, nodes) in catalog.points.iter().zip(&catalog.point_nodes) {
-            let normal = (!point.law.has_friction()).then(|| point.normal());
+            let may_slide = point.law == Law::Frictionless;
+            let normal = may_slide.then(|| point.normal());
             for (&(node, _), of_node) in point.entries.iter().zip(nodes) {
                 number.insert(node, of_node.interface);
                 let along = slides.entry(node).or_insert(normal);

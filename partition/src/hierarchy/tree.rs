@@ -46,8 +46,10 @@ pub struct TreeNode {
     pub dofs: [usize; 2],
     /// The contact points that belong to it, by their place in the catalog, ascending.
     pub points: Vec<u32>,
-    /// Number of conditions of the contact points that belong to it or to a node under it.
+    /// Number of conditions of the contact points that belong to it or to a node under it, without those of ties.
     pub conditions: usize,
+    /// Number of conditions of the ties that belong to it.
+    pub tied: usize,
 }
 
 impl Tree {
@@ -192,16 +194,20 @@ impl Tree {
         for v in 0..self.nodes.len() {
             let mut kept: Vec<u32> = Vec::new();
             let points = self.nodes[v].points.iter();
-            let mut conditions = points
-                .map(|&j| catalog.points[j as usize].directions(catalog.dim).count())
+            let points = points.map(|&j| &catalog.points[j as usize]);
+            let all: usize = points
+                .clone()
+                .map(|p| p.directions(catalog.dim).count())
                 .sum();
+            let mut conditions = points.map(|p| p.unknown_jumps(catalog.dim)).sum();
+            let tied = all - conditions;
             for child in self.nodes[v].children.clone() {
                 kept.extend(&self.nodes[child].kept);
                 conditions += self.nodes[child].conditions;
             }
             let node = &mut self.nodes[v];
             node.points.sort_unstable();
-            node.conditions = conditions;
+            (node.conditions, node.tied) = (conditions, tied);
             if v >= self.subdomains {
                 kept.sort_unstable();
                 kept.dedup();
@@ -244,7 +250,7 @@ impl Tree {
         (0..self.nodes.len()).filter(|&v| self.nodes[v].parent.is_none())
     }
 
-    /// Number of conditions of the contact points that belong to node v.
+    /// Number of conditions of the contact points that belong to node v, without those of ties.
     pub fn own_conditions(&self, v: usize) -> usize {
         let children = self.nodes[v].children.iter();
         let below: usize = children.map(|&child| self.nodes[child].conditions).sum();

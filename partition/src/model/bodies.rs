@@ -278,6 +278,8 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
     (loaded.chain(scene.bilateral.iter().map(|c| &c.on)))
         .chain(scene.spring.iter().map(|c| &c.on))
         .chain(explicit.flat_map(Contact::sides))
+        .chain(scene.tie.iter().flat_map(|tie| &tie.sides))
+        .chain(scene.equation.iter().flat_map(|e| &e.terms).map(|t| &t.at))
         .flat_map(Names::iter)
         .collect()
 }

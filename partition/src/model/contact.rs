@@ -1,12 +1,13 @@
 //! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
+mod tie;
+
 use std::collections::{HashMap, HashSet};
 
 use super::held_nodes::{HeldNodes, ROUNDING};
 use super::mortar::{self, Mortar};
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
-use super::steps::Loads;
 use super::surface::{CORNER, Surface, SurfaceFacet, Turn};
 use super::{Contact, groups, node_pairs, obstacle};
 use crate::contact_point::{ContactPoint, Law, Probe};
@@ -63,12 +64,12 @@ pub(super) struct Contacts<'a> {
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, loads: &Loads, scene: &Scene) -> Self {
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, held: HeldNodes, scene: &Scene) -> Self {
         let coordinates = mesh.points.iter().flatten();
         Self {
             mesh,
             topology,
-            held: HeldNodes::new(loads),
+            held,
             size: coordinates.map(|c| c.abs()).fold(0.0, f64::max),
             plane: scene.plane,
             units: scene.units,
@@ -82,6 +83,9 @@ impl<'a> Contacts<'a> {
         keys: &contact::Contact,
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
+        if let (Some(reach), Partner::Side(names)) = (keys.tie, &keys.partner) {
+            return self.tie(number, keys, (names, reach), warnings);
+        }
         let what = format!("contact '{}'", keys.name);
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut paired = match &keys.partner {
@@ -363,7 +367,7 @@ fn give_friction(
 fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
     let coefficients = points.iter().map(|point| match point.law {
         Law::Coulomb { coefficient, .. } => coefficient,
-        Law::Given { .. } | Law::Frictionless => 0.0,
+        Law::Given { .. } | Law::Frictionless | Law::Tied => 0.0,
     });
     let largest = coefficients.fold(0.0, f64::max);
     (largest > STEEP).then(|| {

@@ -12,6 +12,9 @@ use crate::scene::units::Units;
 /// Gaps are exact to this fraction of the scene's coordinates.
 pub(super) const ROUNDING: f64 = 1e-12;
 
+/// Square of the cosine between an axis and the directions in which a node is held from which on it is held along it.
+const ALONG: f64 = 0.5;
+
 /// A direction in which a node is held, and how far in each load step (m).
 struct Held {
     direction: [f64; 3],
@@ -19,6 +22,7 @@ struct Held {
 }
 
 /// The nodes that supports hold, each with its directions.
+#[derive(Default)]
 pub(super) struct HeldNodes(HashMap<u32, Vec<Held>>);
 
 impl HeldNodes {
@@ -32,6 +36,12 @@ impl HeldNodes {
             });
         }
         Self(by_node)
+    }
+
+    /// Whether supports hold a node along axis k, or nearly so.
+    pub fn is_held_along(&self, node: u32, k: usize) -> bool {
+        let held = self.0.get(&node).into_iter().flatten();
+        held.map(|held| held.direction[k].powi(2)).sum::<f64>() > ALONG
     }
 
     /// The points of contact `number` whose jump supports leave open; a gap is

@@ -23,6 +23,7 @@ use crate::name;
 use crate::scene::Scene;
 use crate::scene::condition::Names;
 use crate::scene::contact::{Between, Contact, Declaration};
+use crate::scene::tie::Tie;
 
 /// Distance up to which facets beside those that touch are thought to come into contact, relative to their size.
 const NEAR: f64 = 0.25;
@@ -103,6 +104,11 @@ pub(super) fn contacts(
             Declaration::Between(_) => contacts.extend(found.next().into_iter().flatten()),
         }
     }
+    contacts.extend(scene.tie.iter().map(|tie| Declared {
+        contact: tie.contact(),
+        table: tie.name.clone(),
+        words: None,
+    }));
     Ok(contacts)
 }
 
@@ -233,8 +239,13 @@ struct Explicit {
 impl Explicit {
     fn new(scene: &Scene, mesh: &Mesh, topology: &Topology) -> Self {
         let mut of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>> = HashMap::new();
-        let contacts = scene.contact.iter().filter_map(Declaration::contact);
-        for (number, contact) in contacts.enumerate() {
+        let contacts = scene
+            .contact
+            .iter()
+            .filter_map(Declaration::contact)
+            .cloned();
+        let ties = scene.tie.iter().map(Tie::contact);
+        for (number, contact) in contacts.chain(ties).enumerate() {
             for (side, names) in contact.sides().enumerate() {
                 // What is wrong with a group is said where the contact is made.
                 for facet in groups::facets(mesh, names, "").unwrap_or_default() {
@@ -270,9 +281,11 @@ impl Sides<'_> {
         groups: &mut Vec<(String, Vec<CellFacet>)>,
     ) -> Result<Vec<Vec<Declared>>, InputError> {
         let names: Vec<&str> = self.scene.bodies.keys().map(String::as_str).collect();
-        let mut taken: HashSet<String> = (self.scene.contact.iter())
-            .filter_map(Declaration::contact)
-            .map(|contact| contact.name.clone())
+        let explicit = self.scene.contact.iter().filter_map(Declaration::contact);
+        let mut taken: HashSet<String> = (explicit.map(|contact| &contact.name))
+            .chain(self.scene.tie.iter().map(|tie| &tie.name))
+            .chain(self.scene.equation.iter().map(|equation| &equation.name))
+            .cloned()
             .collect();
         let mut taken_groups: HashSet<String> = self.skin.mesh.groups.keys().cloned().collect();
         let mut all = Vec::new();

@@ -58,6 +58,9 @@ impl Places {
 
     /// The fault of a point, and its dataset.
     fn fault(&self, point: &Point) -> Option<(&'static str, String)> {
+        if point.is_equation() {
+            return self.fault_of_equation(point);
+        }
         let extent = self.extent;
         let around =
             PlaneState::thickness(self.plane, [point.position[0].abs() + extent, 0.0, 0.0]);
@@ -83,6 +86,16 @@ impl Places {
             return Some(("entry_weight", what));
         }
         self.fault_of_names(point)
+    }
+
+    /// The fault of an equation in the node that stands for it.
+    fn fault_of_equation(&self, point: &Point) -> Option<(&'static str, String)> {
+        let named = point.entries.iter().any(|(node, _)| {
+            let place = self.nodes.get(node);
+            place.is_some_and(|place| place.tag == point.tag_a)
+        });
+        let what = "expected the tag (GlobalNodeId) of a node of the equation";
+        (!named).then(|| ("node_a", format!("{}; {what}", point.tag_a)))
     }
 
     /// The fault of a point in the nodes that it names.

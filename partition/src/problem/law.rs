@@ -4,7 +4,7 @@ use crate::contact_point::Law;
 
 /// A row of the three.
 pub(super) struct LawRow {
-    /// 0 without friction, 1 given friction, 2 Coulomb's.
+    /// 0 without friction, 1 given friction, 2 Coulomb's, 3 a tie.
     pub law: i64,
     /// Coefficient of friction.
     pub friction: f64,
@@ -21,6 +21,7 @@ impl From<Law> for LawRow {
                 coefficient,
                 cohesion,
             } => (2, coefficient, cohesion),
+            Law::Tied => (3, 0.0, 0.0),
         };
         Self {
             law,
@@ -49,10 +50,13 @@ impl LawRow {
             )),
         };
         match law {
-            0 => {
+            0 | 3 => {
                 zero("/contact/friction", friction)?;
                 zero("/contact/shear_bound", shear_bound)?;
-                Ok(Law::Frictionless)
+                Ok(match law {
+                    0 => Law::Frictionless,
+                    _ => Law::Tied,
+                })
             }
             1 => {
                 zero("/contact/friction", friction)?;

@@ -275,9 +275,13 @@ pub const FIELDS: &[Field] = &[
     field("/contact/entry_node", "E", Integers, "node, counted within that subdomain"),
     field("/contact/entry_weight", "E", Numbers,
         "weight w of the node's displacement: w n is its coefficient"),
-    optional("/contact/law", "R", Codes("law of friction", 3),
+    optional("/contact/law", "R", Codes("law", 4),
         "what bounds the tangential force: 0 nothing, there is none; 1 given friction, `shear_bound` wherever the \
-         point is; 2 Coulomb's, `friction` times the normal force, and `shear_bound` as cohesion, where it is closed"),
+         point is; 2 Coulomb's, `friction` times the normal force, and `shear_bound` as cohesion, where it is closed; 3 nothing \
+         bounds any force: a tie, whose jump is 0 along the normal and the tangents, whatever the gap"),
+    optional("/contact/entry_axis", "E, d", Numbers,
+        "of an equation, a point of law 3 in which every entry has a direction of its own, a unit vector: w times the displacement \
+         along it, summed over the entries, is `gap`; zeros at the entries of other points"),
     optional("/contact/friction", "R", NotNegative,
         "coefficient of friction; 0 but for Coulomb's; with `law` and `shear_bound` or not at all"),
     optional("/contact/shear_bound", "R", NotNegative,

@@ -11,6 +11,7 @@ use super::law::LawRow;
 use super::schema::{Counts, FIELDS};
 use super::strings::{type_of, write_strings};
 use super::{FORMAT, InitialStress, Problem, Subdomain, SubdomainNode, VERSION, digest, vtkhdf};
+use crate::contact_point::{ContactPoint, Law};
 use crate::destination::Destination;
 use crate::error::OutputError;
 use crate::model::PlaneState;
@@ -262,7 +263,16 @@ impl Problem {
         datasets.put("/contact/node_a", points().map(|p| p.tag_a))?;
         datasets.put("/contact/node_b", points().map(|p| p.tag_b))?;
         datasets.entries("/contact", points().map(|p| &p.entries))?;
-        if !points().any(|p| p.law.has_friction()) {
+        if points().any(ContactPoint::is_equation) {
+            let axes = |p: &ContactPoint<SubdomainNode>| {
+                let none = [0.0; 3];
+                let of_entry = |i: usize| p.axes.get(i).copied().unwrap_or(none);
+                (0..p.entries.len()).map(of_entry).collect::<Vec<_>>()
+            };
+            let all: Vec<[f64; 3]> = points().flat_map(axes).collect();
+            datasets.vectors("/contact/entry_axis", all.iter())?;
+        }
+        if points().all(|p| p.law == Law::Frictionless) {
             return Ok(());
         }
         let rows = || points().map(|p| LawRow::from(p.law));

@@ -47,7 +47,7 @@ impl Scene {
 
     /// The first name in `add` or `remove` of which that can't be said, and why.
     pub(super) fn wrong_change(&self) -> Option<Fault> {
-        let contacts = || self.contact.iter().map(|contact| contact.name());
+        let contacts = || self.connections().map(|(_, _, name)| name);
         let bodies = || self.bodies.keys().map(String::as_str);
         let mut absent = self.absent_at_first();
         for (index, step) in self.step.iter().enumerate() {

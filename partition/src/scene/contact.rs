@@ -6,6 +6,7 @@ use serde::de::{Deserializer, Error};
 use super::condition::{Names, Obstacle};
 use super::friction::{self, Friction};
 use super::number::{Constant, Number};
+use super::tie::TieReach;
 use crate::name;
 
 /// A table `[[contact]]`.
@@ -62,6 +63,8 @@ pub struct Contact {
     pub interference: bool,
     /// Law of friction; `None` without.
     pub friction: Option<Friction>,
+    /// What is tied, where it is a tie; `None` of sides that may part.
+    pub tie: Option<TieReach>,
 }
 
 impl Contact {
@@ -126,6 +129,7 @@ impl Between {
             gap: self.gap.clone(),
             interference: self.interference,
             friction: self.friction.clone(),
+            tie: None,
         }
     }
 }
@@ -253,11 +257,12 @@ impl TryFrom<Keys> for Declaration {
             gap: keys.gap,
             interference: keys.interference,
             friction,
+            tie: None,
         }))
     }
 }
 
-fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+pub(super) fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     let name = String::deserialize(deserializer)?;
     match name::check_contact(&name) {
         Ok(()) => Ok(name),
@@ -268,7 +273,9 @@ fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D:
     }
 }
 
-fn distance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+pub(super) fn distance<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<f64>, D::Error> {
     let is_positive = |value| value > 0.0;
     Constant::checked(deserializer, is_positive, "the distance", "more than 0").map(Some)
 }

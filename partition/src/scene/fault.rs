@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::condition::{Displacement, Force, Pressure, Traction};
 use super::contact::{Contact, Declaration, Partner};
+use super::equation::Component;
 use super::material::{Elasticity, PlaneState};
 use super::number::OR_IN_SPACE;
 use super::place::{self, Step};
@@ -73,14 +74,25 @@ impl Scene {
 
     fn repeated_contact(&self) -> Option<Fault> {
         let mut seen = HashMap::new();
-        for (index, contact) in self.contact.iter().enumerate() {
-            if let Some(first) = seen.insert(contact.name(), index) {
-                let (first, name) = (first + 1, contact.name());
-                let message = format!("contact[{first}] has the name '{name}' already");
-                return Some((entry("contact", index, "name"), message));
+        for (list, index, name) in self.connections() {
+            if let Some((of, first)) = seen.insert(name, (list, index))
+                && (of, list) != ("equation", "equation")
+            {
+                let message = format!("{of}[{}] has the name '{name}' already", first + 1);
+                return Some((entry(list, index, "name"), message));
             }
         }
         None
+    }
+
+    /// The names of contacts, ties and equations, each with its list and its place there.
+    pub(super) fn connections(&self) -> impl Iterator<Item = (&'static str, usize, &str)> {
+        let contacts = self.contact.iter().map(Declaration::name).enumerate();
+        let ties = self.tie.iter().map(|tie| &tie.name[..]).enumerate();
+        let equations = self.equation.iter().map(|of| &of.name[..]).enumerate();
+        (contacts.map(|(i, name)| ("contact", i, name)))
+            .chain(ties.map(|(i, name)| ("tie", i, name)))
+            .chain(equations.map(|(i, name)| ("equation", i, name)))
     }
 
     /// A body between which and another one contacts are looked for, and that isn't there.
@@ -159,6 +171,11 @@ impl Scene {
             if let Some((key, fault)) = spring.stiffness.fault(dim) {
                 check(entry("spring", index, key), Some(fault));
             }
+        }
+        for (index, equation) in self.equation.iter().enumerate() {
+            let is_wrong = dim == 2 && equation.terms.iter().any(|t| t.component == Component::Z);
+            let fault = is_wrong.then(|| format!("a plane scene has no 'z'{OR_IN_SPACE}"));
+            check(entry("equation", index, "terms"), fault);
         }
         self.wrong_contacts(dim, &mut check);
         found.into_iter().next()

@@ -4,7 +4,7 @@
 use toml::de::Error;
 
 /// The lists of a scene, `[[contact]]`, once for each.
-const LISTS: [&str; 8] = [
+const LISTS: [&str; 10] = [
     "displacement",
     "bilateral",
     "traction",
@@ -12,6 +12,8 @@ const LISTS: [&str; 8] = [
     "force",
     "spring",
     "contact",
+    "tie",
+    "equation",
     "step",
 ];
 

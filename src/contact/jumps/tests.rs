@@ -31,7 +31,7 @@ fn a_chain_of_conditions_leaves_every_jump_what_it_is_called() {
         row(&[(2, 1.0), (0, 0.7), (5, -0.3)]),
         row(&[(3, -1.0)]),
     ];
-    let jumps = Jumps::new(&rows, |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |_| true, |_| 1.0).unwrap();
     let t = [0.5, 0.25, 0.125, 2.0];
     for (row, t_j) in rows.iter().zip(t) {
         let v = |i: u32| (f64::from(i) + 1.0).sqrt();
@@ -47,7 +47,7 @@ fn conditions_of_mortar_are_solved_for_what_each_has_alone() {
         .collect();
     for soft in [0, 10] {
         let stiffness = |v| if v / 10 * 10 == soft { 1.0 } else { 1e6 };
-        let jumps = Jumps::new(&rows, |_| true, stiffness).unwrap();
+        let jumps = Jumps::new(&rows, &|_| false, |_| true, stiffness).unwrap();
         assert_eq!(jumps.pivots.len(), 4);
         for i in 1..4 {
             // Nothing but its own condition's.
@@ -70,7 +70,7 @@ fn conditions_of_quadratic_facets_keep_to_their_neighbours() {
     };
     let rows: Vec<JumpRow> = (0..41).map(at_node).collect();
     let stiffness = |v: u32| if v < 100 { 1e6 } else { 1.0 };
-    let jumps = Jumps::new(&rows, |_| true, stiffness).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |_| true, stiffness).unwrap();
     for sum in jumps.replaced.values() {
         assert!(sum.terms.len() <= 9, "{sum:?}");
     }
@@ -79,7 +79,7 @@ fn conditions_of_quadratic_facets_keep_to_their_neighbours() {
 #[test]
 fn a_condition_given_twice_shares_its_jump() {
     let rows = [row(&[(0, 1.0), (1, -1.0)]), row(&[(0, 2.0), (1, -2.0)])];
-    let jumps = Jumps::new(&rows, |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |_| true, |_| 1.0).unwrap();
     assert_eq!(jumps.pivots.len(), 1);
     let shared = JumpOf::Unknown {
         number: 0,
@@ -95,7 +95,7 @@ fn a_condition_that_follows_from_two_others_is_their_combination() {
         row(&[(1, 1.0), (2, -1.0)]),
         row(&[(0, 1.0), (2, -1.0)]),
     ];
-    let jumps = Jumps::new(&rows, |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |_| true, |_| 1.0).unwrap();
     assert_eq!(jumps.pivots.len(), 2);
     let JumpOf::Combination(terms) = &jumps.of[2] else {
         panic!("{:?}", jumps.of[2]);
@@ -110,7 +110,7 @@ fn a_condition_that_follows_from_two_others_is_their_combination() {
 #[test]
 fn a_condition_from_the_other_side_is_a_negative_multiple() {
     let rows = [row(&[(0, 1.0)]), row(&[(0, -1.0)])];
-    let jumps = Jumps::new(&rows, |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |_| true, |_| 1.0).unwrap();
     let opposite = JumpOf::Combination(vec![(0, -1.0)]);
     assert_eq!(jumps.of[1], opposite);
 }
@@ -118,21 +118,21 @@ fn a_condition_from_the_other_side_is_a_negative_multiple() {
 #[test]
 fn conditions_whose_normals_cancel_are_prescribed() {
     let rows = [row(&[(0, 1.0), (1, -1.0)]), row(&[(0, 1e-14), (1, -1e-14)])];
-    let jumps = Jumps::new(&rows, |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |_| true, |_| 1.0).unwrap();
     assert_eq!(jumps.of[1], JumpOf::Prescribed);
 }
 
 #[test]
 fn a_condition_without_an_unknown_that_may_go_is_refused() {
     let rows = [row(&[(0, 1.0), (1, -1.0)]), row(&[(0, 1.0)])];
-    let error = Jumps::new(&rows, |v| v != 0, |_| 1.0).unwrap_err();
+    let error = Jumps::new(&rows, &|_| false, |v| v != 0, |_| 1.0).unwrap_err();
     assert_eq!(error, NoUnknown(1));
 }
 
 #[test]
 fn an_unknown_that_may_not_go_stays() {
     let rows = [row(&[(0, 1.0), (1, -1.0)])];
-    let jumps = Jumps::new(&rows, |v| v != 0, |_| 1.0).unwrap();
+    let jumps = Jumps::new(&rows, &|_| false, |v| v != 0, |_| 1.0).unwrap();
     assert!(jumps.replaced.contains_key(&1));
 }
 
@@ -141,7 +141,7 @@ fn the_softer_side_follows_the_stiffer_one() {
     let rows = [row(&[(0, 1.0), (1, -1.0)])];
     for soft in [0, 1] {
         let stiffness = |v| if v == soft { 1.0 } else { 1e6 };
-        let jumps = Jumps::new(&rows, |_| true, stiffness).unwrap();
+        let jumps = Jumps::new(&rows, &|_| false, |_| true, stiffness).unwrap();
         assert!(jumps.replaced.contains_key(&soft));
     }
 }
@@ -152,10 +152,66 @@ fn conditions_that_are_nearly_parallel_to_others_are_combinations_of_little() {
         let (sin, cos) = degrees.to_radians().sin_cos();
         row(&[(0, cos), (1, sin)])
     };
-    let jumps = Jumps::new(&[at(50.0), at(51.0), at(80.0)], |_| true, |_| 1.0).unwrap();
+    let jumps = Jumps::new(
+        &[at(50.0), at(51.0), at(80.0)],
+        &|_| false,
+        |_| true,
+        |_| 1.0,
+    )
+    .unwrap();
     assert_eq!(jumps.pivots.len(), 2);
     let JumpOf::Combination(terms) = &jumps.of[1] else {
         panic!("{:?}", jumps.of);
     };
     assert!(terms.iter().all(|(_, factor)| factor.abs() < 2.0));
+}
+
+/// A tie of 0 to 1, a contact that says the same of them and one beside it, and another tie around the corner.
+#[test]
+fn what_ties_prescribe_is_no_unknown_of_others() {
+    let rows = vec![
+        row(&[(0, 1.0), (1, -1.0)]),
+        row(&[(0, 1.0), (2, -1.0)]),
+        row(&[(0, 2.0), (1, -2.0)]),
+        row(&[(1, 1.0), (3, -1.0)]),
+        row(&[(3, 1.0), (0, -1.0)]),
+    ];
+    let is_tied = |j: usize| [0, 3, 4].contains(&j);
+    let jumps = Jumps::new(&rows, &is_tied, |_| true, |_| 1.0).unwrap();
+    assert_eq!((jumps.tied.len(), jumps.pivots.len()), (2, 1));
+    // Two ties, and a third one that these are, less than nothing of it.
+    let of_ties: Vec<JumpOf> = [0, 3, 4].map(|j| jumps.of[j].clone()).to_vec();
+    let is_own = |of: &&JumpOf| matches!(of, JumpOf::Tied(_));
+    assert_eq!(of_ties.iter().filter(is_own).count(), 2);
+    assert_eq!(
+        of_ties
+            .iter()
+            .filter(|of| **of == JumpOf::Prescribed)
+            .count(),
+        1
+    );
+    assert!(matches!(jumps.of[1], JumpOf::Unknown { number: 0, .. }));
+    assert_eq!(jumps.of[2], JumpOf::Prescribed);
+    // With the jumps of ties 0.5 and 0.25 that of the third is −0.75, and twice the first is that of the contact.
+    let mut bounds = vec![0.5, 3.0, 7.0, 0.25, 0.0];
+    for (condition, value) in [(0, 0.5), (3, 0.25), (4, -0.75)] {
+        bounds[condition] = value;
+    }
+    jumps.subtract_known(&mut bounds);
+    assert_eq!(bounds[2], 7.0 - 2.0 * 0.5);
+    let dependent = [0, 3, 4]
+        .into_iter()
+        .find(|&j| jumps.of[j] == JumpOf::Prescribed)
+        .unwrap();
+    assert!(bounds[dependent].abs() < 1e-15);
+    // Whatever stays, each is what it is called.
+    let order = jumps
+        .tied_conditions()
+        .into_iter()
+        .map(|j| [0.5, 0.0, 0.0, 0.25, -0.75][j]);
+    let t: Vec<f64> = order.chain([2.0]).collect();
+    let v = |i: u32| f64::from(i) + 0.7;
+    for (j, expected) in [(0, 0.5), (1, 2.0), (2, 1.0), (3, 0.25), (4, -0.75)] {
+        assert!((jump(&rows[j], &jumps, v, &t) - expected).abs() < 1e-14);
+    }
 }

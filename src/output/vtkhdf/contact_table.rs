@@ -1,6 +1,6 @@
 //! `/contact/<name>/`: one row for each contact point.
 
-use contact_dd_partition::problem::ContactSummary;
+use contact_dd_partition::problem::{ContactKind, ContactSummary};
 use hdf5::{File, Group, Result};
 
 use super::checkpoint::Column;
@@ -26,7 +26,7 @@ struct Table {
 enum In {
     First,
     Each,
-    /// Each one, where the contact has friction.
+    /// Each one, where the contact has friction or is a tie.
     EachWithFriction,
 }
 
@@ -120,7 +120,8 @@ impl Table {
         let (name, rows) = (&contact.name, contact.conditions);
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
-        let is_there = |when: In| contact.has_friction || when != In::EachWithFriction;
+        let is_tied = contact.kind == ContactKind::Tie;
+        let is_there = |when: In| contact.has_friction || is_tied || when != In::EachWithFriction;
         let columns = COLUMNS.iter().filter(|(_, when, _)| is_there(*when));
         let columns = columns.map(|(name, when, values)| {
             let steps = if *when == In::First { 0 } else { steps };

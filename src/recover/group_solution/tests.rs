@@ -15,6 +15,7 @@ pub fn group(law: Law) -> ContactGroup {
         slides: None,
     };
     let point = ContactPoint {
+        axes: Vec::new(),
         contact: 0,
         place: 0,
         entries: vec![(0, 1.0)],

@@ -45,7 +45,8 @@ impl Scene {
         scale: f64,
     ) -> Option<Result<RigidMotions, Failure>> {
         let (bodies, names) = (&self.bodies, &self.names);
-        let (touched, alone) = kinematics.touched(&self.rows);
+        let rows = self.both_ways();
+        let (touched, alone) = kinematics.touched(&rows);
         let mut driven = DVector::zeros(kinematics.len);
         for motion in &alone {
             let own = motion.bodies.iter();
@@ -54,9 +55,9 @@ impl Scene {
             own.iter().for_each(|&(i, z)| driven[i] += along * z);
         }
         let touched = Touched {
-            sparse: self.rows.iter().map(|r| touched.sparse_row(r)).collect(),
+            sparse: rows.iter().map(|r| touched.sparse_row(r)).collect(),
             load: touched.load(bodies),
-            rows: &self.rows,
+            rows: &rows,
             kinematics: touched,
         };
         let is_driven = |driven: &DVector<f64>| driven.norm() > LOAD_TOLERANCE * scale;
@@ -109,7 +110,8 @@ impl Scene {
         kinematics: &Kinematics,
         scale: f64,
     ) -> Option<DVector<f64>> {
-        let normals = self.rows.iter().filter(|row| row.friction.is_none());
+        let rows = self.both_ways();
+        let normals = rows.iter().filter(|row| row.friction.is_none());
         let normals = normals.map(|row| kinematics.sparse_row(row)).collect();
         let load = kinematics.load(&self.bodies);
         let rest = ManyBodies::new(&kinematics.centers, normals)?.residual(load.as_slice())?;

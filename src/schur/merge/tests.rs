@@ -61,7 +61,7 @@ fn a_merge_is_the_schur_complement_of_the_sum() {
     let (children, loads, a, f) = example();
     let (merge, condensed) =
         Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
-    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[]);
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
     let gone = [2, 5, 7];
     let kept = [9, 10, 11, 0, 1, 3, 4, 6, 8];
     let part = |rows: &[usize], columns: &[usize]| {
@@ -89,12 +89,12 @@ fn what_is_recovered_solves_the_sum() {
         .solve(Mat::from_fn(12, 1, |i, _| f[i]));
     let (merge, _) =
         Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
-    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[]);
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
     let kept: Vec<f64> = [9, 10, 11, 0, 1, 3, 4, 6, 8]
         .map(|i| exact[(i, 0)])
         .to_vec();
-    let (x, _) = merge.recover(&load, &kept);
-    for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+    let x = merge.recover(&load, &kept);
+    for (x, node) in x.children[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
         assert!((x - exact[(node, 0)]).abs() < 1e-14);
     }
 }
@@ -114,6 +114,7 @@ fn a_normal_jump_takes_the_place_of_a_displacement() {
         dof: trace(5),
         staying: vec![(trace(6), 0.5)],
         jumps: vec![(0, 2.0)],
+        is_tied: false,
     };
     let (merge, condensed) = Merge::new(
         children,
@@ -135,10 +136,10 @@ fn a_normal_jump_takes_the_place_of_a_displacement() {
             assert!((condensed.s[(i, j)] - s[(i, j)]).abs() < 1e-12);
         }
     }
-    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[]);
-    let (x, _) = merge.recover(&load, &kept.map(|i| exact[(i, 0)]));
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
+    let x = merge.recover(&load, &kept.map(|i| exact[(i, 0)]));
     let u = &t * &exact;
-    for (x, node) in x[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+    for (x, node) in x.children[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
         assert!((x - u[(node, 0)]).abs() < 1e-14);
     }
 }
@@ -154,4 +155,54 @@ fn an_unknown_that_nothing_holds_is_named() {
     }
     let error = Merge::new(children, &[2], &[], &mut Spare::default(), Par::Seq).unwrap_err();
     assert_eq!(error, FreeInterfaceDof(trace(2)));
+}
+
+/// The same where the jump is that of a tie, 0.3: nothing is kept of it but the force that holds it there.
+#[test]
+fn a_known_jump_takes_the_place_of_a_displacement_and_has_no_row() {
+    let (children, loads, a, f) = example();
+    let mut t = Mat::<f64>::identity(12, 12);
+    (t[(5, 5)], t[(5, 6)]) = (2.0, 0.5);
+    let (a, f) = (
+        t.transpose() * a * &t,
+        t.transpose() * Mat::from_fn(12, 1, |i, _| f[i]),
+    );
+    let known = 0.3;
+    let free = [0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11];
+    let part = |rows: &[usize], columns: &[usize]| {
+        Mat::from_fn(rows.len(), columns.len(), |i, j| a[(rows[i], columns[j])])
+    };
+    let load = Mat::from_fn(11, 1, |i, _| f[(free[i], 0)] - a[(free[i], 5)] * known);
+    let solved = part(&free, &free).llt(Side::Lower).unwrap().solve(load);
+    let mut exact = Mat::<f64>::zeros(12, 1);
+    exact[(5, 0)] = known;
+    (free.iter().enumerate()).for_each(|(i, &place)| exact[(place, 0)] = solved[(i, 0)]);
+    let replaced = Replaced {
+        dof: trace(5),
+        staying: vec![(trace(6), 0.5)],
+        jumps: vec![(0, 2.0)],
+        is_tied: true,
+    };
+    let spare = &mut Spare::default();
+    let (merge, condensed) =
+        Merge::new(children, &[2, 5, 7], &[replaced], spare, Par::Seq).unwrap();
+    let (gone, kept) = ([2, 7], [9, 10, 11, 0, 1, 3, 4, 6, 8]);
+    assert_eq!((condensed.jumps, condensed.interface_dofs.len()), (3, 6));
+    let within = part(&gone, &gone).llt(Side::Lower).unwrap();
+    let s = part(&kept, &kept) - part(&kept, &gone) * within.solve(part(&gone, &kept));
+    for i in 0..9 {
+        for j in 0..=i {
+            assert!((condensed.s[(i, j)] - s[(i, j)]).abs() < 1e-12);
+        }
+    }
+    let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[known]);
+    let x = merge.recover(&load, &kept.map(|i| exact[(i, 0)]));
+    let u = &t * &exact;
+    for (x, node) in x.children[1].iter().zip([11, 1, 2, 4, 5, 6, 7]) {
+        assert!((x - u[(node, 0)]).abs() < 1e-13);
+    }
+    let force = f[(5, 0)] - (0..12).map(|i| a[(5, i)] * exact[(i, 0)]).sum::<f64>();
+    assert_eq!(x.forces.len(), 1);
+    assert!((x.forces[0] - force).abs() < 1e-12 && force.abs() > 1e-3);
+    assert!(x.jumps.is_empty());
 }

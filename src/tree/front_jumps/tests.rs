@@ -20,6 +20,7 @@ fn of_front(front: &FrontJumps) -> Mat<f64> {
         },
         staying: Vec::new(),
         jumps: vec![(k, 1.0)],
+        is_tied: false,
     };
     let replaced: Vec<Replaced> = (0..M).map(replaced).collect();
     let mut t = Mat::<f64>::zeros(M, M);

@@ -230,7 +230,7 @@ pub fn scale(model: &mut Model, factor: f64) {
     for condition in model.contacts.iter_mut().flat_map(|c| &mut c.points) {
         condition.gap *= factor;
         match &mut condition.law {
-            contact_point::Law::Frictionless => {}
+            contact_point::Law::Frictionless | contact_point::Law::Tied => {}
             contact_point::Law::Given { bound } => *bound *= factor,
             contact_point::Law::Coulomb { cohesion, .. } => *cohesion *= factor,
         }

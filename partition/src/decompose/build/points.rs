@@ -14,11 +14,11 @@ impl Problem {
         };
         let numbers: Vec<HashMap<u32, u32>> = self.subdomains.iter().map(on_interface).collect();
         let of_point = |point: &ContactPoint<SubdomainNode>| {
-            let nodes = point.entries.iter().map(|&(at, _)| {
+            let nodes = point.entries.iter().enumerate().map(|(i, &(at, _))| {
                 let subdomain = &self.subdomains[at.subdomain as usize];
                 let supports = subdomain.supports.iter().filter(|s| s.node == at.node);
                 let interface = numbers[at.subdomain as usize].get(&at.node).copied();
-                let directions = point.directions(self.catalog.dim);
+                let directions = point.directions_at(i, self.catalog.dim);
                 PointNode::new(interface, directions, supports.map(|s| s.direction))
             });
             nodes.collect()

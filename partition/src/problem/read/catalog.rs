@@ -8,7 +8,7 @@ use super::{hierarchy, materials, points, probes, settings, tips};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::{
-    Absent, Body, Catalog, ContactSummary, Hierarchy, LoadStep, SubdomainSummary,
+    Absent, Body, Catalog, ContactKind, ContactSummary, Hierarchy, LoadStep, SubdomainSummary,
 };
 
 /// Reads and checks the catalog.
@@ -26,7 +26,9 @@ pub(super) fn read(
     let interface_nodes = check_interface(&interface, &subdomains)?;
     let (points, point_nodes) = points::read(contents, &subdomains)?;
     for point in &points {
-        contacts[point.contact as usize].has_friction |= point.law.has_friction();
+        let contact = &mut contacts[point.contact as usize];
+        contact.has_friction |= point.law.has_friction();
+        contact.kind = ContactKind::of(point);
     }
     let probes = probes::read(contents, &subdomains)?;
     let mut catalog = Catalog {
@@ -249,6 +251,7 @@ fn read_contacts(contents: &Contents, groups: &[usize]) -> Result<Vec<ContactSum
             name,
             conditions,
             has_friction: false,
+            kind: ContactKind::default(),
         })
         .collect())
 }

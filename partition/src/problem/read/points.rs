@@ -5,9 +5,13 @@ use std::collections::HashSet;
 use super::contents::Contents;
 use super::entries::Entries;
 use crate::contact_point::{ContactPoint, Law};
+use crate::element::geometry::length;
 use crate::error::InputError;
 use crate::problem::law::LawRow;
 use crate::problem::{PointNode, SubdomainNode, SubdomainSummary};
+
+/// Error of the length of a unit vector.
+const UNIT: f64 = 1e-9;
 
 /// Reads all contact points, and what the file says of their nodes.
 #[allow(clippy::type_complexity)]
@@ -29,6 +33,7 @@ pub(super) fn read(
     let tag_b = integers("/contact/node_b")?;
     let laws = read_laws(contents)?;
     let entries = read_entries(contents, subdomains)?;
+    let mut axes = read_axes(contents, &laws)?;
     let point = |(i, entries): (usize, _)| ContactPoint {
         // Checked when the file was opened: an index of a contact, and one of its places.
         contact: contact.all()[i] as u32,
@@ -38,6 +43,7 @@ pub(super) fn read(
         force_point: force_point[i],
         tag_b: tag_b.all()[i],
         law: laws[i],
+        axes: std::mem::take(&mut axes[i]),
         ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
     };
     let points: Vec<_> = entries.into_iter().enumerate().map(point).collect();
@@ -64,6 +70,28 @@ fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
         values.law().map_err(wrong)
     };
     rows.map(of_row).collect()
+}
+
+/// The directions of the entries of every point; of an equation alone there are any.
+fn read_axes(contents: &Contents, laws: &[Law]) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
+    if !contents.has("/contact/entry_axis") {
+        return Ok(vec![Vec::new(); laws.len()]);
+    }
+    let all = contents.numbers("/contact/entry_axis", 0..contents.count('E'))?;
+    let of_row = |(row, law): (usize, &Law)| {
+        let axes = all.vectors(contents.rows('E', row));
+        if axes.iter().all(|axis| *axis == [0.0; 3]) {
+            return Ok(Vec::new());
+        }
+        let is_unit = |axis: &[f64; 3]| (length(*axis) - 1.0).abs() <= UNIT;
+        match law.is_tied() && axes.iter().all(is_unit) {
+            true => Ok(axes),
+            false => Err(InputError::new(format!(
+                "dataset /contact/entry_axis, point {row}: expected unit vectors at all entries of a point of law 3, or zeros"
+            ))),
+        }
+    };
+    laws.iter().enumerate().map(of_row).collect()
 }
 
 /// The nodes and weights of every point.
@@ -114,7 +142,7 @@ fn read_nodes(
     let supports = 0..contents.count('S');
     let held = contents.integers("/support/node", supports.clone())?;
     let directions = contents.numbers("/support/direction", supports)?;
-    let of_node = |at: SubdomainNode, point: &ContactPoint<SubdomainNode>| {
+    let of_node = |at: SubdomainNode, i: usize, point: &ContactPoint<SubdomainNode>| {
         let (subdomain, node) = (at.subdomain as usize, i64::from(at.node));
         let rows = contents.rows('I', subdomain);
         let place = shared.of(rows.clone()).iter().position(|&n| n == node);
@@ -123,13 +151,13 @@ fn read_nodes(
         let rows = rows.filter(|&row| held.all()[row] == node);
         PointNode::new(
             interface,
-            point.directions(contents.count('d')),
+            point.directions_at(i, contents.count('d')),
             rows.map(|row| directions.vectors(row..row + 1)[0]),
         )
     };
     let of_point = |point: &ContactPoint<SubdomainNode>| {
-        let nodes = point.entries.iter();
-        nodes.map(|&(at, _)| of_node(at, point)).collect()
+        let nodes = point.entries.iter().enumerate();
+        nodes.map(|(i, &(at, _))| of_node(at, i, point)).collect()
     };
     Ok(points.iter().map(of_point).collect())
 }

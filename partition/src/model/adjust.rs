@@ -1,0 +1,83 @@
+//! Adjustment of ties: nodes are moved onto the other side, so that no gap is left over which forces would act.
+
+use super::bodies::Bodies;
+use super::contact::Contacts;
+use super::held_nodes::HeldNodes;
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::{advance, length};
+use crate::error::InputError;
+use crate::magnitude::short;
+use crate::mesh::topology::Topology;
+use crate::scene::Scene;
+use crate::scene::contact::Partner;
+
+/// Times that sides are paired anew where they have been moved to: what is left is squared every time.
+const PAIRINGS: usize = 4;
+/// Most rounds in which points with nodes in common are moved one after the other.
+const ROUNDS: usize = 50;
+/// Way of a node, relative to the size of facets, that is none.
+const NOTHING: f64 = 1e-14;
+
+/// Moves the nodes of the ties of a scene that ask for it.
+///
+/// # Errors
+/// Sides that don't face each other, or are apart.
+pub(super) fn adjust(
+    scene: &Scene,
+    bodies: &mut Bodies,
+    topology: &Topology,
+    warnings: &mut Vec<String>,
+) -> Result<(), InputError> {
+    for tie in scene.tie.iter().filter(|tie| tie.reach.adjust) {
+        let (keys, what) = (tie.contact(), format!("tie '{}'", tie.name));
+        let Partner::Side(names) = &keys.partner else {
+            continue;
+        };
+        let before = bodies.mesh.points.clone();
+        for _ in 0..PAIRINGS {
+            let sides = Contacts::new(&bodies.mesh, topology, HeldNodes::default(), scene);
+            let tied = sides.tied(&keys, (names, tie.reach), &what)?;
+            if !close(&mut bodies.mesh.points, &tied.points, NOTHING * tied.size) {
+                break;
+            }
+        }
+        let ways = before.iter().zip(&bodies.mesh.points);
+        let ways = ways.map(|(before, after)| length(advance(*after, -1.0, *before)));
+        let (moved, farthest) = ways
+            .filter(|&way| way > 0.0)
+            .fold((0, 0.0), |(n, most), way| (n + 1, f64::max(most, way)));
+        if moved > 0 {
+            warnings.push(format!(
+                "{what}: {moved} nodes are moved by up to {} {} onto the other side",
+                short(farthest),
+                scene.units.length()
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Moves the nodes that have `points`, first of their entries, until the sides of all coincide, Σ weight · position = 0; returns
+/// whether any was farther away than `nothing`.
+fn close(positions: &mut [[f64; 3]], points: &[ContactPoint<u32>], nothing: f64) -> bool {
+    let mut was_apart = false;
+    for _ in 0..ROUNDS {
+        let mut farthest: f64 = 0.0;
+        for point in points {
+            let Some(&(node, weight)) = point.entries.first() else {
+                continue;
+            };
+            let at =
+                |sum, &(node, weight): &(u32, f64)| advance(sum, weight, positions[node as usize]);
+            let apart = point.entries.iter().fold([0.0; 3], at);
+            let way = apart.map(|c| -c / weight);
+            farthest = farthest.max(length(way));
+            positions[node as usize] = advance(positions[node as usize], 1.0, way);
+        }
+        if farthest <= nothing {
+            break;
+        }
+        was_apart = true;
+    }
+    was_apart
+}

@@ -1,0 +1,134 @@
+//! Equations against what they say.
+
+use contact_dd_partition::mesh::{Group, Mesh};
+
+use crate::support::blocks::Blocks;
+use crate::support::close::close;
+use crate::support::monolithic::Monolithic;
+use crate::support::scenes::model;
+use crate::support::solver::{Case, solve};
+
+use super::ROCK;
+
+/// A block beside another one, with points at corners.
+fn mesh() -> Mesh {
+    let mut mesh = Blocks::new()
+        .rectangle("lower", [0.0, 1.0], [0.0, 1.0], [4, 3])
+        .rectangle("upper", [0.0, 1.0], [1.5, 2.5], [3, 4])
+        .mesh;
+    for (name, at) in [("A", [1.0, 1.0]), ("B", [0.0, 1.5]), ("C", [1.0, 2.5])] {
+        let is_there = |x: &[f64; 3]| (x[0] - at[0]).abs() + (x[1] - at[1]).abs() < 1e-9;
+        let node = mesh.points.iter().position(is_there).unwrap() as u32;
+        mesh.groups.insert(
+            name.into(),
+            Group {
+                dim: 0,
+                members: vec![node],
+            },
+        );
+    }
+    mesh
+}
+
+const TEXT: &str = "
+[[displacement]]
+on = 'lower bottom'
+x = 0.0
+y = 0.0
+[[displacement]]
+on = 'upper bottom'
+y = 0.0
+[[traction]]
+on = 'upper top'
+value = [1e6, 0.0]
+[[equation]]
+terms = [
+    {at = 'A', component = 'x', factor = 1.0},
+    {at = 'B', component = 'x', factor = -1.0},
+]
+[[equation]]
+terms = [
+    {at = 'A', component = 'y'},
+    {at = 'C', component = 'x', factor = -2.0},
+]
+";
+
+/// Equations between several components, of several bodies, are those of the whole system with multipliers.
+#[test]
+fn equations_are_what_lagrange_multipliers_make_of_the_whole_mesh() {
+    let model = model(&format!("{ROCK}{TEXT}"), mesh());
+    let node = |name: &str| model.mesh.groups[name].members[0] as usize;
+    let [a, b, c] = ["A", "B", "C"].map(node);
+    let mut free = model.clone();
+    free.contacts.clear();
+    let rows = vec![
+        vec![(2 * a, 1.0), (2 * b, -1.0)],
+        vec![(2 * a + 1, 1.0), (2 * c, -2.0)],
+    ];
+    let expected = Monolithic::with(&free, rows);
+    for count in [2, 5] {
+        let solution = solve(&model, count);
+        let scale = solution.largest_displacement();
+        for (u, v) in solution.dofs(&model).iter().zip(&expected.u) {
+            close(*u, *v, 1e-11 * scale);
+        }
+    }
+}
+
+/// A value is that of the sum, and the force of the equation is what holds it: a block that is drawn out by its mean
+/// displacement is one under the pressure that does the same.
+#[test]
+fn a_value_prescribes_the_mean_of_a_side() {
+    let mesh = Blocks::new()
+        .rectangle("lower", [0.0, 1.0], [0.0, 1.0], [4, 3])
+        .mesh;
+    let drawn = 1e-4;
+    let text = format!(
+        "plane = 'stress'
+materials.rock = {{young = 20e9, poisson = 0.0}}
+bodies.lower.material = 'rock'
+[[displacement]]
+on = 'lower bottom'
+x = 0.0
+y = 0.0
+[[equation]]
+name = 'draw'
+terms = [{{at = 'lower top', component = 'y', factor = 2.0}}]
+value = {}
+",
+        2.0 * drawn
+    );
+    let model = model(&text, mesh);
+    let solution = solve(&model, 3);
+    let top = model.mesh.points.iter().zip(&model.mesh.node_tags);
+    let top = top.filter(|(x, _)| (x[1] - 1.0).abs() < 1e-9);
+    let (sum, count) = top.fold((0.0, 0), |(sum, n), (_, tag)| {
+        (sum + solution.displacement[tag][1], n + 1)
+    });
+    close(sum / f64::from(count), drawn, 1e-13 * drawn);
+    let force = solution.contacts["draw"][0].force;
+    let reaction = solution.report["reactions"][0]["force"][1]
+        .as_f64()
+        .unwrap();
+    close(2.0 * force, reaction, 1e-9 * reaction.abs());
+}
+
+/// On any ranks and with both solvers.
+#[test]
+fn ranks_make_no_difference_to_equations() {
+    let model = model(&format!("{ROCK}{TEXT}"), mesh());
+    let case = Case::in_clusters(&model, 6, 3);
+    let expected = case.solve(&[]);
+    for args in [&[][..], &["--interface", "iterative"]] {
+        for ranks in [2, 3] {
+            let ended = case.run_on(ranks, args);
+            assert_eq!(ended.code(), 0, "{}", ended.stderr);
+            let found = support::solution::Solution::read(&case.result());
+            found.check_certificate();
+            let scale = expected.largest_displacement();
+            for (tag, u) in &expected.displacement {
+                (0..2).for_each(|k| close(found.displacement[tag][k], u[k], 1e-9 * scale));
+            }
+        }
+    }
+}
