@@ -190,7 +190,7 @@ fn same_results(trials: &mut Trials) {
     for (name, make) in cases {
         same_bits(trials, name, make, &[]);
     }
-    let iterative: [(&str, MakeCase); 7] = [
+    let iterative: [(&str, MakeCase); 9] = [
         ("between_clusters::in_space", || {
             let lower = solid(
                 "lower",
