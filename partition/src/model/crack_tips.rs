@@ -11,6 +11,8 @@ use crate::mesh::topology::Topology;
 
 /// Angle between the faces at a tip up to which these are those of a crack, not of a notch (rad).
 const OPENING: f64 = 0.05;
+/// Angle of a body that is none (rad).
+const ROUND_OFF: f64 = 1e-6;
 /// Distance of a face from the straight line, over that from the tip, up to which it is straight.
 const STRAIGHT: f64 = 0.01;
 /// Radius of the disc over the distance from the tip to what disturbs its near field.
@@ -185,8 +187,8 @@ impl<'a> Outline<'a> {
         // The angle of the body from the lower face to the upper one, counter-clockwise.
         let sine = below[0] * above[1] - below[1] * above[0];
         let turn = sine.atan2(dot(below, above)).rem_euclid(TAU);
-        let is_whole = turn > TAU - OPENING || turn < 1e-6;
-        if away[0] == away[1] || !is_whole {
+        let is_notch = (ROUND_OFF..=TAU - OPENING).contains(&turn);
+        if away[0] == away[1] || is_notch {
             return None;
         }
         let back = advance(below, 1.0, above);

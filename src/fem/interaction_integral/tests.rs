@@ -111,9 +111,8 @@ fn factors(
     let block = block(&tip);
     let disc = TipDisc::new(&tip, material).unwrap();
     let points = block.points().iter();
-    let u: Vec<f64> = (points.clone().map(|x| u(&disc, [x[0], x[1]])))
-        .flatten()
-        .collect();
+    let u = points.clone().flat_map(|x| u(&disc, [x[0], x[1]]));
+    let u: Vec<f64> = u.collect();
     let initial = InitialStress {
         cells: Vec::new(),
         nodes: points.map(|x| initial([x[0], x[1]])).collect(),

@@ -78,7 +78,7 @@ fn the_answer_of_a_front_balances_and_has_closed_rows_at_their_bounds() {
         let open: Vec<bool> = (0..limits).map(|i| noise(1000 * seed + i) > -0.2).collect();
         let front = FrontJumps::new(&rows, &open);
         let prescribed: Vec<f64> = (0..limits).map(|i| noise(31 * seed + i)).collect();
-        let given = |i: usize| match open[i] && i % 3 == 0 {
+        let given = |i: usize| match open[i] && i.is_multiple_of(3) {
             true => noise(7 * seed + i),
             false => 0.0,
         };
