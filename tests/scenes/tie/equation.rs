@@ -6,6 +6,7 @@ use crate::support::blocks::Blocks;
 use crate::support::close::close;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::model;
+use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
 use super::ROCK;
@@ -123,7 +124,7 @@ fn ranks_make_no_difference_to_equations() {
         for ranks in [2, 3] {
             let ended = case.run_on(ranks, args);
             assert_eq!(ended.code(), 0, "{}", ended.stderr);
-            let found = support::solution::Solution::read(&case.result());
+            let found = Solution::read(&case.result());
             found.check_certificate();
             let scale = expected.largest_displacement();
             for (tag, u) in &expected.displacement {
