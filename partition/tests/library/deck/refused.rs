@@ -30,12 +30,17 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         ),
         ("*HEATTRANSFER", "line 49: *HEAT TRANSFER isn't read"),
         (
-            "*TIE, NAME=T\nHigh, Low",
-            "line 49: *TIE isn't supported yet; instead give bodies",
+            "*TIE, NAME=T, CYCLIC SYMMETRY\nHigh, Low",
+            "line 49: *TIE with CYCLIC SYMMETRY isn't read; expected sides that hang together",
+        ),
+        ("*EQUATION\n2", "line 50: the equation has 0 of its 2 terms"),
+        (
+            "*EQUATION\n1\n15, 4, 1.",
+            "line 51: the degree of freedom 4 is no displacement; expected 1 to 3",
         ),
         (
-            "*EQUATION\n2",
-            "line 49: *EQUATION isn't supported yet; instead",
+            "*EQUATION\n2\nTop, 1, 1., Top, 2, 1.",
+            "line 50: an equation between several sets isn't read",
         ),
         (
             "*MPC\nBEAM, 1, 2",
@@ -101,10 +106,6 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         (
             "*BOUNDARY\nNowhere, 1",
             "line 50: there is no node and no set of nodes 'Nowhere'",
-        ),
-        (
-            "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED",
-            "line 49: PRESSURE-OVERCLOSURE=TIED isn't supported yet",
         ),
         (
             "*SURFACE BEHAVIOR, NO SEPARATION",

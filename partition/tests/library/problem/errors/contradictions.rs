@@ -118,10 +118,10 @@ fn write_rough(path: &Path) {
 }
 
 const FRICTION: &str = "
-law that isn't known: /contact/law[1] = 3
-    /contact/law, row 1: 3 is no law of friction; expected 0 to 2
+law that isn't known: /contact/law[1] = 4
+    /contact/law, row 1: 4 is no law; expected 0 to 3
 law below zero: /contact/law[1] = -1
-    /contact/law, row 1: -1 is no law of friction
+    /contact/law, row 1: -1 is no law
 coefficient below zero: /contact/friction[0] = -0.5
     /contact/friction, row 0: -0.5; expected 0 or more
 coefficient that isn't finite: /contact/friction[0] = nan
