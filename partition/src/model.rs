@@ -193,7 +193,7 @@ impl<'a> MadeContacts<'a> {
     ) -> Result<Self, InputError> {
         let mut all = Self::default();
         for of in declared {
-            let made = sides.contact(all.contacts.len() as u32, &of.contact, warnings)?;
+            let made = sides.declared(all.contacts.len() as u32, &of.contact, warnings)?;
             // Where all nodes are held no bodies touch each other that could part.
             if of.words.is_none() || !made.points.is_empty() {
                 all.contacts.push(made);

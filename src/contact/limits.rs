@@ -85,7 +85,7 @@ impl Limits {
             scale,
             tangents: Vec::new(),
             prescribed_slips: Vec::new(),
-            tied: Vec::new(),
+            tied: tied(of, gaps),
         };
         let is_tangential = |j: usize| {
             let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
@@ -114,11 +114,9 @@ impl Limits {
                     limits.bounds.push(*gap);
                     limits.tightest.push((j, 1.0));
                 }
-                JumpOf::Tied(_) => limits.tied.push((j, *gap)),
-                JumpOf::Prescribed => {}
+                JumpOf::Prescribed | JumpOf::Tied(_) => {}
             }
         }
-        limits.tied.sort_by_key(|&(j, _)| number_of_tied(&of[j]));
         let prescribed = |j: usize| {
             let slip = -gaps[j];
             let slips = slip.abs() > ROUND_OFF * scale;
@@ -299,12 +297,16 @@ impl Limits {
     }
 }
 
-/// The number of a jump of a tie.
-fn number_of_tied(of: &JumpOf) -> Option<usize> {
-    match of {
-        JumpOf::Tied(number) => Some(*number),
-        _ => None,
+/// The conditions of ties and their jumps, in the order of these.
+fn tied(of: &[JumpOf], gaps: &[f64]) -> Vec<(usize, f64)> {
+    let mut tied: Vec<(usize, (usize, f64))> = Vec::new();
+    for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
+        if let JumpOf::Tied(number) = *of {
+            tied.push((number, (j, *gap)));
+        }
     }
+    tied.sort_by_key(|&(number, _)| number);
+    tied.into_iter().map(|(_, of_jump)| of_jump).collect()
 }
 
 /// Tangential conditions, each with the number of the other one of its point, which stands beside it.

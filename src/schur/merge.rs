@@ -18,10 +18,9 @@ use faer::{Accum, Mat, MatMut, Par};
 
 use super::condensed::Condensed;
 use super::front::partial_cholesky;
-use super::local::{CondensedLoad, TiedLoad};
+use super::local::{CondensedLoad, TiedLoad, multiply_add};
 use super::substitution::{Front, Replaced, Substitution};
 use crate::schur::condensed::InterfaceDof;
-use crate::vector::{axpy, dot};
 
 /// The factor that a merge leaves for solving.
 #[derive(Debug)]
@@ -99,6 +98,11 @@ pub struct OwnJumps<'a> {
 }
 
 impl OwnJumps<'_> {
+    /// Number of jumps that aren't those of ties.
+    fn unknowns(&self) -> usize {
+        self.replaced.iter().filter(|r| !r.is_tied).count()
+    }
+
     fn is_open(&self, jump: usize) -> bool {
         self.open.get(jump).copied().unwrap_or(false)
     }
@@ -146,7 +150,7 @@ impl Merge {
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
         let (mut gone, mut interface_dofs) = union_of_interface_dofs(children, eliminated);
-        let count = own.replaced.iter().filter(|r| !r.is_tied).count();
+        let count = own.unknowns();
         let numbers = 0..count;
         let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
         let replaced: BTreeSet<InterfaceDof> = own.replaced.iter().map(|r| r.dof).collect();
@@ -228,9 +232,8 @@ impl Merge {
         for (load, force) in load[first..].iter_mut().zip(forces) {
             *load -= force;
         }
-        for (j, known) in known.iter().enumerate().filter(|(_, known)| **known != 0.0) {
-            axpy(-known, self.tied.col_as_slice(j), &mut load);
-        }
+        let back: Vec<f64> = known.iter().map(|jump| -jump).collect();
+        multiply_add(self.tied.as_ref(), &back, &mut load);
         let loads = load.split_off(n);
         self.forward(&mut load);
         let mut condensed = CondensedLoad::new(load, self.eliminated);
@@ -254,9 +257,12 @@ impl Merge {
         let mut x_e = x_e;
         matmul(x_e.as_mut(), Accum::Add, p.transpose(), x_k, -1.0, Par::Seq);
         solve_upper_triangular_in_place(l_e.transpose(), x_e, Par::Seq);
+        let taken = |j: usize| -> f64 {
+            let column = self.tied.col_as_slice(j).iter();
+            column.zip(&x).map(|(a, x)| a * x).sum()
+        };
         let forces = load.tied.loads.iter().enumerate();
-        let forces = forces.map(|(j, load)| load - dot(&self.tied.col_as_slice(j)[..x.len()], &x));
-        let forces = forces.collect();
+        let forces = forces.map(|(j, load)| load - taken(j)).collect();
         x.extend(&load.tied.jumps);
         let mut jumps = self.substitution.jumps(&x);
         jumps.truncate(jumps.len() - load.tied.jumps.len());

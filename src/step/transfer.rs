@@ -4,9 +4,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{advance, dot, padded};
-use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::stage::Stage;
+use contact_dd_partition::problem::{Catalog, SubdomainNode};
 use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
@@ -80,17 +81,11 @@ impl StageTransfer {
             closing_motions: end.closing_motions.to_vec(),
         };
         for &j in coming.iter().filter(|_| comm.is_root()) {
-            let mut jump = [0.0; 3];
-            let point = &whole.points[j];
-            for (i, (at, weight)) in point.entries.iter().enumerate() {
+            let displacement = |at: &SubdomainNode| {
                 let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
-                let u = u.unwrap_or_default();
-                jump = match point.axes.get(i) {
-                    Some(axis) => advance(jump, weight * dot(*axis, u), point.normal()),
-                    None => advance(jump, *weight, u),
-                };
-            }
-            transfer.since[j] = jump;
+                u.unwrap_or_default()
+            };
+            transfer.since[j] = jump(&whole.points[j], displacement);
         }
         comm.gather(
             &plan.group_owners(),
@@ -136,4 +131,20 @@ impl StageTransfer {
             ..StepState::default()
         }
     }
+}
+
+/// The jump of a point under the displacements of its nodes, of an equation along the axis of its first one.
+fn jump(
+    point: &ContactPoint<SubdomainNode>,
+    mut displacement: impl FnMut(&SubdomainNode) -> [f64; 3],
+) -> [f64; 3] {
+    let mut jump = [0.0; 3];
+    for (i, (at, weight)) in point.entries.iter().enumerate() {
+        let u = displacement(at);
+        jump = match point.axes.get(i) {
+            Some(axis) => advance(jump, weight * dot(*axis, u), point.normal()),
+            None => advance(jump, *weight, u),
+        };
+    }
+    jump
 }

@@ -57,8 +57,7 @@ pub(super) fn text(
         .map(|pair| [&pair.slave, &pair.master].map(|side| loads.groups.of_surface(side)))
         .collect();
     let ties = content.connections.ties(&mut loads.groups);
-    let systems = &content.steps.systems;
-    let equations = content.connections.equations(&mut loads.groups, systems)?;
+    let equations = (content.connections).equations(&mut loads.groups, &content.steps.systems)?;
     let dim = loads.dim;
     let mut document = Document::default();
     if let Some(title) = &content.title {

@@ -76,16 +76,26 @@ impl<'a> Contacts<'a> {
         }
     }
 
-    /// The points of contact `number` of the scene, along side a.
-    pub fn contact(
+    /// Contact or tie `number` of the scene.
+    pub fn declared(
         &self,
         number: u32,
         keys: &contact::Contact,
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
-        if let (Some(reach), Partner::Side(names)) = (keys.tie, &keys.partner) {
-            return self.tie(number, keys, (names, reach), warnings);
+        match (keys.tie, &keys.partner) {
+            (Some(reach), Partner::Side(names)) => self.tie(number, keys, (names, reach), warnings),
+            _ => self.contact(number, keys, warnings),
         }
+    }
+
+    /// The points of contact `number` of the scene, along side a.
+    fn contact(
+        &self,
+        number: u32,
+        keys: &contact::Contact,
+        warnings: &mut Vec<String>,
+    ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut paired = match &keys.partner {

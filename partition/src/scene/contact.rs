@@ -6,7 +6,6 @@ use serde::de::{Deserializer, Error};
 use super::condition::{Names, Obstacle};
 use super::friction::{self, Friction};
 use super::number::{Constant, Number};
-use super::tie::TieReach;
 use crate::name;
 
 /// A table `[[contact]]`.
@@ -76,6 +75,15 @@ impl Contact {
         };
         std::iter::once(&self.side_a).chain(side_b)
     }
+}
+
+/// The part of two sides that a tie holds together, and in which position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TieReach {
+    /// Up to which distance nodes are tied (m); `None` for a part of the size of facets.
+    pub tolerance: Option<f64>,
+    /// Whether nodes are moved onto the other side, so that no gap is left between what is tied.
+    pub adjust: bool,
 }
 
 /// The partner of side a of a contact.

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::condition::Names;
-use super::contact::{Contact, Pairing, Partner, contact_name, distance};
+use super::contact::{Contact, Pairing, Partner, TieReach, contact_name, distance};
 
 /// A tie of two sides.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -17,15 +17,6 @@ pub struct Tie {
     pub pairing: Option<Pairing>,
     /// What is tied of them.
     pub reach: TieReach,
-}
-
-/// The part of two sides that a tie holds together, and in which position.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TieReach {
-    /// Up to which distance nodes are tied (m); `None` for a part of the size of facets.
-    pub tolerance: Option<f64>,
-    /// Whether nodes are moved onto the other side, so that no gap is left between what is tied.
-    pub adjust: bool,
 }
 
 impl Tie {

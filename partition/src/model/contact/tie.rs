@@ -7,8 +7,7 @@ use crate::contact_point::{ContactPoint, Law};
 use crate::error::InputError;
 use crate::magnitude::short;
 use crate::scene::condition::Names;
-use crate::scene::contact;
-use crate::scene::tie::TieReach;
+use crate::scene::contact::{self, TieReach};
 
 /// Distance up to which sides are tied, relative to the size of their facets: the position tolerance of Abaqus.
 const NEAR: f64 = 0.05;
