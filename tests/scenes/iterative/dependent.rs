@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::element::geometry::{advance, dot};
 use contact_dd_partition::model::Model;
 
 use super::{ITERATIVE, difference};
@@ -20,8 +21,9 @@ fn junction(words: &str) -> Model {
     )
 }
 
-/// What all contacts do to every node, by its tag: of conditions that depend on each other it is known, of each alone it isn't.
-fn forces_on_nodes(solution: &Solution) -> BTreeMap<i64, [f64; 3]> {
+/// What all contacts do to every node where no support takes it, by its tag: of conditions that depend on each other it is known, of
+/// each alone it isn't, and of those whose jump supports prescribe in part neither is what these hold.
+fn forces_on_nodes(model: &Model, solution: &Solution) -> BTreeMap<i64, [f64; 3]> {
     let mut sums: BTreeMap<i64, [f64; 3]> = BTreeMap::new();
     for point in solution.points() {
         for (tag, sign) in point.tags.into_iter().zip([1.0, -1.0]) {
@@ -30,6 +32,12 @@ fn forces_on_nodes(solution: &Solution) -> BTreeMap<i64, [f64; 3]> {
                 let own = point.tangential_force[i] - point.force * point.normal[i];
                 *sum += sign * own;
             }
+        }
+    }
+    for support in &model.supports {
+        let tag = model.mesh.node_tags[support.node as usize];
+        if let Some(sum) = sums.get_mut(&tag) {
+            *sum = advance(*sum, -dot(*sum, support.direction), support.direction);
         }
     }
     sums
@@ -52,7 +60,7 @@ fn conditions_that_depend_on_others_have_the_dense_answer_in_the_tree_and_betwee
             let difference = difference(&dense, &found);
             assert!(difference < 1e-9, "{name}, {operator}: {difference:e}");
             assert_eq!(dense.closed(), found.closed(), "{name}, {operator}");
-            let (forces, expected) = (forces_on_nodes(&found), forces_on_nodes(&dense));
+            let [forces, expected] = [&found, &dense].map(|of| forces_on_nodes(&model, of));
             for (tag, force) in forces {
                 let differs = (0..3).map(|i| (force[i] - expected[&tag][i]).abs());
                 let differs = differs.fold(0.0, f64::max);
