@@ -363,8 +363,8 @@ def tips(report, units):
         for tip in found[:MOST_ROWS]
     ]
     words = (
-        "The last column is the largest difference of the factors in smaller discs around the tip. Their error is of that size or "
-        "larger: a second mesh tells."
+        "The last column is the largest difference of the factors in smaller discs around the tip. Their error is of "
+        "that size or larger: a second mesh tells."
     )
     rows = table(["crack tip", "K_I", "K_II", "J", "by the disc"], rows, numbers=(1, 2, 3, 4))
     return section("Stress intensity", rows, more(found, ""), f"<p><small>{words}</small></p>")
