@@ -163,11 +163,15 @@ impl<'a> TipDisc<'a> {
         mut take: impl FnMut(&LocalCell, &[[OfCell; 2]]),
     ) {
         let mut rules: BTreeMap<u8, Vec<TabulatedPoint>> = BTreeMap::new();
-        let is_near = |node: u32| {
-            let [x, y] = self.place(&block.points()[node as usize]);
-            x.hypot(y) < self.tip.radius
-        };
-        for cell in block.cells().filter(|cell| cell.nodes().any(is_near)) {
+        let place = |x| self.place(x);
+        let distances = (block.points().iter().map(place)).map(|[x, y]| x.hypot(y));
+        let is_near: Vec<bool> = distances.map(|s| s < self.tip.radius).collect();
+        // Most blocks of a scene lie elsewhere.
+        if !is_near.contains(&true) {
+            return;
+        }
+        let near = |cell: &BlockCell<'_>| cell.nodes().any(|node| is_near[node as usize]);
+        for cell in block.cells().filter(near) {
             let local = self.cell(block, &cell, initial);
             let places = local.nodes.len() + if local.has_modes { 2 } else { 0 };
             let none = || OfCell {

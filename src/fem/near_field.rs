@@ -66,6 +66,7 @@ impl NearField {
                 Matrix2::from_diagonal_element((kolosov + 1.0) / (8.0 * shear))
             }
             Roots::Anisotropic([[a, ..], [b, ..]]) => {
+                // C is positive definite.
                 let s = self.stiffness.try_inverse().unwrap_or_default();
                 let (s11, s22) = (s[(0, 0)], s[(1, 1)]);
                 let first = -0.5 * s22 * ((a + b) / (a * b)).im;

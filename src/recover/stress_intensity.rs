@@ -62,6 +62,7 @@ fn sums(
 /// K from M = 2 H K, and G = Kᵀ H K.
 fn factors(disc: &TipDisc<'_>, integrals: &Integrals) -> StressIntensity {
     let h = disc.field.compliance();
+    // H is positive definite, as C is.
     let half_inverse = 0.5 * h.try_inverse().unwrap_or_default();
     let factors = integrals.map(|m| half_inverse * Vector2::from(m));
     let [whole, smaller @ ..] = factors;
