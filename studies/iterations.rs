@@ -147,13 +147,19 @@ impl Taken {
 }
 
 fn document(linear: &[(&str, Taken)], contact: &[(&str, Taken)]) -> String {
-    let mut text = String::from(
+    let most = linear.iter().map(|(_, taken)| taken.iterations[0]).max();
+    let in_all = contact.iter().map(|(_, taken)| taken.in_all());
+    let mut text = format!(
         "# Iterations between clusters\n\n\
          `scripts/iterations` counts the iterations of `--interface iterative` on scenes whose mesh and number of \
          clusters\ngrow together, and writes this page. Clusters are subtrees of the hierarchy, cut like subdomains; \
          nodes inside the\nplates are moved at random. An iteration ends where the error in the energy norm is about \
-         1e-14 of the solution.\n\n## Without contact\n\n\
+         1e-14 of the solution.\n\n{}: a linear problem takes {} iterations at most, a contact problem with all its \
+         active sets {:.1} times those\nof one solve.\n\n## Without contact\n\n\
          | scene | dofs | clusters | coarse dofs | iterations |\n|---|--:|--:|--:|--:|\n",
+        crate::today(),
+        most.unwrap_or(0),
+        in_all.fold(0.0, f64::max),
     );
     for (name, taken) in linear {
         let Taken {

@@ -16,7 +16,7 @@ mod record;
 mod stability;
 mod validation;
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use clap::Parser;
 
@@ -43,6 +43,12 @@ enum Study {
     Record(record::Arguments),
     /// Says in what a record differs from an older one.
     Compare(record::compare::Arguments),
+}
+
+/// The date of today, which measured pages have.
+fn today() -> String {
+    let date = Command::new("date").arg("+%F").output().unwrap();
+    String::from_utf8_lossy(&date.stdout).trim().to_owned()
 }
 
 fn main() -> ExitCode {

@@ -44,6 +44,6 @@ def test_hertz_on_one_rank(scene):
 
 
 def test_a_stack_in_space(scene):
-    result = Model.from_scene(scene("stack3d")).run(progress=False)
+    result = Model.from_scene(scene("stack3d", "--element", "hexahedron27")).run(progress=False)
     agrees_with_the_gallery(result, "stack3d")
     assert result.is_in_space

@@ -10,6 +10,7 @@ from contact_dd import Model
 from contact_dd.drawing import page as pages
 from contact_dd.drawing import space
 from contact_dd.drawing.chart import chart_of
+from contact_dd.drawing.raster import Camera, Raster, edges_of
 from contact_dd.drawing.units import units_of
 
 RADIUS, AROUND, HEIGHTS = 3.0, 24, np.linspace(0, 4, 5)
@@ -48,7 +49,7 @@ def test_a_closed_cylinder_is_unrolled(axis, inward):
     assert np.allclose(chart.x, np.where(is_opposite, RADIUS * np.pi, sign * RADIUS * way))
     assert np.allclose(np.abs(np.subtract.outer(chart.y, chart.y)), np.abs(np.subtract.outer(height, height)))
     assert chart.labels[0] == "around the axis"
-    assert chart.labels[1] == ("z" if axis == (0, 0, 1) else "along (-0.27, -0.53, 0.80)")
+    assert chart.labels[1] == ("z" if axis == (0, 0, 1) else "distance along (-0.27, -0.53, 0.80)")
 
 
 def test_a_closed_ball_is_seen_from_where_it_is_loaded():
@@ -77,16 +78,75 @@ def test_a_flat_side_is_seen_along_its_normal(scene, tmp_path):
 def test_what_doesnt_press_hides_nothing_and_axes_have_names(scene, tmp_path):
     result = Model.from_scene(scene("pin")).run(folder=tmp_path, progress=False)
     figure = space.PICTURES["pressure"](result, None)
-    *seen_through, opaque = figure.axes[0].collections
-    solid = space.Solid(result)
-    values = np.concatenate([solid.side(table)[1] for table in solid.pressed.values()])
-    assert 0 < (values > 0).sum() < len(values)
-    assert len(opaque.get_facecolor()) == (values > 0).sum()
-    assert all(one.get_facecolor()[:, 3].max() < 0.1 for one in seen_through)
+    [picture] = figure.axes[0].images
+    # What presses is darker than edges are; where nothing presses there is white, and there are edges.
+    coloured = picture.get_array()[..., :3]
+    saturation = np.ptp(coloured, axis=2)
+    assert 0.002 < (saturation > 0.2).mean() < 0.1
+    assert (coloured.min(axis=2) > 0.999).mean() > 0.7
     overview = space.overview(result, None)
-    assert [axes.get_xlabel() for axes in overview.axes if axes.get_xlabel()] == ["around the axis [mm]"]
-    assert "z [mm]" in [axes.get_ylabel() for axes in overview.axes]
+    labels = [axes.get_xlabel() for figure in overview.subfigs for axes in figure.axes]
+    # Every contact has its map.
+    assert labels.count("around the axis [mm]") == 2
+    assert "z [mm]" in [axes.get_ylabel() for figure in overview.subfigs for axes in figure.axes]
     plt.close("all")
+
+
+def square(corner, size, height):
+    """A face with its middles, and the points of it."""
+    s = np.array([(0, 0), (0.5, 0), (1, 0), (1, 0.5), (1, 1), (0.5, 1), (0, 1), (0, 0.5)])
+    return np.column_stack([corner + size * s, np.full(8, height)])
+
+
+def test_what_is_nearer_to_the_eye_hides_the_rest_and_values_vary_within_faces():
+    # A large face with values from 0 to 1 along x, a small one above its middle, seen from above.
+    points = np.concatenate([square([0, 0], 4.0, 0.0), square([1, 1], 2.0, 1.0)])
+    faces = [np.arange(8), np.arange(8, 16)]
+    values = np.concatenate([points[:8, 0] / 4, np.full(8, 3.0)])
+    camera = Camera(90, -90)
+    assert np.allclose(camera.axes(), np.eye(3), atol=1e-12)
+    raster = Raster(camera, points, 200)
+    raster.draw(faces, values)
+    left, right, below, above = raster.extent
+    x = left + (right - left) * (np.arange(raster.shape[1]) + 0.5) / raster.shape[1]
+    y = below + (above - below) * (np.arange(raster.shape[0]) + 0.5) / raster.shape[0]
+    pixel = (right - left) / raster.shape[1]
+    x, y = np.meshgrid(x, y)
+
+    def inside(low, high, margin):
+        return (np.minimum(x, y) > low + margin) & (np.maximum(x, y) < high - margin)
+
+    assert np.allclose(raster.value[inside(1, 3, pixel)], 3)
+    only_below = inside(0, 4, pixel) & ~inside(1, 3, -2 * pixel)
+    assert np.abs(raster.value[only_below] - x[only_below] / 4).max() < pixel
+    assert np.isnan(raster.value[~inside(0, 4, -2 * pixel)]).all()
+    # A line across is seen beside the small face alone.
+    raster.points = np.concatenate([raster.points, [[0.1, 2, 0.1], [3.9, 2, 0.1]]])
+    raster.line(np.array([[16, 17, 16]]), 1.0)
+    along = raster.lines.max(axis=0) > 0
+    x = x[0]
+    assert along[(x > 0.2) & (x < 0.9)].all()
+    assert along[(x > 3.1) & (x < 3.8)].all()
+    assert not along[(x > 1.1) & (x < 2.9)].any()
+
+
+def test_edges_of_bodies_are_sharp_and_those_of_cells_are_not():
+    corners = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1, 2)], dtype=float)
+    # Two cubes side by side: the faces around them, without the one between.
+    row = {tuple(corner): k for k, corner in enumerate(corners)}
+    faces = []
+    for x in (0, 1):
+        for face in space.HEXAHEDRON:
+            cube = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+            places = [(cube[k][0] + x, *cube[k][1:]) for k in face]
+            if {place[0] for place in places} != {1}:
+                faces.append(np.array([row[place] for place in places]))
+    sharp, smooth = edges_of(faces, corners)
+    assert len(faces) == 10
+    # Of the box, whose long edges are two each, and around its middle.
+    assert len(sharp) == 16
+    assert len(smooth) == 4
+    assert (corners[smooth[:, :2]][..., 0] == 1).all()
 
 
 def test_steps_are_counted_in_whole_numbers(scene, tmp_path):

@@ -1,5 +1,6 @@
 """Measures meshes that adapt against uniform ones and writes docs/adapting.md; run it by scripts/adapting."""
 
+import datetime
 import math
 import os
 import pathlib
@@ -144,6 +145,7 @@ def page(measurements):
     return (
         template.replace("TABLE", table(measurements))
         .replace("PRESSURE", f"{pressure:.1f}").replace("WORK", f"{work:.5f}").replace("LOAD", f"{os.getloadavg()[0]:.1f}")
+        .replace("DATE", str(datetime.date.today()))
     )
 
 

@@ -41,8 +41,10 @@ pub fn document(all: &Measurements, conclusions: &Conclusions, faults: &[String]
     text += HOW;
     let _ = writeln!(
         text,
-        "{}. Medians of {} runs.\n",
-        all.machine, all.repetitions
+        "{}, {}. Medians of {} runs.\n",
+        crate::today(),
+        all.machine,
+        all.repetitions
     );
     text += &at_goal(conclusions);
     text += &tolerances(all, conclusions);

@@ -54,6 +54,14 @@ with the condition number.
 
 ";
 
+const IN_SHORT: &str = "
+*No answer* are runs that end with exit code 3 or were stopped: nothing false is said. *Refused* are scenes that are called
+without equilibrium and may have one, *unclear* those of which the checker can't tell. *Wrong* is an answer that claims to have
+converged and misses what the independent checker asks for; its certificate may fall short, of which the run then warns. Scenes
+are harder than models are: what isn't right has stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999 or large coefficients of friction.
+
+";
+
 /// The chapter on methods behind Newton's, of which each was switched off in turn.
 const FALLBACKS: &str = include_str!("document/fallbacks.md");
 
@@ -69,7 +77,9 @@ pub fn document(first: u64, kinds: &Kinds, rows: &[Row]) -> String {
     let mut text = format!(
         "# Stability
 
-Random and extreme scenes, run and written by `scripts/stress`; `scripts/stress --only SEED` repeats one.
+Random and extreme scenes, run and written by `scripts/stress` on {}; `scripts/stress --only SEED` repeats one.
+
+{}## What was run
 
 {} random scenes, seeds {first} to {}: {without} without equilibrium, {manufactured} manufactured
 solutions, {several} also run on 2 to 4 ranks (same result bit for bit). All kinds of cells, matching and
@@ -78,6 +88,8 @@ gaps, clearances and interferences, layers of a thousandth of a block, loads fro
 usual, up to 30 subdomains.
 
 ",
+        crate::today(),
+        in_short(kinds),
         ran.len(),
         first + ran.len() as u64 - 1,
     );
@@ -87,6 +99,33 @@ usual, up to 30 subdomains.
     worst(&mut text, ran);
     axes(&mut text, rows);
     text + &chapters(first, kinds) + FALLBACKS
+}
+
+/// The chapter for users: how many scenes of each kind were answered rightly.
+fn in_short(kinds: &Kinds) -> String {
+    let mut text = "## In short\n\n| random scenes | number | right | wrong | no answer | refused, or unclear |\n|---|--:|--:|--:|--:|--:|\n".to_owned();
+    for (name, ran) in [
+        ("in the plane", &kinds.plain),
+        ("in space", &kinds.in_space),
+        ("in the plane, with friction", &kinds.with_friction),
+        ("in space, with friction", &kinds.in_space_with_friction),
+    ] {
+        let count = |of: &[Verdict]| {
+            ran.iter()
+                .filter(|one| of.contains(&one.trial.verdict))
+                .count()
+        };
+        let _ = writeln!(
+            text,
+            "| {name} | {} | {} | {} | {} | {} |",
+            ran.len(),
+            count(&[Verdict::Right]),
+            count(&[Verdict::Wrong, Verdict::Differs, Verdict::Missed]),
+            count(&[Verdict::NotConverged, Verdict::Hung, Verdict::Crashed]),
+            count(&[Verdict::Refused, Verdict::Unclear]),
+        );
+    }
+    text + IN_SHORT
 }
 
 /// The chapters on all but scenes in the plane without friction, where any were run.

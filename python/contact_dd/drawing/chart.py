@@ -9,6 +9,8 @@ import numpy as np
 STEEP = 0.3
 # Of unit normals the part along an axis, root mean square, up to which they stand around it.
 AROUND_AXIS = 0.1
+# Cosine of the angle to a coordinate's axis up to which a direction has its name.
+NEARLY = 0.9995
 # Angle that is round-off.
 ON_THE_CUT = 1e-6
 
@@ -44,11 +46,15 @@ def chart_of(table):
 
 
 def seen_along(normal, rows, points):
-    """As somebody sees it who looks against a normal."""
+    """In a plane across a normal."""
     first = np.cross(np.eye(3)[np.abs(normal).argmin()], normal)
     first /= np.linalg.norm(first)
-    second = np.cross(normal, first)
-    return Chart(rows, points[rows] @ first, points[rows] @ second, (along(first), along(second)))
+    # Coordinates grow to the right and upwards, whichever side of it one would see.
+    first, second = (axis * np.sign(axis[np.abs(axis).argmax()]) for axis in (first, np.cross(normal, first)))
+    if np.abs(first).argmax() > np.abs(second).argmax():
+        first, second = second, first
+    x, y = placed(points[rows], first), placed(points[rows], second)
+    return Chart(rows, x, y, (along(first), along(second)))
 
 
 def unrolled(axis, loaded, normals, points):
@@ -68,12 +74,18 @@ def unrolled(axis, loaded, normals, points):
     angle = np.arctan2(*(-arm.T if inward else arm.T)[::-1])
     # What lies on the cut lies on one side of it.
     angle[angle < ON_THE_CUT - np.pi] += 2 * np.pi
-    return Chart(np.arange(len(points)), radius * angle, points @ axis, ("around the axis", along(axis)))
+    return Chart(np.arange(len(points)), radius * angle, placed(points, axis), ("around the axis", along(axis)))
+
+
+def placed(points, direction):
+    """Coordinates along a direction: the scene's along one of its axes, else the distance from the first point."""
+    at = points @ direction
+    return at if np.abs(direction).max() > NEARLY else at - at.min()
 
 
 def along(direction):
     """A direction in words: a coordinate's name where it is one."""
     k = np.abs(direction).argmax()
-    if abs(direction[k]) > 1 - 1e-6:
+    if abs(direction[k]) > NEARLY:
         return "−" * bool(direction[k] < 0) + "xyz"[k]
-    return f"along ({', '.join(f'{component:.2f}' for component in direction + 0.0)})"
+    return f"distance along ({', '.join(f'{component:.2f}' for component in direction + 0.0)})"

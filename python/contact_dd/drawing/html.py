@@ -32,8 +32,10 @@ ul.warnings li::marker { content: "⚠ "; } code { font-size: .95em }
 @media screen { #view.drawn .still { display: none } }
 @page { size: A4; margin: 1cm }
 @media print { #view .live { display: none } * { print-color-adjust: exact }
- body { margin: 0; padding: 0; max-width: none; font-size: 8px; columns: 2; column-gap: 2em }
- h1, p.sub, .cards { column-span: all } h2 { margin-top: 1em } .cards { margin-bottom: 1em }
+ body { margin: 0; padding: 0; max-width: none; font-size: 7.5px; line-height: 1.35; columns: 2; column-gap: 2em }
+ h1, p.sub { column-span: all } h2 { margin-top: .8em } section p { margin: .3em 0 }
+ .cards { margin: .8em 0; break-inside: avoid; grid-template-columns: repeat(4, 1fr); gap: .3em }
+ .card { padding: .1em .5em }
  section { break-inside: avoid } th, td { padding-right: .4em } th.number { white-space: normal } }
 """
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from contact_dd.comparison import compare
-from contact_dd.drawing import space
+from contact_dd.drawing import opening, space
 from contact_dd.drawing.finite import check_finite
 from contact_dd.drawing.gaps import honest_scale
 from contact_dd.drawing.html import STYLE, Html, axes_of, escape, png, section, short, svg, table
@@ -59,9 +59,11 @@ def page(result, coarser=()):
     report, units = result.report, units_of(result)
     with plt.rc_context(FONTS):
         parts = [
-            head(report, result), warnings(report), bodies(result), steps(report, units),
-            contacts(report, sides_of(result), units), convergence(report, result.convergence), certificate(report),
-            reactions(report, units), tips(report, units), bars([*coarser, result]), ranks(report), rest(report),
+            opening.title_of(report, result, problem_of(report)), bodies(result),
+            opening.sentences(report, result, units), opening.warnings(report), opening.cards(report),
+            steps(report, units), contacts(report, sides_of(result), units), convergence(report, result.convergence),
+            certificate(report), reactions(report, units), tips(report, units), bars([*coarser, result]), ranks(report),
+            rest(report),
         ]
     title = escape(result.title or problem_of(report))
     return (
@@ -92,42 +94,6 @@ def force_head(first, found):
 def more(found, words):
     count = len(found) - MOST_ROWS
     return f"<p><small>and {count} more{words}; the report has all</small></p>" if count > 0 else ""
-
-
-def head(report, result):
-    good = report["status"] == "converged"
-    status = "converged" if good else "not converged"
-    problem = escape(problem_of(report))
-    ranks = f"{report['ranks']} rank{'s' * (report['ranks'] > 1)}"
-    hosts = f"{report['hosts']} host{'s' * (report['hosts'] > 1)}"
-    commit = report["build"]["commit"]
-    build = escape(report["version"] + (f" ({commit[:10]})" if commit else ""))
-    cards = [
-        (f"{report['dofs']:,}".replace(",", " "), "degrees of freedom"),
-        (report["subdomains"], "subdomains"),
-        (f"{report['active_contacts']} of {report['contact_conditions']}", "contact conditions closed"),
-        (report["sweeps"], f"sweeps of {report['method']}"),
-        (si(report["seconds"]["total"], "s"), "from start to end"),
-        (si(report["peak_memory_bytes"], "B"), "memory of all ranks"),
-    ]
-    if report.get("error_estimate"):
-        relative = report["error_estimate"]["relative"]
-        cards.append(("–" if relative is None else f"{100 * relative:.2g} %", "error of the mesh, estimated"))
-    return (
-        f'<h1>{escape(result.title or problem)}<span class="badge {"good" if good else "bad"}">{status}</span></h1>'
-        f'<p class="sub">{escape(result.path.name)} of {problem} · {escape(ranks)} with {escape(report["threads"])} '
-        f'thread{"s" * (report["threads"] > 1)} '
-        f'on {escape(hosts)} · contact-dd-mpi {build}</p><div class="cards">'
-        + "".join(f'<div class="card"><b>{escape(value)}</b><span>{escape(name)}</span></div>' for value, name in cards)
-        + "</div>"
-    )
-
-
-def warnings(report):
-    if not report["warnings"]:
-        return ""
-    items = "".join(f"<li>{escape(text)}</li>" for text in report["warnings"])
-    return section("Warnings", f'<ul class="warnings">{items}</ul>')
 
 
 def bodies(result):

@@ -1,16 +1,14 @@
-"""Pictures of a result in space: its surface by displacement and von Mises stress, and the pressures of contacts.
-
-By matplotlib, which draws wherever a page is made: a renderer of OpenGL needs libraries that clusters often lack."""
+"""Pictures of a result in space: its surface by displacement and von Mises stress, and the pressures of contacts."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.tri import Triangulation
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from contact_dd.drawing.canvas import deformation_of, round_below
 from contact_dd.drawing.carried import carried
 from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.plane import von_mises
+from contact_dd.drawing.raster import Camera, Raster, edges_of
 from contact_dd.drawing.units import in_units, units_of
 from contact_dd.errors import InputError
 
@@ -30,12 +28,18 @@ CELLS = {10: (4, False), 12: (8, False), 24: (4, True), 25: (8, True), 29: (8, T
 VISIBLE = 0.03
 # Where the eye is: above, to the left.
 VIEW = {"elev": 20, "azim": -125}
-# Cosine of the angle to the eye beyond which a face is seen in no perspective.
-AWAY = 0.3
 # Cosine of the angle to the normal of a contact below which a face isn't one of its side a.
 SAME_WAY = 0.7
-# More faces are drawn without their edges.
-MANY_FACES = 20_000
+# More faces are drawn without the edges of their cells.
+MANY_FACES = 4000
+# Of a picture (pixels).
+WIDTH = 640
+# Strengths of lines: edges of bodies and outlines, of cells, of bodies behind pressures.
+OF_BODIES, OF_CELLS, BEHIND = 0.85, 0.16, 0.6
+# Width of what shows pressures, of one, two, and more (inches).
+OF_MAPS = (5.2, 3.8, 6.4)
+# Most contacts whose pressures are shown beside each other.
+MOST_MAPS = 4
 # Width of a part that presses, relative to what is shown of it.
 AROUND = 1.3
 
@@ -76,71 +80,82 @@ class Solid:
         self.pressed = {
             name: table for name, table in carried(result.contacts).items() if table["pressure"].max(initial=0) > 0
         }
+        # Colours are interpolated between the nodes of the surface, and lines are those of the undeformed bodies.
+        self.shown = self.points[np.unique(np.concatenate(self.faces))]
+        self.edges, self.inner = edges_of(self.faces, result.points)
 
     def has_stress(self):
         return len(self.result.stress) > 0
 
-    def of_faces(self, values):
-        """The mean of values at nodes for every face."""
-        return np.array([values[face].mean() for face in self.faces])
+    def raster(self):
+        camera = Camera(VIEW["elev"], VIEW["azim"])
+        raster = Raster(camera, self.shown, WIDTH)
+        raster.points = self.points @ raster.frame.T
+        return raster
 
-    def axes(self, figure, place):
-        axes = figure.add_subplot(*place, projection="3d", computed_zorder=False)
-        # Of what is there.
-        points = self.points[np.unique(np.concatenate(self.faces))]
-        low, high = points.min(axis=0), points.max(axis=0)
-        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-        # Flat bodies are as wide as the axes across their diagonal.
-        size = high - low
-        axes.set_box_aspect(size, zoom=min(1.1, 0.9 * np.linalg.norm(size) / np.linalg.norm(size[:2])))
-        axes.view_init(**VIEW)
+    def show(self, axes, raster, colours, label):
+        """Puts a picture on its axes, with a bar of a round length, the directions of x, y and z, and its colours."""
+        axes.imshow(raster.image(colours), extent=raster.extent, origin="lower", interpolation="antialiased")
         axes.set_axis_off()
-        return axes
+        bar_and_triad(axes, raster, self.units)
+        bar = axes.figure.colorbar(colours, ax=axes, shrink=0.75, label=label, pad=0.02, extend=colours.extend)
+        bar.ax.tick_params(labelsize=8)
 
     def coloured(self, axes, values, label, cmap="viridis", most=None):
-        """Draws the surface by a value for each face, but for what looks away."""
-        colours = plt.cm.ScalarMappable(plt.Normalize(0, most or values.max() or 1), cmap)
-        seen = [k for k, face in enumerate(self.faces) if looks_here(self.points[face])]
-        axes.add_collection3d(Poly3DCollection(
-            [self.points[self.faces[k]] for k in seen], facecolors=colours.to_rgba(values[seen]), edgecolors="k",
-            linewidths=0.2 if len(seen) < MANY_FACES else 0,
-        ))
-        axes.figure.colorbar(colours, ax=axes, shrink=0.7, label=label)
+        """Draws the surface by values at nodes."""
+        highest = values[np.unique(np.concatenate(self.faces))].max()
+        colours = plt.cm.ScalarMappable(plt.Normalize(0, most or highest or 1), cmap)
+        colours.extend = "max" if most and highest > 1.001 * most else "neither"
+        raster = self.raster()
+        raster.draw(self.faces, values)
+        if len(self.faces) < MANY_FACES:
+            raster.line(self.inner, OF_CELLS)
+        raster.line(self.edges, OF_BODIES, thickness=2)
+        raster.outline(OF_BODIES)
+        self.show(axes, raster, colours, label)
+        return highest
+
+    def title(self, axes, words):
+        axes.set_title(f"{words}\n{deformation_of(self.result)} × {self.scale:g}", fontsize=9)
 
     def von_mises(self, axes):
         (values, unit) = in_units(von_mises(self.result.stress), self.units.stress)
-        values = self.of_faces(values)
-        self.coloured(axes, values, f"von Mises stress [{unit}]", most=np.quantile(values, 0.99))
-        axes.set_title(f"{deformation_of(self.result)} × {self.scale:g}", fontsize=10)
+        on_surface = np.unique(np.concatenate(self.faces))
+        most = np.quantile(values[on_surface], 0.99)
+        highest = self.coloured(axes, values, f"von Mises stress [{unit}]", most=most or None)
+        self.title(axes, f"Von Mises stress, on the surface at most {highest:.4g} {unit}")
 
     def displacement(self, axes):
         size = np.linalg.norm(self.result.displacement, axis=1)
         (values, unit) = in_units(size, self.units.length)
-        self.coloured(axes, self.of_faces(values), f"displacement [{unit}]", "cividis")
-        axes.set_title(f"at most {values.max():.4g} {unit}", fontsize=10)
+        self.coloured(axes, values, f"displacement [{unit}]", "cividis")
+        self.title(axes, f"Displacement, at most {values.max():.4g} {unit}")
 
     def pressure(self, axes):
-        """The sides a of contacts by their pressures, through the bodies."""
-        faces, values = [], []
+        """The sides a of contacts by their pressures, without the bodies, of which edges are left."""
+        faces = []
+        values = np.zeros(len(self.points))
         for table in self.pressed.values():
-            found, of_found = self.side(table)
+            found, _ = self.side(table)
             faces += found
-            values.append(of_found)
-        (values, unit) = in_units(np.concatenate(values), self.units.stress)
+            row_of = dict(zip(table["node_a"].tolist(), table["pressure"]))
+            for node in np.unique(np.concatenate(found)) if found else []:
+                values[node] = max(values[node], row_of.get(int(self.result.nodes[node]), 0.0))
         most = max(table["pressure"].max() for table in self.pressed.values())
+        (values, unit) = in_units(values, self.units.stress)
         ((most,), _) = in_units(np.array([most]), self.units.stress)
         colours = plt.cm.ScalarMappable(plt.Normalize(0, most), "inferno_r")
-        bodies = [self.points[face] for face in self.faces if looks_here(self.points[face])]
-        axes.add_collection3d(Poly3DCollection(bodies, facecolors="0.5", edgecolors="0.4", alpha=0.06, linewidths=0.15))
-        # What doesn't press is seen through: it may lie before what does.
-        presses = values > 0
-        polygons = [self.points[face] for face in faces]
-        idle = [polygons[k] for k in np.flatnonzero(~presses)]
-        axes.add_collection3d(Poly3DCollection(idle, facecolors="0.5", edgecolors="0.4", alpha=0.06, linewidths=0.15))
-        loaded = [polygons[k] for k in np.flatnonzero(presses)]
-        axes.add_collection3d(Poly3DCollection(loaded, facecolors=colours.to_rgba(values[presses]), edgecolors="none"))
-        axes.figure.colorbar(colours, ax=axes, shrink=0.7, label=f"contact pressure [{unit}]")
-        axes.set_title(f"at most {most:.4g} {unit}", fontsize=10)
+        colours.extend = "neither"
+        raster = self.raster()
+        # What doesn't press is left out: it may lie before what does.
+        loaded = [face for face in faces if values[face].max() > 0]
+        raster.draw(loaded, values)
+        raster.line(edges_of(loaded, self.points)[0], OF_BODIES)
+        shown, raster.depth = raster.depth, np.full_like(raster.depth, -np.inf)
+        raster.line(self.edges, BEHIND)
+        raster.depth = shown
+        self.show(axes, raster, colours, f"contact pressure [{unit}]")
+        axes.set_title(f"Contact pressure, at most {most:.4g} {unit}\nbetween the edges of the bodies", fontsize=9)
 
     def side(self, table):
         """The faces of side a of a contact, and the mean pressure of each: those that look its way, all corners of
@@ -179,13 +194,6 @@ class Solid:
         return drawn
 
 
-def looks_here(polygon):
-    """Whether a face looks to where the eye is, or not much away from it."""
-    elevation, azimuth = np.radians([VIEW["elev"], VIEW["azim"]])
-    eye = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
-    return unit_normal(polygon) @ eye > -AWAY
-
-
 def unit_normal(polygon):
     normal = area(polygon)
     return normal / np.linalg.norm(normal)
@@ -197,15 +205,40 @@ def area(polygon):
     return np.cross(arms[:-1], arms[1:]).sum(axis=0) / 2
 
 
+def bar_and_triad(axes, raster, units):
+    """A bar of a round length, and where x, y and z point to, below a picture."""
+    left, right, below, above = raster.extent
+    width, height = right - left, above - below
+    length = round_below(0.25 * width)
+    (shown,), unit = in_units(np.array([length]), units.length)
+    y = below - 0.06 * height
+    axes.plot([left, left + length], [y, y], "k", lw=2.5, solid_capstyle="butt")
+    axes.annotate(f"{shown:g} {unit}", (left + length / 2, y), xytext=(0, -3), textcoords="offset points", ha="center",
+                  va="top", fontsize=8)
+    corner = np.array([right - 0.14 * width, below - 0.1 * height])
+    for direction, name in zip(raster.frame[:2].T, "xyz"):
+        end = corner + 0.1 * min(width, height) * direction
+        if np.linalg.norm(direction) > 0.1:
+            axes.annotate("", end, corner, arrowprops={"arrowstyle": "-|>", "lw": 1, "shrinkA": 0, "shrinkB": 0})
+        axes.annotate(name, end + 0.035 * min(width, height) * direction, fontsize=8, ha="center", va="center")
+    axes.set_xlim(left - 0.01 * width, right + 0.01 * width)
+    axes.set_ylim(below - 0.2 * height, above)
+
+
 def panels(result):
     """Displacement, von Mises stress and contact pressure on the surface, side by side."""
     solid = Solid(result)
     drawn = solid.pictures()
-    figure = plt.figure(figsize=(4.2 * len(drawn), 3.6), layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.12)
+    figure = plt.figure(figsize=(min(width_of(solid, 3.0), 4.0) * len(drawn), 3.8), layout="constrained")
     for place, draw in enumerate(drawn.values(), start=1):
-        draw(solid.axes(figure, (1, len(drawn), place)))
+        draw(figure.add_subplot(1, len(drawn), place))
     return figure
+
+
+def width_of(solid, height):
+    """How wide a picture of this height is, with its colours (inches)."""
+    wide, tall = np.ptp(solid.shown @ Camera(VIEW["elev"], VIEW["azim"]).axes()[:2].T, axis=0)
+    return float(np.clip(height * wide / (1.2 * tall), 2.6, 6.0)) + 1.3
 
 
 def single(name):
@@ -213,46 +246,55 @@ def single(name):
         solid = Solid(result, scale)
         if name not in solid.pictures():
             raise InputError(f"{result.path}: there is no {name.replace('_', ' ')} to draw")
-        figure = plt.figure(figsize=(6.4, 4.8), layout="constrained")
-        solid.pictures()[name](solid.axes(figure, (1, 1, 1)))
+        figure = plt.figure(figsize=(width_of(solid, 4.4), 5.2), layout="constrained")
+        solid.pictures()[name](figure.add_subplot())
         return figure
 
     return draw
 
 
 def overview(result, scale):
-    """The surface by von Mises stress, and the pressures of the contact with the largest one."""
+    """The surface by von Mises stress, and the pressures of contacts, of many those with the largest."""
     if len(result.stress) == 0:
         raise InputError(f"{result.path}: there are no stresses; expected a run without --no-stress")
     solid = Solid(result, scale)
-    pressed = solid.pressed
-    figure = plt.figure(figsize=(9.6 if pressed else 6.4, 4.8), layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.12)
-    solid.von_mises(solid.axes(figure, (1, 2 if pressed else 1, 1)))
-    if pressed:
-        name = max(pressed, key=lambda name: pressed[name]["pressure"].max())
-        pressure_map(figure, name, pressed[name], solid.units)
+    pressed = sorted(solid.pressed, key=lambda name: -solid.pressed[name]["pressure"].max())[:MOST_MAPS]
+    left, right = width_of(solid, 4.0), OF_MAPS[min(len(pressed), 3) - 1] if pressed else 0.0
+    figure = plt.figure(figsize=(left + right, 5.0), layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.08)
+    bodies, *maps = figure.subfigures(1, 2, width_ratios=[left, right]) if pressed else [figure]
+    solid.von_mises(bodies.add_subplot())
+    columns = 1 if len(pressed) < 3 else 2
+    rows = -(-len(pressed) // columns)
+    for place, name in enumerate(pressed, start=1):
+        pressure_map(maps[0].add_subplot(rows, columns, place, aspect="equal"), name, solid.pressed[name], solid.units)
+    step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
+    left_out = len(solid.pressed) - len(pressed)
+    more = f" ({len(pressed)} of {len(solid.pressed)} contacts)" if left_out else ""
+    if result.title or step or more:
+        figure.suptitle(f"{result.title}{step}{more}", fontsize=11, parse_math=False)
     return figure
 
 
-def pressure_map(figure, name, table, units):
+def pressure_map(axes, name, table, units):
     """The pressures of a contact on its side, flat."""
-    axes = figure.add_subplot(1, 2, 2, aspect="equal")
     chart = chart_of(table)
     x, y = chart.x, chart.y
     (pressure, unit) = in_units(table["pressure"][chart.rows], units.stress)
     colours = axes.tripcolor(Triangulation(x, y), pressure, shading="gouraud", cmap="inferno_r", vmin=0)
-    axes.plot(x, y, ".", color="0.6", ms=1.5)
+    axes.plot(x, y, ".", color="0.6", ms=1.2)
     closed = pressure > 0
     for of, limit in ((x, axes.set_xlim), (y, axes.set_ylim)):
         middle = (of[closed].min() + of[closed].max()) / 2
         half = max(np.ptp(x[closed]), np.ptp(y[closed])) * AROUND / 2
         limit(max(middle - half, of.min()), min(middle + half, of.max()))
-    axes.tick_params(labelsize=8)
+    axes.tick_params(labelsize=7)
     axes.set_xlabel(f"{chart.labels[0]} [{units.length}]", fontsize=8)
     axes.set_ylabel(f"{chart.labels[1]} [{units.length}]", fontsize=8)
-    figure.colorbar(colours, ax=axes, shrink=0.7, label=f"contact pressure [{unit}]")
-    axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=10, parse_math=False)
+    bar = axes.figure.colorbar(colours, ax=axes, shrink=0.85, pad=0.02)
+    bar.set_label(f"pressure [{unit}]", fontsize=8)
+    bar.ax.tick_params(labelsize=7)
+    axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=9, parse_math=False)
 
 
 PICTURES = {
