@@ -21,7 +21,7 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> ExitCode {
-    let mut text = document::HEAD.to_owned();
+    let (mut chapters, mut lines) = (String::new(), String::new());
     let mut kept = true;
     for case in cases() {
         if (arguments.only.as_ref()).is_some_and(|only| !case.title.contains(only)) {
@@ -38,11 +38,12 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         let broken: Vec<String> = broken.collect();
         let chapter = document::chapter(&case, &ran, &broken);
         print!("{chapter}");
-        text += &chapter;
+        chapters += &chapter;
+        lines += &document::line(&case, &ran, &broken);
         kept &= broken.is_empty();
     }
     if let Some(path) = &arguments.markdown {
-        text += document::TAIL;
+        let text = document::whole(&lines, &chapters);
         std::fs::write(path, text).unwrap();
     }
     match kept {

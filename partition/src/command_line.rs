@@ -74,7 +74,7 @@ pub const MANUAL: Manual = Manual {
 pub struct CommandLine {
     /// The scene, or a deck of Abaqus or CalculiX, whose name ends with .inp
     #[arg(value_name = "SCENE.toml", value_hint = ValueHint::FilePath,
-          required_unless_present_any = ["example", "list_examples", "info", "generate"])]
+          required_unless_present_any = ["example", "list_examples", "info", "generate", "explain"])]
     pub scene: Option<PathBuf>,
 
     /// Number of subdomains [default: by size]
@@ -149,6 +149,15 @@ pub struct CommandLine {
         help_heading = "Documentation"
     )]
     pub generate: Option<Document>,
+
+    /// Explain a message by its name, which stands behind it in brackets
+    #[arg(
+        long,
+        value_name = "NAME",
+        exclusive = true,
+        help_heading = "Documentation"
+    )]
+    pub explain: Option<String>,
 }
 
 /// The names of the built-in scenes, with what each shows.

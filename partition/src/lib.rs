@@ -44,6 +44,7 @@ pub mod disjoint_sets;
 pub mod element;
 pub mod error;
 pub mod example;
+pub mod explanation;
 pub mod flops;
 pub mod hierarchy;
 #[cfg(feature = "metis")]

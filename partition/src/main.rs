@@ -14,6 +14,7 @@ use contact_dd_partition::deck;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
+use contact_dd_partition::explanation::{Explanation, with_name};
 use contact_dd_partition::hierarchy::work::Work;
 use contact_dd_partition::info::Info;
 use contact_dd_partition::manual::Answer;
@@ -69,6 +70,9 @@ fn run(args: &CommandLine) -> Result<(), Failure> {
         return Ok(message::say(
             &MANUAL.write(document, CommandLine::command()),
         )?);
+    }
+    if let Some(name) = &args.explain {
+        return Ok(message::say(&Explanation::named(name)?.text())?);
     }
     if args.list_examples {
         for example in EXAMPLES {
@@ -255,6 +259,7 @@ fn report(problem: &Problem, found: &[String], output: &Path) -> Result<(), Outp
         say(&format!("found         {contact}"))?;
     }
     for warning in &problem.catalog.warnings {
+        let warning = with_name(warning);
         say(&format!("{WARNING}warning{WARNING:#}       {warning}"))?;
     }
     let output = output.display();

@@ -6,6 +6,7 @@ use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 
 use crate::error::OutputError;
+use crate::explanation::with_name;
 
 /// Style of the word "error:".
 pub const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -36,17 +37,18 @@ pub fn heard(said: io::Result<()>) -> Result<(), OutputError> {
     }
 }
 
-/// Prints an error.
+/// Prints an error, with the name of its explanation.
 pub fn error(text: &str) {
     print(ERROR, "error:", text);
 }
 
-/// Prints a warning.
+/// Prints a warning, with the name of its explanation.
 pub fn warning(text: &str) {
     print(WARNING, "warning:", text);
 }
 
 fn print(style: Style, word: &str, text: &str) {
+    let text = with_name(text);
     let line = match AutoStream::choice(&stderr()) {
         ColorChoice::Never => format!("{word} {text}\n"),
         _ => format!("{style}{word}{style:#} {text}\n"),

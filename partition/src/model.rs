@@ -85,7 +85,7 @@ pub struct Model {
     pub contacts: Vec<Contact>,
     /// Crack tips of the plane, each with a cell that has it.
     pub tips: Vec<(u32, CrackTip)>,
-    /// Description of the contacts that were found by themselves, each with its name.
+    /// Description of what was found by itself: contacts, each with its name, and crack tips that are passed by.
     pub found: Vec<String>,
     /// The partition that the scene asks for, a subdomain for every cell.
     pub prescribed_subdomains: Option<Vec<u32>>,
@@ -135,7 +135,10 @@ impl Model {
         warnings.extend(diagnostics.warnings()?);
         let on = (&bodies.mesh, &topology);
         let (tips, coarse) = crack_tips::find(on, plane, &bodies.cell_material, &contacts);
-        warnings.extend(crack_tips::warning(coarse));
+        let found = found
+            .into_iter()
+            .chain(crack_tips::remark(coarse))
+            .collect();
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
             .transpose()?;

@@ -32,7 +32,7 @@ def test_messages_are_raised_by_exit_code(scene, tmp_path):
         run(bilateral=[{"on": "nothing"}])
     with pytest.raises(InputError, match="--method"):
         run(["--method", "luck"])
-    with pytest.raises(IllPosed, match="body 'block' can move freely under its load"):
+    with pytest.raises(IllPosed, match="body 'block' is under-constrained"):
         run(displacement=[])
     with pytest.raises(OutputError, match=str(tmp_path / "no")):
         run(["--report", str(tmp_path / "no" / "report.json")])

@@ -154,8 +154,8 @@ impl EnergyBalance {
     pub fn warning(&self) -> Option<String> {
         self.is_off.then(|| {
             format!(
-                "the work from outside is off the energy that bodies and contacts take by {:.1e} of it: the forces on \
-                 the nodes aren't balanced",
+                "energy balance violated by {:.1e} of the work of loads and supports: the forces on the nodes aren't \
+                 balanced",
                 self.imbalance
             )
         })

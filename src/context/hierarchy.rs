@@ -73,8 +73,8 @@ pub fn jumps(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Ju
         let point = &group.points[number];
         let contact = &context.catalog.contacts[point.contact as usize].name;
         Failure::input(format!(
-            "contact '{contact}': the point of nodes {} and {} can't be told from others that share \
-             its nodes; expected points whose rows are independent, or multiples of each other",
+            "contact '{contact}': linearly dependent contact constraints at nodes {} and {}; expected points whose rows are \
+             independent, or multiples of each other",
             point.tag_a, point.tag_b
         ))
     })

@@ -285,7 +285,7 @@ impl Resultants {
         let parting = self.contacts.iter().filter(|contact| contact.parting > 0);
         let words = parting.map(|contact| {
             format!(
-                "contact '{}': {} of its points are about to open, without pressure, and slip under a part of their \
+                "contact '{}': {} of its points are on the verge of opening, at zero pressure, and slip below full \
                  cohesion",
                 contact.name, contact.parting
             )

@@ -50,8 +50,8 @@ impl MinimumNorm {
     /// Says what became of it: whether the nearer position is `taken`.
     fn conclude(&mut self, taken: bool) {
         let end = match taken {
-            true => "of all positions that this leaves, the one of least displacement is taken",
-            false => "its position is one of many",
+            true => "the minimum-norm solution is returned",
+            false => "one of its solutions is returned",
         };
         for warning in &mut self.warnings {
             warning.push_str("; ");

@@ -91,7 +91,7 @@ impl Scene {
         let along = free.transpose() * &load;
         let driven = &free * &along;
         if along.norm() > LOAD_TOLERANCE * scale {
-            return Err(kinematics.ill_posed(bodies, names, &driven, "nothing holds it"));
+            return Err(kinematics.ill_posed(bodies, names, &driven, "nothing resists it"));
         }
         let held = &load - &driven;
         let balanced = |left: &DVector<f64>| left.norm() <= BALANCE_TOLERANCE * scale;
@@ -116,7 +116,7 @@ impl Scene {
                 return Err(kinematics.sliding(bodies, names, &along));
             }
             if !balanced(&unbalanced) {
-                let why = "contact can't hold it";
+                let why = "contact doesn't resist it";
                 return Err(kinematics.ill_posed(bodies, names, proof, why));
             }
         }
@@ -170,8 +170,8 @@ impl Kinematics {
     ) -> Failure {
         let (worst, how) = self.of_worst(bodies, motion);
         Failure::ill_posed(format!(
-            "body '{}' can move freely under its load: {how}, and {why}; expected supports or contact \
-             against it",
+            "body '{}' is under-constrained: its rigid-body motion, {how}, is loaded, and {why}; expected supports or \
+             contact against it",
             names[worst],
         ))
     }
@@ -200,8 +200,7 @@ impl Kinematics {
         let share = unbalanced.norm() / scale;
         let motion = self.motion(&unbalanced.normalize());
         format!(
-            "contact can't hold {} against {share:.0e} of all loads; this counts as round-off, \
-             and nothing as moving",
+            "unbalanced load along {}: {share:.0e} of the total; treated as round-off",
             self.described(bodies, names, &[motion]).concat()
         )
     }
@@ -234,8 +233,7 @@ impl Kinematics {
     ) -> RigidMotions {
         let fixed = |what: &String| {
             format!(
-                "nothing holds {what}; without load along it, this is fixed so that the mean \
-                 displacement has no component along it"
+                "unconstrained rigid-body motion, not loaded: {what}; the mean displacement along it is set to zero"
             )
         };
         RigidMotions {

@@ -43,8 +43,8 @@ pub fn check(group: &ContactGroup, loads: &GroupLoads, catalog: &Catalog) -> Res
                 .map(|contact| format!("'{}'", catalog.contacts[contact].name))
                 .collect();
             return Err(Failure::input(format!(
-                "contact {}: what is prescribed at node {} leaves no place for it; expected \
-                 obstacles and displacements that don't contradict each other",
+                "contact {}: supports and obstacles contradict each other at node {}; expected displacements \
+                 that the obstacles leave room for",
                 names.join(" and "),
                 contact_node.tag
             )));

@@ -93,7 +93,7 @@ impl Scene {
                 .filter(|&j| conditions[j].force != 0.0)
                 .collect(),
             warnings: (released.iter())
-                .map(|what| format!("no contact force holds {what}"))
+                .map(|what| format!("position not unique, as no contact force resists {what}"))
                 .collect(),
         }
     }

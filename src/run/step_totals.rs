@@ -80,7 +80,7 @@ fn large_strain((block, largest): (usize, LargestStrain), catalog: &Catalog) -> 
 /// The warning of a motion at the limit of friction.
 fn at_limit(motion: &str) -> String {
     format!(
-        "at the limit of friction: nothing but friction holds {motion}, with all the force that it can give, which is \
-         the same wherever that slides to; the position is one of many"
+        "limit of friction: friction alone holds {motion}, with all the force that the law allows, which is the same \
+         wherever it slides to; position not unique"
     )
 }

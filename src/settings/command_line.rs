@@ -4,6 +4,7 @@ use std::num::NonZeroU16;
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, Parser, ValueEnum, ValueHint};
+use contact_dd_partition::explanation::Explanation;
 use contact_dd_partition::manual::{Answer, Document, Manual};
 use contact_dd_partition::solver::SolverSettings;
 use serde::Serialize;
@@ -68,7 +69,7 @@ pub const MANUAL: Manual = Manual {
 pub struct CommandLine {
     /// Problem file, made by contact-dd-partition
     #[arg(value_name = "PROBLEM", value_hint = ValueHint::FilePath,
-          required_unless_present = "generate")]
+          required_unless_present_any = ["generate", "explain"])]
     problem: Option<PathBuf>,
 
     /// The settings of the solution.
@@ -91,6 +92,15 @@ pub struct CommandLine {
         help_heading = "Documentation"
     )]
     generate: Option<Document>,
+
+    /// Explain a message by its name, which stands behind it in brackets
+    #[arg(
+        long,
+        value_name = "NAME",
+        exclusive = true,
+        help_heading = "Documentation"
+    )]
+    explain: Option<String>,
 }
 
 /// Options of a run; `None` for those that aren't given.
@@ -160,8 +170,14 @@ impl CommandLine {
     /// They ask for no run, or aren't what was expected: the answer to them.
     pub fn of_this_program() -> Result<Self, Answer> {
         let command_line = Self::try_parse().map_err(|error| Answer::of(&error))?;
-        match command_line.generate {
-            Some(document) => Err(Answer::Text(MANUAL.write(document, Self::command()))),
+        if let Some(document) = command_line.generate {
+            return Err(Answer::Text(MANUAL.write(document, Self::command())));
+        }
+        match &command_line.explain {
+            Some(name) => Err(match Explanation::named(name) {
+                Ok(explanation) => Answer::Text(explanation.text()),
+                Err(error) => Answer::Refusal(error.to_string()),
+            }),
             None => Ok(command_line),
         }
     }

@@ -38,7 +38,9 @@ impl Sweeps<'_, '_> {
             let step = coupled.solve(&self.outcome.u, &residual.r, &self.state);
             self.outcome.active_set_iterations += step.contact.steps;
             if step.contact.fell_back {
-                (self.outcome).fell_back("newton: another method found the contacts' statuses");
+                (self.outcome).fell_back(
+                    "newton: active set taken from an interior-point or dual active-set method",
+                );
             }
             if !step.contact.converged && coupled.has_friction() {
                 self.outcome.unsettled = step.unsettled;
@@ -69,7 +71,7 @@ impl Sweeps<'_, '_> {
 
     /// Leaves the rest to anderson.
     fn fall_back(&mut self, residual: Residual, why: &str) -> Result<SweepStatus, Failure> {
-        (self.outcome).fell_back(&format!("{why}; anderson took over"));
+        (self.outcome).fell_back(&format!("{why}; switched to Anderson acceleration"));
         self.has_fallen_back = true;
         self.anderson(residual)
     }

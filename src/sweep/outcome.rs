@@ -164,8 +164,8 @@ impl SweepOutcome {
     pub fn count_increments(&mut self, increments: usize) {
         self.increments = increments;
         self.notes.push(format!(
-            "a load step with friction didn't converge at once: it took {increments} increments, and what slips is \
-             said of the last one"
+            "a load step with friction didn't converge at once: split into {increments} increments; slip status is that \
+             of the last"
         ));
     }
 

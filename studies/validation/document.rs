@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::support::validation::{Case, Measured};
 
 /// Text before the cases.
-pub const HEAD: &str = "\
+const HEAD: &str = "\
 # Validation
 
 `scripts/validate` solves scenes with exact answers on successively refined meshes and writes this page.
@@ -19,8 +19,11 @@ last two meshes. Contact pressure is the force of a node over its tributary area
 
 ";
 
+/// Figures of a case in its line.
+const FIRST: usize = 2;
+
 /// Text after the cases.
-pub const TAIL: &str = "\
+const TAIL: &str = "\
 ## Friction, exactly
 
 Among the tests alone, as they need no finer meshes (`tests/scenes/friction`):
@@ -34,6 +37,44 @@ Among the tests alone, as they need no finer meshes (`tests/scenes/friction`):
 - Increments of loads to and fro keep the law, and agree to 1e-11 in energy with a monolithic solve with the
   same contact status.
 ";
+
+/// The whole document, of the lines on all cases and their chapters.
+pub fn whole(lines: &str, chapters: &str) -> String {
+    format!(
+        "{HEAD}## In short\n\n{}. Of each case the kind of cells with the smallest error, on its finest mesh.\n\n\
+         | case | cells, dofs | errors | verdict |\n|---|---|---|---|\n{lines}\n{chapters}{TAIL}",
+        crate::today()
+    )
+}
+
+/// A case in a line: the best of its kinds of cells, its first figures, and whether all gates are kept.
+pub fn line(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
+    let finest = (case.families.iter().zip(ran)).filter_map(|(of, all)| Some((of, all.last()?)));
+    let first = |mesh: &Measured| mesh.figures[0].value;
+    let best = finest.min_by(|(_, a), (_, b)| first(a).total_cmp(&first(b)));
+    let Some((family, mesh)) = best else {
+        return String::new();
+    };
+    let figures = mesh.figures.iter().take(FIRST);
+    let figures: Vec<String> = figures
+        .map(|figure| format!("{} {}", figure.name, shown(figure.value)))
+        .collect();
+    let kept = match faults.len() {
+        0 => format!("kept with all {} kinds of cells", ran.len()),
+        n => format!("{n} not kept"),
+    };
+    let anchor = (case.title.chars())
+        .filter(|c| c.is_alphanumeric() || "-_ ".contains(*c))
+        .flat_map(char::to_lowercase);
+    let anchor: String = anchor.map(|c| if c == ' ' { '-' } else { c }).collect();
+    format!(
+        "| [{}](#{anchor}) | {}, {} | {} | {kept} |\n",
+        case.title,
+        family.name,
+        mesh.dofs,
+        figures.join(", ")
+    )
+}
 
 /// A case with its table, and which gates it doesn't keep.
 pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {

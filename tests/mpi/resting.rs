@@ -147,7 +147,7 @@ pub fn no_rest(trials: &mut Trials) {
         (
             "off_balance_on_a_circle",
             squares(down, circle),
-            ["'block'", "can move freely"],
+            ["'block'", "is under-constrained"],
         ),
         (
             "squeezed_out_of_a_wedge",

@@ -150,7 +150,7 @@ fn cut(
             subdomain.body = body;
         } else if subdomain.body != body {
             return Err(InputError::new(format!(
-                "subdomain {index} lies in two bodies that don't hang together, \"{}\" and \"{}\" (element {}); expected a subdomain of one body",
+                "subdomain {index} lies in two disconnected bodies, \"{}\" and \"{}\" (element {}); expected a subdomain of one body",
                 bodies.names[subdomain.body], bodies.names[body], mesh.cell_tags[cell]
             )));
         }

@@ -100,12 +100,13 @@ pub(super) fn find(
     (tips, coarse)
 }
 
-/// The warning of crack tips on a mesh that is too coarse for stress intensity factors.
-pub(super) fn warning(coarse: usize) -> Option<String> {
+/// The remark on crack tips whose mesh is too coarse for stress intensity factors. It is no warning: who doesn't want
+/// factors need not hear of it in every run.
+pub(super) fn remark(coarse: usize) -> Option<String> {
     (coarse > 0).then(|| {
         format!(
             "{coarse} crack tip{} without stress intensity factors: fewer than three facets of the crack faces lie between \
-             the tip and the next kink, end, boundary or other material; expected smaller cells there",
+             the tip and the next kink, end, boundary or other material",
             if coarse == 1 { "" } else { "s" }
         )
     })

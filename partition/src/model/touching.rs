@@ -171,7 +171,7 @@ fn search(
         }
         if search.patches.is_empty() {
             warnings.push(format!(
-                "contact '{what}': all facets that touch between its bodies have a contact of their own; it adds none"
+                "contact '{what}': no new contacts found: all touching facets already belong to one"
             ));
         }
     }

@@ -203,7 +203,7 @@ fn a_prescribed_partition_is_taken_as_it_is() {
     };
     model.prescribed_subdomains = Some(across);
     let message = refused(&model);
-    says(&message, "subdomain 0 lies in two bodies");
+    says(&message, "subdomain 0 lies in two disconnected bodies");
 
     let mut gap = halves;
     gap[0] = 3;

@@ -41,7 +41,7 @@ def canvas(title, units, points):
 
 def deformation_of(result):
     """What deformed shapes show, in words."""
-    return f"deformation since step {result.since}" if result.since else "deformation"
+    return f"deformation since step {result.since}," if result.since else "deformation"
 
 
 def lines(axes, points, facets, **style):

@@ -1,4 +1,4 @@
-"""Gaps that close: enlarged like all displacements, bodies that touch would be drawn over each other."""
+"""Gaps: enlarged like all displacements, those that close would be drawn as overlaps, and those that stay, too."""
 
 import numpy as np
 
@@ -12,27 +12,33 @@ MOST_LOOKED_AT = 100
 
 
 def honest_scale(result):
-    """The largest enlargement with which what is closed is drawn closed; infinite where any does."""
+    """The largest enlargement with which what is closed is drawn closed and what is open isn't drawn as an overlap;
+    infinite where any does."""
     tolerance = INVISIBLE * result.size
     least = np.inf
-    for gap, approach in typical_gaps(result):
+    closed, still_open = typical_gaps(result)
+    for gap, approach in closed:
         # Drawn, the gap is gap − scale·approach, which may be as small as −tolerance or as large as tolerance.
         if abs(approach) > 1e-12 * result.size:
             least = min(least, (gap + np.copysign(tolerance, approach)) / approach)
+    for gap, approach in still_open:
+        if approach > 1e-12 * result.size:
+            least = min(least, (gap + tolerance) / approach)
     return max(least, 1.0)
 
 
 def typical_gaps(result):
-    """Of every closed contact of two bodies the gap that was meshed, and how far its sides have approached.
+    """Of every contact of two bodies the gap that was meshed, and how far its sides have approached: where it is closed
+    and where it is open.
 
-    Those of the condition with the median approach: near corners sides may part or meet aslant."""
+    Those of the condition with the median approach where it is closed, as near corners sides may part or meet aslant;
+    those of the one that would overlap first where it is open."""
     ends = result.outline[:, [0, 2]]
     lines = result.points[ends]
     order = np.argsort(result.tags, kind="stable")
-    for table in carried(result.contacts).values():
-        closed = np.flatnonzero(table["status"] > 0)
-        found = []
-        for k in closed[:: 1 + len(closed) // MOST_LOOKED_AT]:
+
+    def gaps(table, rows):
+        for k in rows[:: 1 + len(rows) // MOST_LOOKED_AT]:
             at, normal = table["position"][k, :2], table["normal"][k, :2]
             met = opposite(lines, at, normal, result.size)
             if met is None:
@@ -40,10 +46,15 @@ def typical_gaps(result):
             own = order[np.searchsorted(result.tags, table["node_a"][k], sorter=order)]
             facet, part, gap = met
             a, b = result.deformation[ends[facet]]
-            found.append(((result.deformation[own] - (1 - part) * a - part * b) @ normal, gap))
-        if found:
-            approach, gap = sorted(found)[len(found) // 2]
-            yield gap, approach
+            yield (result.deformation[own] - (1 - part) * a - part * b) @ normal, gap
+
+    closed, still_open = [], []
+    for table in carried(result.contacts).values():
+        if found := sorted(gaps(table, np.flatnonzero(table["status"] > 0))):
+            approach, gap = found[len(found) // 2]
+            closed.append((gap, approach))
+        still_open += [(gap, approach) for approach, gap in gaps(table, np.flatnonzero(table["status"] == 0))]
+    return closed, still_open
 
 
 def opposite(lines, at, normal, size):

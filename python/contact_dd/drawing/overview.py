@@ -22,6 +22,10 @@ DASHES = (0, (5, 3))
 # Where contacts press within so small a part of the size, a second panel shows that part.
 SMALL = 1 / 6
 
+# Where it is smaller than this part of the size, the first panel shows what is around it, so many times as wide: all
+# would be a plain area.
+SMALLER, SURROUNDINGS = 1 / 12, 7.0
+
 # Width of that part over the width of what presses.
 AROUND = 1.8
 
@@ -44,7 +48,7 @@ def overview(result, scale):
     moved = result.deformed(scale)
     sides = pressed_sides(result, moved)
     part = part_that_presses(sides, result.size)
-    panels = [window([moved], 0.02), part] if part else [whole(result, moved, sides)]
+    panels = [surroundings(part, moved, result.size), part] if part else [whole(result, moved, sides)]
     longest = LONGEST * max(panels[-1][1] - panels[-1][0])
 
     mesh = Triangulation(*result.at_points(moved).T, result.triangles)
@@ -72,7 +76,8 @@ def overview(result, scale):
         stick_and_slip(all_axes[-1], sides)
         labels(all_axes[-1], sides, longest / largest, result.units.stress)
     exceeded = "max" if values.max() > 1.001 * shown else "neither"
-    figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]")
+    of_largest = f", at most {values.max():.4g}" if exceeded == "max" else ""
+    figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]{of_largest}")
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
     step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
     title = f"{what}, {deformation_of(result)} × {scale:g}{step}"
@@ -87,6 +92,16 @@ def whole(result, moved, sides):
     longest = (LONGEST + OF_LABEL) * max(np.ptp(moved, axis=0))
     tips = [side.tips(longest / largest) for side in sides] if largest > 0 else []
     return window([result.points, moved, *tips], 0.02)
+
+
+def surroundings(part, moved, size):
+    """A window on all bodies, or where the part is very small on what is around it."""
+    low, high = window([moved], 0.02)
+    width = max(part[1] - part[0])
+    if width > SMALLER * size:
+        return low, high
+    middle, half = (part[0] + part[1]) / 2, SURROUNDINGS * width / 2
+    return np.maximum(low, middle - half), np.minimum(high, middle + half)
 
 
 def window(places, margin):

@@ -66,7 +66,7 @@ impl Scene {
                 bodies,
                 names,
                 driven,
-                "nothing holds it",
+                "nothing resists it",
             )))
         };
         if is_driven(&driven) {
@@ -98,7 +98,9 @@ impl Scene {
                 let kinematics = &touched.kinematics;
                 Some(Err(match is_sliding {
                     true => kinematics.sliding(bodies, names, &motion),
-                    false => kinematics.ill_posed(bodies, names, &motion, "contact can't hold it"),
+                    false => {
+                        kinematics.ill_posed(bodies, names, &motion, "contact doesn't resist it")
+                    }
                 }))
             }
         }

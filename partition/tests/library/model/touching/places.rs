@@ -324,7 +324,7 @@ fn a_crack_of_one_facet_cannot_open() {
         }
     };
     let model = joined(&[1.0]).model(ALL).unwrap();
-    assert_eq!(model.found, ["joints: 2 on 2 facets of 'rock', 1 m"]);
+    assert_eq!(model.found[0], "joints: 2 on 2 facets of 'rock', 1 m");
     assert_eq!(model.contacts[0].points.len(), 1);
     let error = joined(&[]).model(ALL).unwrap_err();
     says(&error, "contact 'joints': no facets face each other");
