@@ -8,6 +8,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.ticker import NullFormatter
 
 COLORS = {
@@ -57,7 +58,7 @@ def draw_times(rows, path):
             named[element, mesh] = line
         axes.axhline(1e-2, color="black", lw=0.8, ls=":")
         meshes = " and ".join(dict.fromkeys(mesh for of, _, mesh in series(rows) if of == scene))
-        finish(axes, f"{scene}, {meshes}", "ms, whole run, 1 rank", "")
+        finish(axes, f"{scene}, {meshes}", "time of the run, 1 rank [ms]", "")
     panels[0].set_ylabel("error in the energy")
     # Columns of one element.
     names = [(element, mesh) for element in COLORS for mesh in ("uniform", "graded")]
@@ -67,22 +68,33 @@ def draw_times(rows, path):
     figure.savefig(path, metadata={"Date": None})
 
 
+KINDS = {
+    "linear cells": (("triangle3", "quad4"), "#4b5866"),
+    "quadratic cells": (("triangle6", "quad8", "quad9"), "#d62728"),
+}
+
+
 def draw_tolerances(tried, default, path):
+    """The median of all meshes of linear and of quadratic cells, and between which lines all of them lie."""
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
-    named = {}
-    for mesh in tried:
-        residuals = [end["residual"] for end in mesh["stopped"]]
-        shifts = [max(abs(end["error"] / mesh["error"] - 1), 1e-16) for end in mesh["stopped"]]
-        dashes = "-" if mesh["scene"] == "Hertz" else ":"
-        (line,) = axes.plot(residuals, shifts, dashes, color=COLORS[mesh["element"]], lw=0.8)
-        named.setdefault(mesh["element"], line)
+    residuals = np.linspace(-15.5, -2, 55)
+    for name, (elements, color) in KINDS.items():
+        curves = []
+        for mesh in tried:
+            if mesh["element"] in elements:
+                ends = sorted((end["residual"], abs(end["error"] / mesh["error"] - 1)) for end in mesh["stopped"])
+                x, y = np.log10(np.maximum(np.array(ends).T, 1e-16))
+                curves.append(np.interp(residuals, x, y, left=np.nan, right=np.nan))
+        of_most = np.isfinite(curves).mean(axis=0) >= 0.5
+        at, shown = 10.0 ** residuals[of_most], 10.0 ** np.array(curves)[:, of_most]
+        axes.fill_between(at, np.nanmin(shown, axis=0), np.nanmax(shown, axis=0), color=color, alpha=0.2, lw=0)
+        label = f"{name}: median of {len(curves)} meshes, and all"
+        axes.plot(at, np.nanmedian(shown, axis=0), color=color, lw=1.6, label=label)
     axes.axhline(1e-2, color="black", lw=0.8, ls=":")
     axes.axvline(default, color="black", lw=0.8)
-    finish(
-        axes, "Hertz (solid) and Signorini (dotted)", "residual at the end of the sweeps", "change of the error, over it"
-    )
+    finish(axes, "Hertz and Signorini", "residual at the end of the sweeps", "change of the error, relative to it")
     axes.text(default * 1.3, axes.get_ylim()[1] / 2, "default", va="top")
-    figure.legend(named.values(), named.keys(), loc="outside lower center", ncol=5, frameon=False)
+    axes.legend(frameon=False, loc="lower right")
     figure.savefig(path, metadata={"Date": None})
 
 

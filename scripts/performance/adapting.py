@@ -131,7 +131,7 @@ def draw(measurements, path):
         axes.loglog([row[2] for row in fine], [row[1] for row in fine], "o-", color="0.5", ms=4, label="uniform")
         axes.loglog([row[4] for row in rows], [row[3] for row in rows], "o-", color="#d6202c", ms=4, label="adapted")
         axes.set_title(NAMES[name], loc="left")
-        axes.set_xlabel("s, all meshes")
+        axes.set_xlabel("time of all meshes [s]")
         axes.grid(alpha=0.3, which="both", lw=0.4)
     panels[0].set_ylabel("error in the energy norm")
     panels[-1].legend(frameon=False)

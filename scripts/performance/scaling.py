@@ -192,7 +192,7 @@ def draw(rows, path):
         axes.set_xticks(ranks, [str(count) for count in ranks])
         axes.minorticks_off()
         axes.set_xlabel("ranks")
-        axes.set_ylabel("s, slowest rank")
+        axes.set_ylabel("time of the slowest rank [s]")
         axes.grid(alpha=0.25, lw=0.5)
         axes.spines[["top", "right"]].set_visible(False)
     handles, labels = panels[0][0].get_legend_handles_labels()
