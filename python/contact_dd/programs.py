@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import operator
 import os
+import re
 import shutil
 import subprocess
 import sysconfig
@@ -19,6 +20,9 @@ from contact_dd.result import Result
 
 Progress = bool | Callable[[dict[str, Any]], None]
 Worded = Callable[[str], str]
+
+# The name of its explanation behind a message.
+NAMED = re.compile(r" \[--explain [\w-]+\]$")
 
 # OpenMPI starts neither as root nor with more ranks than cores unless it is told to; who asks for ranks means it.
 ENVIRONMENT = {
@@ -70,7 +74,8 @@ def partition(
     def hear(line: str) -> None:
         word, _, rest = line.partition(" ")
         if word == "warning":
-            warnings.warn(worded(rest.strip()), stacklevel=5)
+            # The solver's warnings come without the name of their explanation.
+            warnings.warn(worded(NAMED.sub("", rest.strip())), stacklevel=5)
         elif progress is True and word in ("mesh", "contact"):
             print(line, flush=True)
 
