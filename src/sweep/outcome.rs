@@ -130,7 +130,9 @@ impl SweepOutcome {
         self.evaluations[0] += pairs - totals.unmoved_pairs;
         self.evaluations[1] += totals.unmoved_pairs;
         if totals.fallen_back_pairs > 0 {
-            self.fell_back("pairs: active set taken from an interior-point or dual active-set method");
+            self.fell_back(
+                "pairs: active set taken from an interior-point or dual active-set method",
+            );
         }
     }
 

@@ -103,7 +103,11 @@ fn solved(model: &Model, count: usize, args: &[&str]) -> Vec<Solution> {
     let case = Case::of(model, count);
     let ended = case.run(args);
     assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
-    assert!(!ended.stdout.contains("unconstrained rigid-body motion"), "{}", ended.stdout);
+    assert!(
+        !ended.stdout.contains("unconstrained rigid-body motion"),
+        "{}",
+        ended.stdout
+    );
     let steps = Solution::steps(&case.result());
     steps.iter().for_each(Solution::check_certificate);
     steps

@@ -125,7 +125,8 @@ fn shrunk_rings_press_on_each_other_as_lame_says_and_turn_freely() {
         }
         // Three motions of both and one against the other.
         let warnings = solution.report["warnings"].as_array().unwrap();
-        let free = "unconstrained rigid-body motion, not loaded: 4 rigid motions of 'inner', 'outer';";
+        let free =
+            "unconstrained rigid-body motion, not loaded: 4 rigid motions of 'inner', 'outer';";
         let mut texts = warnings.iter().filter_map(|warning| warning.as_str());
         assert!(texts.any(|text| text.starts_with(free)), "{warnings:#?}");
     }

@@ -146,7 +146,11 @@ value = [0.0, -1e6]
     );
     let solution = solve(&model(&text, mesh.clone()), 4);
     let warnings = solution.report["warnings"].as_array().unwrap();
-    let free = |w: &&serde_json::Value| w.as_str().unwrap().starts_with("unconstrained rigid-body motion");
+    let free = |w: &&serde_json::Value| {
+        w.as_str()
+            .unwrap()
+            .starts_with("unconstrained rigid-body motion")
+    };
     assert_eq!(warnings.iter().filter(free).count(), 3, "{warnings:?}");
     let ended = Case::of(&model(&text.replace("-1e6", "-2e6"), mesh), 4).run(&[]);
     assert_eq!(ended.code(), 4, "{}", ended.stderr);
