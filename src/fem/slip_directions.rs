@@ -141,12 +141,20 @@ mod tests {
         point.law = Law::coulomb(0.3, 0.0);
         point.frame = LocalFrame::new(point.normal());
         let nodes = [0, 1, 2].map(node).to_vec();
-        ContactGroup::new(vec![point], nodes, 3).points[0].frame.tangents
+        ContactGroup::new(vec![point], nodes, 3).points[0]
+            .frame
+            .tangents
     }
 
     #[test]
     fn a_point_on_a_plane_of_symmetry_slips_along_one_line() {
-        for (tilt, beside) in [(0.0, 0.0), (1e-5, 0.0), (1e-2, 0.0), (3e-5, -2e-5), (0.0, 3e-4)] {
+        for (tilt, beside) in [
+            (0.0, 0.0),
+            (1e-5, 0.0),
+            (1e-2, 0.0),
+            (3e-5, -2e-5),
+            (0.0, 3e-4),
+        ] {
             let [first, second] = tangents(tilt, beside);
             assert_eq!(second, [0.0; 3], "{tilt} {beside}");
             let along = dot(first, [0.8, -0.6, 0.0]).abs();
