@@ -202,7 +202,7 @@ pub fn scale_of(entry: f64, diagonal: f64) -> f64 {
 }
 
 /// The factor of H + `spring` · diag(`scale`); `None` where that is singular.
-pub(super) fn factorize(h: MatRef<'_, f64>, scale: &[f64], spring: f64) -> Option<Llt<f64>> {
+pub fn factorize(h: MatRef<'_, f64>, scale: &[f64], spring: f64) -> Option<Llt<f64>> {
     let mut sum = h.to_owned();
     for (j, scale) in scale.iter().enumerate() {
         sum[(j, j)] += spring * scale;

@@ -2,10 +2,8 @@
 //! their nodes come together, and what they need to know of these nodes.
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
-use contact_dd_partition::element::geometry::advance;
 
 use super::contact_node::ContactNode;
-use super::jump_row::{NO_ROW, less, only_direction, product};
 use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::law::PointLaw;
 
@@ -76,59 +74,11 @@ impl GroupLoads {
 }
 
 impl ContactGroup {
-    /// The group of these points. Where supports let what has friction slip in but one direction of a plane, that is
-    /// the first tangent, so that there is no condition along the second. What the normal jump alone moves along a
-    /// tangent, where the normal isn't along what is held, is no slip.
+    /// The group of these points, whose tangents are those along which they [can slip](super::slip_directions).
     pub fn new(points: Vec<ContactPoint<u32>>, nodes: Vec<ContactNode>, dim: usize) -> Self {
         let mut group = Self { points, nodes, dim };
-        let frames = group.frames();
-        for point in 0..group.points.len() {
-            let normal = group.points[point].normal();
-            let tangents = match group.points[point].law.is_tied() {
-                true => &[],
-                false => group.points[point].tangents(dim),
-            };
-            if let [first, second] = *tangents {
-                let [n, a, b] = [normal, first, second].map(|direction| {
-                    let condition = Condition {
-                        point,
-                        direction,
-                        is_tangential: true,
-                        is_tied: false,
-                    };
-                    group.row(&condition, &frames)
-                });
-                let turned = |x: f64, y: f64| std::array::from_fn(|k| x * first[k] + y * second[k]);
-                if let Some((cos, sin)) = only_direction(&a, &b) {
-                    group.points[point].frame.tangents = [turned(cos, sin), turned(-sin, cos)];
-                } else if group.is_held_fast(point) {
-                    let [of_a, of_b] = [&a, &b].map(|row| product(row, &n) / product(&n, &n));
-                    let beside = [less(&a, of_a, &n), less(&b, of_b, &n)];
-                    let rest: f64 = beside.iter().map(|row| product(row, row)).sum();
-                    if rest <= NO_ROW * (product(&a, &a) + product(&b, &b)) {
-                        group.points[point].frame.tangents = [
-                            advance(first, -of_a, normal),
-                            advance(second, -of_b, normal),
-                        ];
-                    } else if let Some((cos, sin)) = only_direction(&beside[0], &beside[1]) {
-                        let of_normal = cos * of_b - sin * of_a;
-                        group.points[point].frame.tangents = [
-                            turned(cos, sin),
-                            advance(turned(-sin, cos), -of_normal, normal),
-                        ];
-                    }
-                }
-            }
-        }
+        group.take_slip_directions();
         group
-    }
-
-    /// Whether supports hold nodes of a point, and prescribe no displacement but 0.
-    fn is_held_fast(&self, point: usize) -> bool {
-        let nodes = self.points[point].entries.iter();
-        let mut supports = nodes.flat_map(|(node, _)| &self.nodes[*node as usize].supports);
-        supports.clone().next().is_some()
-            && supports.all(|(_, values)| values.iter().all(|&value| value == 0.0))
     }
 
     /// Conditions: the normal one of every point, then the tangential ones of the points that have friction or are tied.

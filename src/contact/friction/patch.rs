@@ -12,12 +12,13 @@
 use std::rc::Rc;
 
 use faer::linalg::solvers::SolveCore;
-use faer::{Conj, MatMut};
+use faer::{Conj, Mat, MatMut};
 
 use super::{FrictionProblem, Status};
 use crate::contact::active_set::{ContactProblem, ContactSolution, GAP_TOLERANCE};
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::laws::Iterate;
+use crate::contact::open_factor::{factorize, scale_of};
 use crate::contact::patch::{CondensedPatch, LARGE, LastPatch};
 use crate::contact::status::FixedStatus;
 use crate::contact::tangent::{Beside, TangentialLimit};
@@ -26,6 +27,9 @@ use crate::contact::tangent::{Beside, TangentialLimit};
 const FEW: usize = 300;
 /// How often a patch may grow.
 const ROUNDS: usize = 8;
+/// Stiffness of the springs that hold bodies which the first patch leaves free, relative to that of the jumps, from the
+/// stiffest on.
+const SPRINGS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
 /// A patch of a problem.
 struct Patch<'a> {
@@ -40,7 +44,7 @@ impl FrictionProblem<'_> {
             return None;
         }
         let normal_of = self.normals();
-        let mut is_in = self.pressed(&normal_of, status);
+        let mut is_in = self.first_patch(&normal_of, status)?;
         let (mut now, mut steps, mut fell_back) = (status.to_vec(), 0, false);
         for _ in 0..ROUNDS {
             let joins = |i: &usize| normal_of[*i].is_none_or(|n| is_in[n]);
@@ -110,6 +114,57 @@ impl FrictionProblem<'_> {
         }
         let opens = |n: &usize| !stay[*n];
         normal_of.into_iter().map(|n| n.filter(opens)).collect()
+    }
+
+    /// The normal jumps of the points with which the search for a patch begins: those that press, and where these leave a body
+    /// free those, too, that close as the loads move it against springs; `None` where no such patch is small enough.
+    fn first_patch(&self, normal_of: &[Option<usize>], status: &[Status]) -> Option<Vec<bool>> {
+        let mut is_in = self.pressed(normal_of, status);
+        let patch = |is_in: &[bool]| Patch::new(self, |&i| normal_of[i].is_none_or(|n| is_in[n]));
+        for spring in SPRINGS {
+            if patch(&is_in).is_some() {
+                return Some(is_in);
+            }
+            let jumps = self.held_by_springs(normal_of, &is_in, spring)?;
+            for n in normal_of.iter().flatten() {
+                is_in[*n] |= jumps[*n] > self.contact.bounds[*n];
+            }
+        }
+        patch(&is_in).is_some().then_some(is_in)
+    }
+
+    /// All jumps where the points of a patch are closed and stick, and all others open against springs of this stiffness,
+    /// relative to their own; `None` where the patch is too large, or even these leave a body free.
+    fn held_by_springs(
+        &self,
+        normal_of: &[Option<usize>],
+        is_in: &[bool],
+        spring: f64,
+    ) -> Option<Vec<f64>> {
+        let contact = &self.contact;
+        let m = contact.c.len();
+        let is_open = |&i: &usize| normal_of[i].is_some_and(|n| !is_in[n]);
+        let open: Vec<usize> = (0..m).filter(is_open).collect();
+        if ((m - open.len()) as f64) > LARGE * m as f64 {
+            return None;
+        }
+        let mut jumps = contact.bounds[..m].to_vec();
+        open.iter().for_each(|&i| jumps[i] = 0.0);
+        let mut left = contact.c.to_vec();
+        contact.subtract(&jumps, &mut left);
+        let scale: Vec<f64> = (open.iter())
+            .map(|&i| scale_of(contact.h[(i, i)], contact.diagonal[i]))
+            .collect();
+        let of_open = Mat::from_fn(open.len(), open.len(), |a, b| contact.h[(open[a], open[b])]);
+        let factor = factorize(of_open.as_ref(), &scale, spring)?;
+        let mut freed = Mat::from_fn(open.len(), 1, |a, _| {
+            left[open[a]] + spring * scale[a] * contact.center[open[a]]
+        });
+        factor.solve_in_place_with_conj(Conj::No, freed.as_mut());
+        for (a, &i) in open.iter().enumerate() {
+            jumps[i] = freed[(a, 0)];
+        }
+        Some(jumps)
     }
 
     /// The normal jumps of points that aren't open; where these are most, those that press where all of them are closed.
