@@ -1,6 +1,7 @@
 //! Friction in space.
 
 mod random;
+mod symmetry;
 
 use contact_dd_partition::element::ElementKind::{self, *};
 use contact_dd_partition::mesh::Mesh;
