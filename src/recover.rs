@@ -1,5 +1,6 @@
 //! Back-substitution: from U on Γ to displacements and contact forces everywhere.
 
+pub mod adjoint;
 pub mod against_law;
 pub mod conditioning;
 pub mod energy;

@@ -113,6 +113,7 @@ impl<'a> Loading<'a> {
         let factors = Factors {
             context: self.context,
             condensed: self.factors,
+            only: None,
         };
         let of_blocks: BTreeMap<usize, Vec<f64>> =
             loads.blocks.iter().filter_map(of_block).collect();

@@ -61,6 +61,7 @@ pub mod message;
 pub mod model;
 pub mod name;
 pub mod problem;
+pub mod quantity;
 pub mod scene;
 pub mod solver;
 pub mod source;

@@ -20,7 +20,9 @@ mod loads;
 mod mortar;
 mod node_pairs;
 mod obstacle;
+mod parameters;
 mod parts;
+mod quantities;
 mod ray_search;
 mod rules;
 mod sides;
@@ -40,6 +42,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::name;
+use crate::quantity::{Goals, NodalShares};
 use crate::scene::Scene;
 pub use crate::scene::material::PlaneState;
 use crate::scene::units::Units;
@@ -85,6 +88,8 @@ pub struct Model {
     pub contacts: Vec<Contact>,
     /// Crack tips of the plane, each with a cell that has it.
     pub tips: Vec<(u32, CrackTip)>,
+    /// Quantities that are asked for, and the parameters of their derivatives.
+    pub goals: Goals,
     /// Description of what was found by itself: contacts, each with its name, and crack tips that are passed by.
     pub found: Vec<String>,
     /// The partition that the scene asks for, a subdomain for every cell.
@@ -117,6 +122,12 @@ impl Model {
             found,
         } = MadeContacts::new(&sides, &declared, &mut warnings)?;
         activation::check(scene, &bodies, &contacts)?;
+        let goals = goals(
+            (scene, &bodies, &topology),
+            &materials,
+            (&loads, &springs),
+            &contacts,
+        )?;
         let equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
         let names = equations.iter().map(|of| &of.name[..]);
         let tables: Vec<&str> = tables.into_iter().chain(names).collect();
@@ -166,12 +177,57 @@ impl Model {
                 .collect(),
             contacts: contacts.into_iter().chain(equations).collect(),
             tips,
+            goals,
             found,
             prescribed_subdomains,
             // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.
             warnings: (warnings.iter().map(|text| name::in_a_line(text))).collect(),
         })
     }
+}
+
+/// The quantities of a scene, and with them its parameters.
+///
+/// # Errors
+/// A name that isn't there, with those that are.
+fn goals(
+    (scene, bodies, topology): (&Scene, &bodies::Bodies, &Topology),
+    materials: &[Material],
+    (loads, springs): (&steps::Loads, &springs::Springs),
+    contacts: &[Contact],
+) -> Result<Goals, InputError> {
+    if scene.quantity.is_empty() {
+        return Ok(Goals::default());
+    }
+    let initial: Vec<&InitialStress> = match loads.steps.is_empty() {
+        true => vec![&loads.initial_stress],
+        false => loads
+            .steps
+            .iter()
+            .map(|step| &step.initial_stress)
+            .collect(),
+    };
+    let supports: Vec<String> = loads.names.iter().chain(&springs.names).cloned().collect();
+    let known = quantities::Known {
+        scene,
+        bodies,
+        materials,
+        contacts,
+        supports: &supports,
+        initial: &initial,
+    };
+    let (quantities, weights) = quantities::quantities(known)?;
+    let on = loads::Loaded {
+        scene,
+        bodies,
+        topology,
+    };
+    let (parameters, forces) = parameters::parameters(on, loads, contacts)?;
+    Ok(Goals {
+        quantities,
+        parameters,
+        shares: NodalShares { weights, forces },
+    })
 }
 
 /// The contacts that were declared or found and have points.

@@ -4,23 +4,29 @@
 //! same for somebody who writes one with h5py.
 
 pub mod consistency;
+mod contact_summary;
 pub mod copies;
+mod datasets;
 pub mod digest;
 mod friction;
+mod goals;
 mod law;
 pub mod read;
 pub mod schema;
 pub mod stage;
 mod strings;
+mod tips;
 pub mod trial;
 pub mod vtkhdf;
 pub mod write;
 
+pub use self::contact_summary::{ContactKind, ContactSummary};
 use crate::contact_point::{ContactPoint, Probe};
 use crate::crack_tip::CrackTip;
 use crate::element::Elements;
 use crate::element::geometry::{advance, dot};
 use crate::model::{Material, PlaneState, SpringBlock, Support};
+use crate::quantity::{NodalShares, Parameter, Quantity};
 use crate::scene::units::Units;
 use crate::solver::SolverSettings;
 
@@ -70,6 +76,8 @@ pub struct Subdomain {
     pub initial_stress: InitialStress,
     /// Nodes on Γ, in ascending order of their number on Γ.
     pub interface: Vec<InterfaceNode>,
+    /// The parts of its nodes in quantities and loads that are parameters.
+    pub shares: NodalShares,
     /// Values of its supports and forces in every load step; none where the problem has none.
     pub steps: Vec<StepLoads>,
 }
@@ -198,51 +206,6 @@ pub struct SubdomainSummary {
     pub cells: usize,
 }
 
-/// A contact of the scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ContactSummary {
-    /// Name.
-    pub name: String,
-    /// Number of its conditions.
-    pub conditions: usize,
-    /// Whether one of its points has friction.
-    pub has_friction: bool,
-    /// The kind of its conditions.
-    pub kind: ContactKind,
-}
-
-/// Kind of the conditions of a contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ContactKind {
-    /// Sides that press on each other and part.
-    #[default]
-    Unilateral,
-    /// Sides that are tied to each other.
-    Tie,
-    /// A linear equation between displacements.
-    Equation,
-}
-
-impl ContactKind {
-    /// The kind of the contact of a point.
-    pub fn of<N>(point: &ContactPoint<N>) -> Self {
-        match (point.law.is_tied(), point.axes.is_empty()) {
-            (false, _) => Self::Unilateral,
-            (true, true) => Self::Tie,
-            (true, false) => Self::Equation,
-        }
-    }
-
-    /// Its name in messages.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Unilateral => "contact",
-            Self::Tie => "tie",
-            Self::Equation => "equation",
-        }
-    }
-}
-
 /// A load step: quasi-static and without friction its solution depends on its own loads alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadStep {
@@ -321,6 +284,10 @@ pub struct Catalog {
     pub probes: Vec<Probe<SubdomainNode>>,
     /// Crack tips of the plane.
     pub tips: Vec<CrackTip>,
+    /// Quantities that are asked for.
+    pub quantities: Vec<Quantity>,
+    /// Parameters of their derivatives.
+    pub parameters: Vec<Parameter>,
     /// The nodes of every contact point.
     pub point_nodes: Vec<Vec<PointNode>>,
     /// The tree along which Schur complements are merged.

@@ -12,6 +12,7 @@ pub mod loading;
 pub mod material;
 pub mod number;
 pub mod place;
+pub mod quantity;
 pub mod spring;
 pub mod step;
 pub mod suggest;
@@ -32,6 +33,7 @@ use condition::{Bilateral, Body, Displacement, Force, Names, Pressure, Traction}
 use contact::Declaration;
 use equation::Equation;
 use material::{Elasticity, PlaneState};
+use quantity::Quantity;
 use spring::Spring;
 use step::LoadStep;
 use tie::Tie;
@@ -86,6 +88,9 @@ pub struct Scene {
     /// Linear equations between displacements.
     #[serde(default, deserialize_with = "place::list")]
     pub equation: Vec<Equation>,
+    /// Quantities of the solution.
+    #[serde(default, deserialize_with = "place::list")]
+    pub quantity: Vec<Quantity>,
     /// Load steps, one after the other; without any the loads of the scene are there at once.
     #[serde(default, deserialize_with = "place::list")]
     pub step: Vec<LoadStep>,

@@ -22,6 +22,7 @@ OBSERVED, UNKNOWN = 1.25, 3.0
 # The order by which a pressure at the rim of a contact grows where it has no limit.
 GROWTH = 0.15
 PRESSURE = "largest pressure of "
+QUANTITY = "quantity "
 # Differences that are no larger, relative to the largest of the kind, are round-off.
 ROUND_OFF = 1e-9
 
@@ -93,7 +94,7 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
         values = tuple(one[key] for one in numbers)
         if max(abs(value) for value in values) > ROUND_OFF * scales[kind]:
             error, order = bar(values, ratios, ROUND_OFF * scales[kind])
-            is_force = kind == "force"
+            is_force = kind == "force" or kind.startswith(QUANTITY)
             if kind == "work" and error is not None:
                 error = max(error, energy_error(found[-1]))
             # One that is longer than the number says nothing of a pressure or of work, which are above 0.
@@ -157,6 +158,10 @@ def numbers_of(result: Result) -> Iterator[tuple[tuple[str, str, str], float]]:
         for key, symbol in (("k_i", "K_I"), ("k_ii", "K_II")):
             name = f"{symbol} of {tip['tip']}"
             yield ("stress intensity", name, f"{units.stress} √{units.length}"), tip[key]
+    for quantity in report.get("quantities", []):
+        if quantity["kind"] != "largest_pressure" and quantity["value"] is not None:
+            name = f"{QUANTITY}{quantity['name']}"
+            yield (name, name, units.of_quantity(quantity["kind"])), quantity["value"]
     if report.get("friction"):
         yield ("work", "work of friction", units.work), report["friction"]["dissipated_work"]
 

@@ -215,6 +215,21 @@ class Model:
         entry = self._add("equation", name=name, terms=tables, value=value)
         self._calls.add(entry, call("equation", *terms, value=value, name=name))
 
+    def quantity(
+        self, name: str, kind: str, *, contact: str | None = None, body: str | None = None, on: str | None = None,
+        at: Sequence[float] | None = None, node: int | None = None, direction: str | Sequence[float] | None = None,
+        component: str | None = None,
+    ) -> None:
+        """Asks for a quantity, its value and its derivatives: a "displacement" (`direction`, `at` or `node`), the
+        "reaction" of what holds a group (`on`, `direction`), of a contact its "contact_force" (perhaps `direction`),
+        "mean_pressure", "largest_pressure" or the "opening" at a point (`at` or `node`), the "mean_stress" of a body
+        (`body`, `component`) or the elastic "energy". `Result.quantities` and `Result.gradient` have it by its name."""
+        keys = given(
+            contact=contact, body=body, on=on, at=at, node=node, direction=direction, component=component
+        )
+        entry = self._add("quantity", name=name, kind=kind, **keys)
+        self._calls.add(entry, call("quantity", name, kind, **keys))
+
     def steps(self, *steps: Step) -> None:
         """Load steps, one after the other."""
         known: list[dict[str, Any]] = self.scene.setdefault("step", [])
@@ -259,7 +274,7 @@ class Model:
         result.folder = temporary
         return result
 
-    def _add(self, kind: str, **keys: Any) -> dict[str, Any]:
+    def _add(self, kind: str, /, **keys: Any) -> dict[str, Any]:
         entry = given(**keys)
         self.scene.setdefault(kind, []).append(entry)
         return entry

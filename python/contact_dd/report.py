@@ -41,8 +41,15 @@ TIP: Shape = {
     "tip": str, "node": int, "position": [MAYBE], "direction": [MAYBE], "k_i": MAYBE, "k_ii": MAYBE,
     "energy_release_rate": MAYBE, "radius": MAYBE, "dependence_on_radius": MAYBE,
 }
+DERIVATIVE: Shape = {"parameter": str, "kind": str, "at": MAYBE, "derivative": MAYBE}
+QUANTITY: Shape = {
+    "name": str, "kind": str, "value": MAYBE, "node": (int, type(None)), "derivatives": [DERIVATIVE],
+}
 # What may be null or missing.
-OPTIONAL: dict[str, Shape] = {"error_estimate": ESTIMATE, "friction": FRICTION, "crack_tips": [TIP]}
+OPTIONAL: dict[str, Shape] = {
+    "error_estimate": ESTIMATE, "friction": FRICTION, "crack_tips": [TIP], "quantities": [QUANTITY],
+    "about_to_change": [str], "without_derivatives": str,
+}
 
 
 def report_of(text: str | bytes) -> dict[str, Any]:

@@ -160,6 +160,32 @@ class Result:
         return {name: table for name, table in tables if not len(table) or not np.isnan(table["gap"]).all()}
 
     @property
+    def quantities(self) -> dict[str, float]:
+        """The values of the quantities that the scene asks for, by their names."""
+        return {one["name"]: number(one["value"]) for one in self._report_of_step().get("quantities") or []}
+
+    def gradient(self, name: str) -> dict[str, float]:
+        """The derivatives of a quantity, by the names of the parameters: loads (of a factor), Young's moduli, gaps,
+        prescribed displacements and coefficients of friction.
+
+        Where a contact point is about to change, as `about_to_change` of the report says, they hold on the side on
+        which it doesn't. Raises `InputError` where there is no such quantity, or it has no derivatives."""
+        report = self._report_of_step()
+        found = {one["name"]: one["derivatives"] for one in report.get("quantities") or []}
+        if name not in found:
+            known = ", ".join(repr(known) for known in found) or "none, as the scene asks for none"
+            raise InputError(f"{self.path}: there is no quantity {name!r}; known are {known}")
+        if report.get("without_derivatives"):
+            raise InputError(f"{self.path}: quantities have no derivatives: {report['without_derivatives']}")
+        return {one["parameter"]: number(one["derivative"]) for one in found[name]}
+
+    def _report_of_step(self) -> dict[str, Any]:
+        """What the report says of this load step."""
+        steps = self.report.get("steps")
+        part: dict[str, Any] = steps[self.step - 1] if steps else self.report
+        return part
+
+    @property
     def von_mises(self) -> NDArray[np.float64]:
         """The von Mises stress at nodes, of what is recovered there."""
         xx, yy, zz, xy, yz, xz = self.stress.T
@@ -206,6 +232,11 @@ def since(steps: list[dict[str, Any]], step: int) -> int:
     """The last step before `step`, from 1, behind which something came."""
     absent = [set(one["absent"]) for one in steps[:step]]
     return max((k for k in range(1, step) if absent[k - 1] - absent[k]), default=0) if absent else 0
+
+
+def number(value: float | None) -> float:
+    """A number of a report, in which what isn't finite is null."""
+    return float("nan") if value is None else float(value)
 
 
 def unique_nodes(tags: NDArray[Any], stress: NDArray[Any]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -15,6 +15,9 @@ pub struct Factors<'a> {
     pub context: Context<'a>,
     /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,
+    /// The nodes of the hierarchy on which loads act and of which solutions are wanted, with all above them up to the
+    /// clusters, whose own are among them; all nodes where it is left out.
+    pub only: Option<&'a [bool]>,
 }
 
 impl Factors<'_> {
@@ -30,7 +33,7 @@ impl Factors<'_> {
         let mut arrived = BTreeMap::new();
         for v in self.nodes() {
             let children = &context.plan.tree.nodes[v].children;
-            for &child in children {
+            for &child in children.iter().filter(|child| self.has(**child)) {
                 let load = of_nodes.get(&child).map(|load| load.boundary().to_vec());
                 carry(context, child, Some(v), load, &mut arrived, Direction::Up);
             }
@@ -38,8 +41,11 @@ impl Factors<'_> {
                 let load = loads.remove(&v).unwrap_or_default();
                 of_nodes.insert(v, block.factor.condense(load));
             } else if let Some(merge) = condensed.merges.get(&v) {
-                let of_children: Vec<&[f64]> =
-                    children.iter().map(|child| &arrived[child][..]).collect();
+                // What isn't there has no load.
+                let arrived = children.iter().map(|child| arrived.get(child));
+                let of_children: Vec<&[f64]> = arrived
+                    .map(|load: Option<&Vec<f64>>| load.map_or(&[][..], Vec::as_slice))
+                    .collect();
                 let group = context.plan.group_of(v);
                 let known = group.and_then(|g| tied.get(&g)).into_iter().flatten();
                 let known: Vec<f64> = known.map(|&(_, jump)| jump).collect();
@@ -72,7 +78,7 @@ impl Factors<'_> {
                     }
                 }
             }
-            for &child in children {
+            for &child in children.iter().filter(|child| self.has(**child)) {
                 let x = of_children.remove(&child);
                 carry(context, child, Some(v), x, &mut boundaries, Direction::Down);
             }
@@ -85,6 +91,12 @@ impl Factors<'_> {
         let clusters = self.context.plan.clusters.iter();
         clusters
             .flat_map(|c| self.context.plan.tree.subtree(c.node))
+            .filter(|&v| self.has(v))
             .collect()
+    }
+
+    /// Whether a node is one of those that loads and solutions are of.
+    fn has(&self, v: usize) -> bool {
+        self.only.is_none_or(|only| only[v])
     }
 }

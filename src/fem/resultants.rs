@@ -9,6 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::contact_state::ContactState;
+use super::quantity::{Quantities, QuantityValue};
+use super::stress_intensity::StressIntensity;
 
 /// Part of its cohesion that a point which slips can lack by round-off.
 const ROUND_OFF: f64 = 1e-6;
@@ -193,33 +195,6 @@ pub struct Reaction {
     pub resultant: Resultant,
 }
 
-/// Stress intensity of a crack tip in the plane, after K. σ ≈ K/√(2πr) ahead of it. Both faces may be in contact, with friction,
-/// and under pressure.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StressIntensity {
-    /// Name of the tip: the contact between the faces of its crack, and a number in the order of positions.
-    pub tip: String,
-    /// Tag of its node.
-    pub node: i64,
-    /// Undeformed position (m).
-    pub position: [f64; 3],
-    /// Direction in which the crack would grow straight on.
-    pub direction: [f64; 3],
-    /// K_I, of opening (Pa √m). Below 0 the faces penetrate each other, which contact prevents.
-    #[serde(rename = "k_i")]
-    pub opening: f64,
-    /// K_II, of sliding (Pa √m): positive where what lies to the left of `direction` moves along it.
-    #[serde(rename = "k_ii")]
-    pub sliding: f64,
-    /// Energy that is released by growth straight on (J/m², N/m): J.
-    pub energy_release_rate: f64,
-    /// Radius of the disc that was evaluated (m).
-    pub radius: f64,
-    /// Largest difference of the factors in discs of three quarters and of half the radius, over their size: it shows the error
-    /// of the mesh.
-    pub dependence_on_radius: f64,
-}
-
 /// The resultants of all contacts and supports.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Resultants {
@@ -229,6 +204,12 @@ pub struct Resultants {
     pub reactions: Vec<Reaction>,
     /// Stress intensity of crack tips in the plane; empty where stresses are left out.
     pub crack_tips: Vec<StressIntensity>,
+    /// Quantities that the scene asks for.
+    pub quantities: Vec<QuantityValue>,
+    /// Contact points whose status is about to change, in words: a derivative is the one on the side where it doesn't.
+    pub about_to_change: Vec<String>,
+    /// Why quantities have no derivatives, in words; `null` where they have some.
+    pub without_derivatives: Option<String>,
 }
 
 impl Resultants {
@@ -244,8 +225,15 @@ impl Resultants {
         Self {
             contacts: contacts.collect(),
             reactions,
-            crack_tips: Vec::new(),
+            ..Self::default()
         }
+    }
+
+    /// Puts the quantities of a load step among them.
+    pub fn put(&mut self, quantities: Quantities) {
+        self.quantities = quantities.values;
+        self.about_to_change = quantities.about_to_change;
+        self.without_derivatives = quantities.without_derivatives;
     }
 
     /// Makes them those of forces all around an axis: what isn't along it cancels, and so do moments.

@@ -54,6 +54,22 @@ impl Plan {
         arrived
     }
 
+    /// The nodes of the hierarchy below clusters that have nodes of contact points, and the clusters.
+    pub fn around_contact(&self) -> Vec<bool> {
+        let mut around = vec![false; self.tree.nodes.len()];
+        for link in self.links() {
+            around[link.block] = true;
+        }
+        for cluster in &self.clusters {
+            for v in self.tree.subtree(cluster.node) {
+                let children = &self.tree.nodes[v].children;
+                around[v] |= children.iter().any(|&child| around[child]);
+            }
+            around[cluster.node] = true;
+        }
+        around
+    }
+
     fn links(&self) -> Vec<Link<'_>> {
         let mut links = Vec::new();
         for (group, plan) in self.groups.iter().enumerate() {

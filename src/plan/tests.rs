@@ -43,6 +43,8 @@ fn catalog() -> Catalog {
         groups: vec![2],
         probes: Vec::new(),
         tips: Vec::new(),
+        quantities: Vec::new(),
+        parameters: Vec::new(),
         points: vec![point(5, 6), point(7, 8)],
         point_nodes: vec![vec![free(None); 2], vec![free(Some(2)), free(None)]],
         hierarchy: Hierarchy {

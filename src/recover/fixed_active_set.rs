@@ -52,6 +52,8 @@ pub struct FixedActiveSet<'a> {
     pub root: Option<FixedActiveSetRoot<'a>>,
     /// The fronts above all contact, where they are eliminated for every active set anew.
     pub fronts: Option<ActiveSetOfStep<'a>>,
+    /// The nodes of the hierarchy on which loads act and of which solutions are wanted, as [`Factors`] have them.
+    pub only: Option<&'a [bool]>,
 }
 
 /// The fronts of the active set that was found last, and the limits of every contact group of this rank.
@@ -117,6 +119,7 @@ impl<'a> FixedActiveSet<'a> {
                 moves: false,
             }),
             fronts,
+            only: None,
         }
     }
 
@@ -125,6 +128,7 @@ impl<'a> FixedActiveSet<'a> {
         Factors {
             context: self.context,
             condensed: self.condensed,
+            only: self.only,
         }
     }
 

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
-use crate::fem::resultants::{Reaction, StressIntensity};
+use crate::fem::quantity::Quantities;
+use crate::fem::resultants::Reaction;
 use crate::fem::strain::LargestStrain;
+use crate::fem::stress_intensity::StressIntensity;
 use crate::recover::conditioning::condition_number;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::minimum_norm::{
@@ -40,6 +42,8 @@ pub struct Solution {
     pub reactions: Vec<Reaction>,
     /// Stress intensity of crack tips, where there are stresses; on the root.
     pub stress_intensities: Vec<StressIntensity>,
+    /// The quantities that the scene asks for, once they are evaluated; on the root.
+    pub quantities: Quantities,
     /// The estimate of the mesh's error, where there are stresses; on the root.
     pub estimate: Option<CellError>,
     /// The largest strain of a cell, where there are stresses, and the block that has it; on the root.
@@ -85,6 +89,7 @@ impl Solution {
             stress_intensities: stress_of.map_or_else(Vec::new, |step| {
                 stress_intensities(&fixed.context, blocks, step)
             }),
+            quantities: Quantities::default(),
             estimate: (stress.as_ref()).map(|stress| error_estimate(comm, stress, plan)),
             largest_strain: (stress.as_ref()).map(|stress| largest_strain(comm, stress, plan)),
             discrete,

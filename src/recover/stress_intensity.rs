@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::context::Context;
 use crate::fem::interaction_integral::{Integrals, TipDisc};
-use crate::fem::resultants::StressIntensity;
+use crate::fem::stress_intensity::StressIntensity;
 use crate::recover::BlockSolution;
 
 /// The stress intensity factors of all crack tips in load step `step`, on the root; tips of absent bodies and in materials

@@ -98,6 +98,7 @@ impl RunFiles {
     ) -> Result<Resultants, Failure> {
         let mut resultants = Resultants::new(context.catalog, solution.reactions.clone());
         resultants.crack_tips = solution.stress_intensities.clone();
+        resultants.put(solution.quantities.clone());
         let contacts = &mut resultants.contacts;
         let files = (self.result.as_mut(), self.beside.as_mut());
         write_solution(context, (solution, slips), files, contacts, absent)?;

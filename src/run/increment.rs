@@ -13,6 +13,7 @@ use crate::contact::pair::ContactPair;
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
 use crate::interface::s_con::SCon;
+use crate::recover::adjoint::quantities_at;
 use crate::recover::against_law::names_against_law;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -209,7 +210,8 @@ impl Increments<'_> {
         let fixed = self.fixed(&problem, analysis, &limits, swept.outcome.as_ref());
         let discrete = self.discrete(&mut swept, &fixed, &problem);
         let stress_of = (!self.settings.no_stress).then_some(moment.step);
-        let solution = Solution::new(&fixed, analysis, discrete, stress_of);
+        let mut solution = Solution::new(&fixed, analysis, discrete, stress_of);
+        solution.quantities = quantities_at(moment, &fixed, &solution, &held_at);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
         let scales = self.accept(&mut swept.outcome, &solution, &energy, problem.earlier);
         seconds.add(|s| &mut s.recover, comm.times() - lap);

@@ -39,6 +39,26 @@ name = 'table'
 sides = ['base bottom']
 tresca = 1e5
 obstacle = { point = [0.0, -1e-4], normal = [0.0, 1.0] }
+[[quantity]]
+name = 'corner'
+kind = 'displacement'
+at = [0, 3]
+direction = [1, 1]
+[[quantity]]
+name = 'mean'
+kind = 'mean_stress'
+body = 'middle'
+component = 'xx'
+[[quantity]]
+name = 'mouth'
+kind = 'opening'
+contact = 'matching'
+at = [2, 1]
+[[quantity]]
+name = 'support'
+kind = 'reaction'
+on = 'base left'
+direction = 'x'
 [[step]]
 name = 'half'
 scale = 0.5
@@ -51,7 +71,7 @@ value = 1e6
 ";
 
 /// Three blocks of quadratic cells of all kinds on a table, in matching and mortar contact, two of
-/// three with friction, with supports, forces in two load steps in which a body and a contact come, a hierarchy, settings and a warning.
+/// three with friction, with supports, forces in two load steps in which a body and a contact come, a hierarchy, settings, quantities and a warning.
 pub fn everything() -> Problem {
     let mesh = Blocks::new()
         .rectangle("base", [0.0, 2.0], [0.0, 1.0], [7, 3])

@@ -27,6 +27,7 @@ mod laws;
 mod monolithic;
 mod mortar;
 mod obstacles;
+mod quantities;
 mod redundant;
 mod released_modes;
 mod resultants;

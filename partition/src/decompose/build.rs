@@ -18,6 +18,7 @@ use crate::problem::{
     Absent, Body, Catalog, ContactKind, ContactSummary, InitialStress, InterfaceNode, LoadStep,
     Problem, StepLoads, Subdomain, SubdomainNode, SubdomainSummary,
 };
+use crate::quantity::{LoadForce, NodalShares, NodeWeight};
 
 impl Problem {
     /// Gives every subdomain its slice of `model`.
@@ -79,6 +80,8 @@ impl Problem {
                     ..tip.clone()
                 })
                 .collect(),
+            quantities: model.goals.quantities.clone(),
+            parameters: model.goals.parameters.clone(),
             point_nodes: Vec::new(),
             hierarchy: decomposition.hierarchy.clone(),
             warnings,
@@ -125,6 +128,7 @@ fn cut(
             forces: Vec::new(),
             initial_stress: InitialStress::default(),
             interface: Vec::new(),
+            shares: NodalShares::default(),
             steps: vec![StepLoads::default(); model.steps.len()],
         })
         .collect();
@@ -167,6 +171,7 @@ fn cut(
         subdomains[index as usize].springs.push(spring);
     }
     give_initial_stress(model, decomposition, owners, &mut subdomains);
+    give_shares(&model.goals.shares, owners, &mut subdomains);
     Ok(subdomains)
 }
 
@@ -189,6 +194,27 @@ fn give_loads(model: &Model, owners: &Owners, subdomains: &mut [Subdomain]) {
             for (of_subdomain, step) in subdomain.steps.iter_mut().zip(&model.steps) {
                 of_subdomain.forces.push(step.forces[i]);
             }
+        }
+    }
+}
+
+/// Gives every subdomain the weights and forces at its nodes that no lower one has.
+fn give_shares(all: &NodalShares, owners: &Owners, subdomains: &mut [Subdomain]) {
+    let first = |node: u32| owners.of.of(node as usize).first().copied();
+    for weight in &all.weights {
+        if let Some((owner, node)) = first(weight.node) {
+            let weights = &mut subdomains[owner as usize].shares.weights;
+            weights.push(NodeWeight { node, ..*weight });
+        }
+    }
+    for force in &all.forces {
+        if let Some((owner, node)) = first(force.node) {
+            let forces = force.forces.clone();
+            subdomains[owner as usize].shares.forces.push(LoadForce {
+                node,
+                forces,
+                ..*force
+            });
         }
     }
 }

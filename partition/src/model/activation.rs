@@ -59,7 +59,7 @@ pub(super) fn unload(
 }
 
 /// Nodes of bodies that are `absent`.
-fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
+pub(super) fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
     let mut is_absent = vec![false; bodies.mesh.points.len()];
     for ((_, nodes), body) in bodies.mesh.cells.iter().zip(&bodies.cell_body) {
         if absent.binary_search(body).is_ok() {

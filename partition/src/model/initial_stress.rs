@@ -25,6 +25,8 @@ pub type Stress = [f64; 6];
 pub struct InitialStress {
     /// The mean over every cell; empty where no body of the scene has any.
     pub cells: Vec<Stress>,
+    /// The measure of every cell of a body that has any (m², m³; around an axis that of the ring).
+    pub measures: Vec<f64>,
     /// By node and material, of which each body that has any has one of its own.
     pub nodes: HashMap<(u32, u32), Stress>,
 }
@@ -84,6 +86,7 @@ impl InitialStress {
             return Ok(all);
         }
         all.cells.resize(bodies.mesh.cells.len(), [0.0; 6]);
+        all.measures.resize(bodies.mesh.cells.len(), 0.0);
         for (number, (name, body)) in (0..).zip(&scene.bodies) {
             if !body.has_initial_stress() {
                 continue;
@@ -119,9 +122,10 @@ impl InitialStress {
         body: u32,
         field: &StressField,
         forces: &mut [[f64; 3]],
-    ) -> Result<(), String> {
+    ) -> Result<f64, String> {
         let mesh = &bodies.mesh;
         let mut rules = BTreeMap::new();
+        let mut whole = 0.0;
         for (cell, (kind, nodes)) in mesh.cells.iter().enumerate() {
             if bodies.cell_body[cell] != body {
                 continue;
@@ -156,9 +160,48 @@ impl InitialStress {
                 measure += weight;
             }
             self.cells[cell] = sum.map(|s| s / measure);
+            self.measures[cell] = measure;
+            whole += measure;
         }
-        Ok(())
+        Ok(whole)
     }
+
+    /// The mean over the cells of a body, each with its measure.
+    pub(super) fn mean(&self, bodies: &Bodies, body: u32) -> Stress {
+        let (mut sum, mut whole) = ([0.0; 6], 0.0);
+        for (cell, (stress, measure)) in self.cells.iter().zip(&self.measures).enumerate() {
+            if bodies.cell_body[cell] == body {
+                sum = std::array::from_fn(|k| sum[k] + measure * stress[k]);
+                whole += measure;
+            }
+        }
+        sum.map(|s| if whole > 0.0 { s / whole } else { 0.0 })
+    }
+}
+
+/// (1/V) ∫ Bᵀ σ dx over a body of measure V, node by node: the weights of displacements in the mean of σ·ε.
+///
+/// # Errors
+/// A stress that isn't finite.
+pub(super) fn mean_weights(
+    plane: Option<PlaneState>,
+    bodies: &Bodies,
+    body: u32,
+    stress: Stress,
+) -> Result<Vec<[f64; 3]>, String> {
+    let mut forces = vec![[0.0; 3]; bodies.mesh.points.len()];
+    let mut all = InitialStress {
+        cells: vec![[0.0; 6]; bodies.mesh.cells.len()],
+        measures: vec![0.0; bodies.mesh.cells.len()],
+        nodes: HashMap::new(),
+    };
+    let field = StressField {
+        initial: None,
+        thermal: Some((stress, &Number::Constant(1.0), 1.0)),
+    };
+    let whole = all.add(plane, bodies, body, &field, &mut forces)?;
+    let weights = forces.into_iter().map(|f| f.map(|f| -f / whole));
+    Ok(weights.collect())
 }
 
 /// −C ε_T of an isotropic expansion by `expansion`.

@@ -13,70 +13,106 @@ use crate::magnitude;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-use crate::scene::condition::{Force, ForceAmount};
+use crate::scene::condition::{Force, ForceAmount, Names, Pressure, Traction};
 use crate::scene::loading::Loading;
 use crate::scene::material::PlaneState;
 use crate::scene::number::Vector;
+use crate::scene::step::Scale;
 
 /// Degree of exactness on lines and faces: a cubic pressure along a curved quadratic one times a shape
 /// function and n dS needs 9 and 11.
 const FACET_DEGREES: [usize; 2] = [9, 11];
-/// The nodal forces of a loading of `scene`, node by node, and the initial stress that makes some of them.
+/// A load of a loading.
+pub(super) enum Load<'a> {
+    /// On a body, by its number.
+    Body(u32, &'a Vector),
+    /// A traction.
+    Traction(&'a Traction),
+    /// A pressure.
+    Pressure(&'a Pressure),
+    /// A force on nodes.
+    Force(&'a Force),
+}
+
+/// A scene and its mesh, on which loads act.
+#[derive(Clone, Copy)]
+pub(super) struct Loaded<'a> {
+    pub scene: &'a Scene,
+    pub bodies: &'a Bodies,
+    pub topology: &'a Topology,
+}
+
+/// The loads of a loading of `scene`, each with its name in messages.
+pub(super) fn loads<'a>(scene: &Scene, loading: &Loading<'a>) -> Vec<(String, Load<'a>)> {
+    let bodies = (0..).zip(scene.bodies.keys()).zip(&loading.body_force);
+    let bodies = bodies.filter_map(|((body, name), &force)| {
+        Some((loading.body_force_label(name), Load::Body(body, force?)))
+    });
+    let tractions = loading.traction.iter().enumerate();
+    let tractions =
+        tractions.map(|(i, load)| (loading.traction_label(i, &load.on), Load::Traction(load)));
+    let pressures = loading.pressure.iter().enumerate();
+    let pressures =
+        pressures.map(|(i, load)| (loading.pressure_label(i, &load.on), Load::Pressure(load)));
+    let forces = loading.force.iter().enumerate();
+    let forces = forces.map(|(i, load)| (loading.force_label(i, &load.on), Load::Force(load)));
+    bodies
+        .chain(tractions)
+        .chain(pressures)
+        .chain(forces)
+        .collect()
+}
+
+impl Loaded<'_> {
+    /// Adds the nodal forces of a load, which is called `what` in messages.
+    pub fn add(
+        &self,
+        (what, load): &(String, Load<'_>),
+        scale: &Scale,
+        forces: &mut [[f64; 3]],
+    ) -> Result<(), InputError> {
+        let (mesh, plane) = (&self.bodies.mesh, self.scene.plane);
+        let surface = |on: &Names| -> Result<Surface, InputError> {
+            let facets = groups::facets(mesh, on, what)?;
+            Surface::new(mesh, self.topology, plane, &facets, what)
+        };
+        let added = match load {
+            Load::Body(body, force) => {
+                let factor = scale.body_force;
+                body_force(self.bodies, *body, force, factor, plane, forces)
+            }
+            Load::Traction(traction) => surface_load(&surface(&traction.on)?, forces, |x, area| {
+                let traction = traction.value.at(x)?;
+                Ok(traction.map(|c| scale.traction * c * length(area)))
+            }),
+            Load::Pressure(pressure) => surface_load(&surface(&pressure.on)?, forces, |x, area| {
+                let pressure = scale.pressure * pressure.value.at(x)?;
+                Ok(area.map(|c| -pressure * c))
+            }),
+            Load::Force(force) => {
+                let surface = match groups::are_of_facets(mesh, &force.on) {
+                    true => Some(surface(&force.on)?),
+                    false => None,
+                };
+                let nodes = groups::boundary_nodes(mesh, &force.on, what)?;
+                nodal_forces(mesh, force, scale.force, (nodes, surface), forces)
+            }
+        };
+        added.map_err(InputError::about(what))
+    }
+}
+
+/// The nodal forces of a loading of a scene, node by node, and the initial stress that makes some of them.
 pub(super) fn forces(
-    scene: &Scene,
+    on: Loaded<'_>,
     loading: &Loading,
-    bodies: &Bodies,
-    topology: &Topology,
     materials: &[Material],
 ) -> Result<(Vec<[f64; 3]>, InitialStress), InputError> {
+    let Loaded { scene, bodies, .. } = on;
     let mesh = &bodies.mesh;
-    let scale = &loading.scale;
     let mut forces = vec![[0.0; 3]; mesh.points.len()];
-    for (body, (name, force)) in scene.bodies.keys().zip(&loading.body_force).enumerate() {
-        let Some(force) = force else { continue };
-        let what = loading.body_force_label(name);
-        body_force(
-            bodies,
-            body as u32,
-            force,
-            scale.body_force,
-            scene.plane,
-            &mut forces,
-        )
-        .map_err(InputError::about(&what))?;
-    }
-    for (index, traction) in loading.traction.iter().enumerate() {
-        let what = loading.traction_label(index, &traction.on);
-        let facets = groups::facets(mesh, &traction.on, &what)?;
-        let surface = Surface::new(mesh, topology, scene.plane, &facets, &what)?;
-        surface_load(&surface, &mut forces, |x, area| {
-            let traction = traction.value.at(x)?;
-            Ok(traction.map(|c| scale.traction * c * length(area)))
-        })
-        .map_err(InputError::about(&what))?;
-    }
-    for (index, pressure) in loading.pressure.iter().enumerate() {
-        let what = loading.pressure_label(index, &pressure.on);
-        let facets = groups::facets(mesh, &pressure.on, &what)?;
-        let surface = Surface::new(mesh, topology, scene.plane, &facets, &what)?;
-        surface_load(&surface, &mut forces, |x, area| {
-            let pressure = scale.pressure * pressure.value.at(x)?;
-            Ok(area.map(|c| -pressure * c))
-        })
-        .map_err(InputError::about(&what))?;
-    }
-    for (index, force) in loading.force.iter().enumerate() {
-        let what = loading.force_label(index, &force.on);
-        let surface = match groups::are_of_facets(mesh, &force.on) {
-            true => {
-                let facets = groups::facets(mesh, &force.on, &what)?;
-                Some(Surface::new(mesh, topology, scene.plane, &facets, &what)?)
-            }
-            false => None,
-        };
-        let nodes = groups::boundary_nodes(mesh, &force.on, &what)?;
-        nodal_forces(mesh, force, scale.force, (nodes, surface), &mut forces)
-            .map_err(InputError::about(&what))?;
+    for load in loads(scene, loading) {
+        on.add(&load, &loading.scale, &mut forces)?;
     }
     let initial = InitialStress::new(scene, loading, bodies, materials, &mut forces)?;
     for (force, tag) in forces.iter().zip(&mesh.node_tags) {

@@ -38,6 +38,8 @@ pub(super) struct Loads {
     pub initial_stress: InitialStress,
     /// The steps; none where the scene has none.
     pub steps: Vec<ModelStep>,
+    /// Whether each condition, by its number, decides a part of what another one of another kind prescribes.
+    pub decides: Vec<bool>,
 }
 
 impl Loads {
@@ -50,15 +52,21 @@ impl Loads {
     ) -> Result<Self, InputError> {
         let loadings = scene.loadings();
         let mut all = Vec::with_capacity(loadings.len());
-        let mut names = Vec::new();
+        let (mut names, mut decides) = (Vec::new(), Vec::new());
+        let on = loads::Loaded {
+            scene,
+            bodies,
+            topology,
+        };
         let absent = activation::bodies(scene);
         for (k, loading) in loadings.iter().enumerate() {
             let supports = supports::supports(scene, loading, &bodies.mesh, topology)?;
             if k == 0 {
+                decides = supports.decide(loading.displacement.len());
                 names = supports.names(supports::names(scene, loading, &bodies.mesh));
             }
             let supports = supports.rows;
-            let (forces, initial) = loads::forces(scene, loading, bodies, topology, materials)?;
+            let (forces, initial) = loads::forces(on, loading, materials)?;
             all.push((supports, forces, initial));
             if let (Some(absent), Some(loads)) = (absent.get(k), all.last_mut()) {
                 activation::unload(bodies, absent, loads);
@@ -98,6 +106,7 @@ impl Loads {
             forces,
             supports,
             initial_stress,
+            decides,
         })
     }
 

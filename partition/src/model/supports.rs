@@ -72,6 +72,16 @@ impl Supports {
     }
 }
 
+impl Supports {
+    /// Whether each condition holds a part of one behind the first `displacements`.
+    pub fn decide(&self, displacements: usize) -> Vec<bool> {
+        let others = self.holders.iter().skip(displacements);
+        let held: BTreeSet<usize> = others.flatten().copied().collect();
+        let conditions = 0..self.holders.len();
+        conditions.map(|holder| held.contains(&holder)).collect()
+    }
+}
+
 /// The supports of a loading of `scene`.
 pub(super) fn supports(
     scene: &Scene,

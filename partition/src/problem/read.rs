@@ -6,6 +6,7 @@ mod cells;
 mod contents;
 mod dataset;
 mod entries;
+mod goals;
 mod header;
 mod hierarchy;
 mod materials;

@@ -3,12 +3,14 @@
 //! docs/problem-file.md are made from it.
 
 mod counts;
+mod letters;
 
 use self::Kind::{
     Codes, GroupNames, Indices, Integers, Lines, Names, NotNegative, Numbers, NumbersOrNan,
     Offsets, Positive, Sizes, UnitVectors,
 };
 pub use self::counts::Counts;
+pub use self::letters::LETTERS;
 
 /// Content of a dataset, and the law that each of its values keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,41 +88,6 @@ pub struct Attribute {
     pub value: &'static str,
 }
 
-/// Letters of shapes, and the nouns that they count.
-pub const LETTERS: &[(char, &str)] = &[
-    ('N', "subdomains"),
-    (
-        'P',
-        "points, summed over subdomains (shared nodes counted in each)",
-    ),
-    ('C', "cells"),
-    ('K', "connectivity entries"),
-    ('M', "materials"),
-    ('B', "bodies"),
-    ('T', "nodes of the hierarchy"),
-    ('Z', "clusters"),
-    ('L', "load steps"),
-    ('I', "entries of Γ, summed over subdomains"),
-    ('S', "supports, summed over subdomains"),
-    ('U', "conditions that supports and springs come from"),
-    ('Y', "blocks of springs, summed over subdomains"),
-    ('F', "loaded nodes, summed over subdomains"),
-    ('Q', "contacts"),
-    ('G', "contact groups"),
-    ('R', "contact points"),
-    ('E', "entries of contact points"),
-    ('V', "probes"),
-    ('H', "entries of probes"),
-    ('A', "crack tips"),
-    ('X', "facets of crack faces"),
-    ('W', "warnings"),
-    ('d', "dimensions of space, 2 or 3"),
-    (
-        'v',
-        "components of a strain, 3 in the plane, 4 around an axis, 6 in space",
-    ),
-];
-
 /// Optional datasets of which a file has all or none.
 pub const TOGETHER: [&[&str]; 3] = [
     &["/support/condition", "/support/name"],
@@ -129,7 +96,7 @@ pub const TOGETHER: [&[&str]; 3] = [
 ];
 
 /// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
-pub const MAY_BE_EMPTY: [&str; 8] = [
+pub const MAY_BE_EMPTY: [&str; 12] = [
     "/interface",
     "/support",
     "/spring",
@@ -137,6 +104,10 @@ pub const MAY_BE_EMPTY: [&str; 8] = [
     "/contact",
     "/probe",
     "/tip",
+    "/quantity",
+    "/weight",
+    "/parameter",
+    "/load",
     "/steps",
 ];
 
@@ -309,6 +280,38 @@ pub const FIELDS: &[Field] = &[
         "names of the facet's nodes: the end nearer to the tip, the other end, the node between them or −1"),
     field("/tip/facet_distance", "X, 3", NotNegative,
         "distances of these from the tip [m]; without a node between them the last one isn't used"),
+    field("/quantity/name", "J", Names, "names of quantities that are asked for, each another one"),
+    field("/quantity/kind", "J", Codes("kind of quantity", 8),
+        "0 displacement of a node, 1 mean stress of a body, 2 reaction, 3 force of a contact on side a, 4 its mean pressure, 5 its \
+         largest pressure, 6 gap that is left at one of its points, 7 elastic energy"),
+    field("/quantity/direction", "J, d", Numbers,
+        "direction of a reaction or a contact's force; zeros for the sum of the normal forces, and for other kinds but \
+         displacements, whose direction `/weight` has, too"),
+    field("/quantity/constant", "J, L?", Numbers,
+        "what is added to the sum of weights and displacements, in every load step: the mean of the initial stress"),
+    field("/quantity/node", "J", Integers, "name (`GlobalNodeId`) of the node of a displacement or a gap; −1 for other kinds"),
+    field("/quantity/of_offset", "J + 1", Offsets('D'), "slices of `of`"),
+    field("/quantity/of", "D", Integers,
+        "by kind: 1 the materials of the body; 2 the conditions, indices into `/support/name`; 3 to 5 the contact; 6 the contact and \
+         the point's place in it; none for others"),
+    field("/weight/offset", "N + 1", Offsets('w'), "slices of the datasets below"),
+    field("/weight/quantity", "w", Indices("quantity", 'J'), "index of a quantity of kind 0 or 1"),
+    field("/weight/node", "w", Integers, "node, counted within the subdomain"),
+    field("/weight/value", "w, d", Numbers,
+        "factors of its displacement in the quantity; the parts of several subdomains add up"),
+    field("/parameter/name", "O", Names, "names of parameters, with respect to which quantities have derivatives"),
+    field("/parameter/kind", "O", Codes("kind of parameter", 5),
+        "0 factor of a load, 1 what the stiffness of materials is in proportion to, 2 what is added to the gap of a contact, 3 what is \
+         added to the displacements that a condition prescribes along an axis, 4 coefficient of friction"),
+    field("/parameter/value", "O", NumbersOrNan, "its value; NaN where it isn't the same everywhere"),
+    field("/parameter/of_offset", "O + 1", Offsets('p'), "slices of `of`"),
+    field("/parameter/of", "p", Integers,
+        "by kind: 1 the materials; 2 and 4 the contact; 3 the condition, an index into `/support/name`, and the axis, 0 to 2"),
+    field("/load/offset", "N + 1", Offsets('f'), "slices of the datasets below"),
+    field("/load/parameter", "f", Indices("parameter", 'O'), "index of a parameter of kind 0"),
+    field("/load/node", "f", Integers, "node, counted within the subdomain"),
+    field("/load/force", "f, L?, d", Numbers,
+        "nodal force of that load alone [N], in every load step; it is a part of `/force`"),
     optional("/warnings", "W", Lines, "repeated in the solver's report"),
 ];
 

@@ -4,13 +4,16 @@ use std::path::Path;
 
 use hdf5::H5Type;
 use hdf5::plist::file_access::LibraryVersion;
-use hdf5::types::TypeDescriptor;
 use toml::Value;
 
+use super::datasets::{Datasets, group, without_nul};
+use super::goals;
 use super::law::LawRow;
-use super::schema::{Counts, FIELDS};
+use super::schema::Counts;
 use super::strings::{type_of, write_strings};
-use super::{FORMAT, InitialStress, Problem, Subdomain, SubdomainNode, VERSION, digest, vtkhdf};
+use super::{
+    FORMAT, InitialStress, Problem, Subdomain, SubdomainNode, VERSION, digest, tips, vtkhdf,
+};
 use crate::contact_point::{ContactPoint, Law};
 use crate::destination::Destination;
 use crate::error::OutputError;
@@ -55,8 +58,9 @@ impl Problem {
             self.write_probes(&mut datasets)?;
         }
         if !self.catalog.tips.is_empty() {
-            self.write_tips(&mut datasets)?;
+            tips::write(&self.catalog.tips, &mut datasets)?;
         }
+        goals::write(self, &mut datasets)?;
         vtkhdf::mark(&file.group("VTKHDF")?)?;
         file.flush()?;
         file.close()
@@ -230,22 +234,6 @@ impl Problem {
         datasets.entries("/probe", probes().map(|p| &p.entries))
     }
 
-    fn write_tips(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
-        let tips = || self.catalog.tips.iter();
-        datasets.strings("/tip/name", tips().map(|tip| tip.name.as_str()))?;
-        datasets.put("/tip/node", tips().map(|tip| tip.tag))?;
-        datasets.integers("/tip/body", tips().map(|tip| tip.body))?;
-        datasets.integers("/tip/material", tips().map(|tip| tip.material))?;
-        datasets.vectors("/tip/position", tips().map(|tip| &tip.position))?;
-        datasets.vectors("/tip/direction", tips().map(|tip| &tip.direction))?;
-        datasets.put("/tip/radius", tips().map(|tip| tip.radius))?;
-        datasets.offsets("/tip/facet_offset", tips().map(|tip| tip.facets.len()))?;
-        let facets = || tips().flat_map(|tip| &tip.facets);
-        datasets.integers("/tip/facet_face", facets().map(|facet| facet.is_upper))?;
-        datasets.put("/tip/facet_node", facets().flat_map(|facet| facet.nodes))?;
-        datasets.put("/tip/facet_distance", facets().flat_map(|f| f.distances))
-    }
-
     fn write_contacts(&self, datasets: &mut Datasets) -> hdf5::Result<()> {
         let names = self.catalog.contacts.iter().map(|c| c.name.as_str());
         datasets.strings("/contact/name", names)?;
@@ -282,129 +270,6 @@ impl Problem {
     }
 }
 
-/// The datasets of a file in the making.
-struct Datasets<'a> {
-    file: &'a hdf5::File,
-    counts: Counts,
-}
-
-impl Datasets<'_> {
-    /// Writes values row by row, in the shape that the schema says.
-    fn put<T: H5Type>(&mut self, path: &str, values: impl Iterator<Item = T>) -> hdf5::Result<()> {
-        let values: Vec<T> = values.collect();
-        let dataset = self.create(path, &T::type_descriptor(), values.len())?;
-        match values.is_empty() {
-            true => Ok(()),
-            false => dataset.write_raw(&values),
-        }
-    }
-
-    /// Makes a dataset for so many values of a type, in the shape that the schema says.
-    fn create(
-        &mut self,
-        path: &str,
-        of: &TypeDescriptor,
-        values: usize,
-    ) -> hdf5::Result<hdf5::Dataset> {
-        let field = FIELDS.iter().find(|field| field.path == path);
-        let field = field.ok_or_else(|| format!("the schema has no {path}"))?;
-        let mut shape = self.counts.shape(field);
-        shape[0] = values / shape[1..].iter().product::<usize>();
-        (self.counts.learn(field, &shape))
-            .map_err(|expected| format!("{path} has shape {shape:?}; expected {expected}"))?;
-        group(self.file, field.group())?;
-        let new = self.file.new_dataset_builder().empty_as(of);
-        new.shape(shape).create(path)
-    }
-
-    /// Writes which of `count` things are there, row by row; nothing if none is ever `absent`.
-    fn presence<'v>(
-        &mut self,
-        path: &str,
-        count: usize,
-        absent: impl Iterator<Item = &'v Vec<u32>> + Clone,
-    ) -> hdf5::Result<()> {
-        if absent.clone().all(Vec::is_empty) {
-            return Ok(());
-        }
-        let of_row = |absent: &'v Vec<u32>| {
-            (0..count as u32).map(move |number| i64::from(!absent.contains(&number)))
-        };
-        self.put(path, absent.flat_map(of_row))
-    }
-
-    /// Writes vectors, of which as many components are kept as the shape has.
-    fn vectors<'v>(
-        &mut self,
-        path: &str,
-        vectors: impl Iterator<Item = &'v [f64; 3]>,
-    ) -> hdf5::Result<()> {
-        let width = match path {
-            "/VTKHDF/Points" => 3,
-            _ => self.counts.of('d'),
-        };
-        self.put(path, vectors.flat_map(|v| &v[..width]).copied())
-    }
-
-    fn offsets(&mut self, path: &str, counts: impl Iterator<Item = usize>) -> hdf5::Result<()> {
-        let mut end = 0;
-        let ends = counts.map(|count| {
-            end += count as i64;
-            end
-        });
-        self.put(path, std::iter::once(0).chain(ends))
-    }
-
-    /// Writes nodes with weights of a `group`, point by point.
-    fn entries<'v>(
-        &mut self,
-        group: &str,
-        points: impl Iterator<Item = &'v Vec<(SubdomainNode, f64)>> + Clone,
-    ) -> hdf5::Result<()> {
-        let path = |name: &str| format!("{group}/entry_{name}");
-        self.offsets(&path("offset"), points.clone().map(Vec::len))?;
-        let all = points.flatten();
-        let nodes = || all.clone().map(|(node, _)| node);
-        self.integers(&path("subdomain"), nodes().map(|node| node.subdomain))?;
-        self.integers(&path("node"), nodes().map(|node| node.node))?;
-        self.put(&path("weight"), all.clone().map(|&(_, weight)| weight))
-    }
-
-    fn integers<T: Into<i64>>(
-        &mut self,
-        path: &str,
-        values: impl Iterator<Item = T>,
-    ) -> hdf5::Result<()> {
-        self.put(path, values.map(Into::into))
-    }
-
-    fn strings<'v>(
-        &mut self,
-        path: &str,
-        strings: impl Iterator<Item = &'v str>,
-    ) -> hdf5::Result<()> {
-        let texts: Vec<String> = strings.map(without_nul).collect();
-        let dataset = self.create(path, &type_of(&texts), texts.len())?;
-        write_strings(&dataset, &texts)
-    }
-}
-
-/// A group at a path, made with all above it that aren't there: without the time, so that the same problem is the same
-/// file whenever it is written.
-fn group(file: &hdf5::File, path: &str) -> hdf5::Result<hdf5::Group> {
-    let mut group = file.group("/")?;
-    for name in path.split('/').filter(|name| !name.is_empty()) {
-        group = match group.link_exists(name) {
-            true => group.group(name)?,
-            false => {
-                let new = group.create_group_builder().obj_track_times(false);
-                new.create(name)?
-            }
-        };
-    }
-    Ok(group)
-}
-
 fn text(group: &hdf5::Group, name: &str, value: &str) -> hdf5::Result<()> {
     let text = [without_nul(value)];
     let new = group.new_attr_builder().empty_as(type_of(&text));
@@ -414,9 +279,4 @@ fn text(group: &hdf5::Group, name: &str, value: &str) -> hdf5::Result<()> {
 
 fn attribute<T: H5Type>(group: &hdf5::Group, name: &str, value: T) -> hdf5::Result<()> {
     group.new_attr::<T>().create(name)?.write_scalar(&value)
-}
-
-/// HDF5's strings end at the first NUL.
-fn without_nul(text: &str) -> String {
-    text.replace('\0', "\u{fffd}")
 }

@@ -38,6 +38,7 @@ impl Scene {
             .or_else(|| self.unknown_material())
             .or_else(|| self.repeated_contact())
             .or_else(|| self.unknown_body())
+            .or_else(|| self.repeated_quantity())
             .or_else(|| self.plane.and_then(|_| self.wrong_dimension(2)))
             .or_else(|| self.wrong_step())
             .or_else(|| self.wrong_change())
@@ -81,6 +82,26 @@ impl Scene {
                 let message = format!("{of}[{}] has the name '{name}' already", first + 1);
                 return Some((entry(list, index, "name"), message));
             }
+        }
+        None
+    }
+
+    /// A quantity whose name is none, or that of another one.
+    fn repeated_quantity(&self) -> Option<Fault> {
+        let mut seen = HashMap::new();
+        for (index, quantity) in self.quantity.iter().enumerate() {
+            let wrong = match (
+                name::check(&quantity.name),
+                seen.insert(&quantity.name, index),
+            ) {
+                (Err(reason), _) => format!("'{}' {reason}", name::shown(&quantity.name)),
+                (_, Some(first)) => {
+                    let name = &quantity.name;
+                    format!("quantity[{}] has the name '{name}' already", first + 1)
+                }
+                _ => continue,
+            };
+            return Some((entry("quantity", index, "name"), wrong));
         }
         None
     }
@@ -176,6 +197,11 @@ impl Scene {
             let is_wrong = dim == 2 && equation.terms.iter().any(|t| t.component == Component::Z);
             let fault = is_wrong.then(|| format!("a plane scene has no 'z'{OR_IN_SPACE}"));
             check(entry("equation", index, "terms"), fault);
+        }
+        for (index, quantity) in self.quantity.iter().enumerate() {
+            if let Some((key, fault)) = quantity.fault(dim) {
+                check(entry("quantity", index, key), Some(fault));
+            }
         }
         self.wrong_contacts(dim, &mut check);
         found.into_iter().next()

@@ -15,6 +15,9 @@ use contact_dd_partition::example;
 use contact_dd_partition::model::{InitialStress, Model, ModelStep};
 use contact_dd_partition::problem::Problem;
 use contact_dd_partition::problem::read::ProblemFile;
+use contact_dd_partition::quantity::{
+    Goals, LoadForce, NodalShares, NodeWeight, Parameter, ParameterKind, Quantity, QuantityKind,
+};
 use contact_dd_partition::scene::Scene;
 
 /// A decomposition by columns of the lattice, two for every block.
@@ -76,6 +79,60 @@ fn with_steps(model: &Model) -> Model {
     model
 }
 
+/// The model with a quantity and a parameter of some kinds, and parts of nodes in them.
+fn with_goals(model: &Model) -> Model {
+    let steps = model.steps.len().max(1);
+    let quantity = |kind, of: &[u32], node| Quantity {
+        name: format!("{kind:?}"),
+        kind,
+        direction: [0.6, -0.8, 0.0],
+        constants: (0..steps).map(|k| 0.5 * k as f64).collect(),
+        of: of.to_vec(),
+        node,
+    };
+    let parameter = |kind, of: &[u32]| Parameter {
+        name: format!("{kind:?}"),
+        kind,
+        value: 2.5,
+        of: of.to_vec(),
+    };
+    let loaded = model.forces.iter().map(|&(node, force)| LoadForce {
+        parameter: 0,
+        node,
+        forces: (0..steps)
+            .map(|k| force.map(|f| f * (1.0 + k as f64)))
+            .collect(),
+    });
+    let weights = [0, 7, 12].map(|node| NodeWeight {
+        quantity: node % 2,
+        node,
+        value: [f64::from(node), 1.0, 0.0],
+    });
+    let goals = Goals {
+        quantities: vec![
+            quantity(QuantityKind::Displacement, &[], 7),
+            quantity(QuantityKind::MeanStress, &[0, 1], -1),
+            quantity(QuantityKind::Reaction, &[1], -1),
+            quantity(QuantityKind::Opening, &[1, 3], 10),
+            quantity(QuantityKind::Energy, &[], -1),
+        ],
+        parameters: vec![
+            parameter(ParameterKind::Load, &[]),
+            parameter(ParameterKind::Stiffness, &[0, 1]),
+            parameter(ParameterKind::Gap, &[1]),
+            parameter(ParameterKind::Displacement, &[1, 0]),
+        ],
+        shares: NodalShares {
+            weights: weights.into(),
+            forces: loaded.collect(),
+        },
+    };
+    Model {
+        goals,
+        ..model.clone()
+    }
+}
+
 #[test]
 fn a_step_gives_supports_and_forces_its_values() {
     let folder = tempfile::tempdir().unwrap();
@@ -114,6 +171,8 @@ fn what_is_written_is_read() {
         (&stack, &halves(&stack, 3.0)),
         (&in_steps, &halves(&stack, 3.0)),
         (&rough, &halves(&stack, 3.0)),
+        (&with_goals(&rough), &halves(&stack, 3.0)),
+        (&with_goals(&in_steps), &halves(&stack, 3.0)),
     ] {
         let problem = Problem::new(model, decomposition).unwrap();
         assert_eq!(written(&problem, folder.path()).problem().unwrap(), problem);

@@ -12,6 +12,7 @@ use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::model::{Contact, InitialStress, Material, Model, PlaneState, Support};
+use contact_dd_partition::quantity::Goals;
 use contact_dd_partition::scene::units::Units;
 use contact_dd_partition::solver::SolverSettings;
 
@@ -125,6 +126,7 @@ impl Builder {
             steps: Vec::new(),
             contacts: self.contacts,
             tips: Vec::new(),
+            goals: Goals::default(),
             found: Vec::new(),
             prescribed_subdomains: None,
             warnings: vec!["something".into()],

@@ -62,8 +62,8 @@ def page(result, coarser=()):
             opening.title_of(report, result, problem_of(report)), bodies(result),
             opening.sentences(report, result, units), opening.warnings(report), opening.cards(report),
             steps(report, units), contacts(report, sides_of(result), units), convergence(report, result.convergence),
-            certificate(report), reactions(report, units), tips(report, units), bars([*coarser, result]), ranks(report),
-            rest(report),
+            certificate(report), reactions(report, units), tips(report, units), quantities(report, units),
+            bars([*coarser, result]), ranks(report), rest(report),
         ]
     title = escape(result.title or problem_of(report))
     return (
@@ -334,6 +334,36 @@ def tips(report, units):
     )
     rows = table(["crack tip", "K_I", "K_II", "J", "by the disc"], rows, numbers=(1, 2, 3, 4))
     return section("Stress intensity", rows, more(found, ""), f"<p><small>{words}</small></p>")
+
+
+def quantities(report, units):
+    found = report.get("quantities")
+    if not found:
+        return ""
+    rows = [[one["name"], si(one["value"], units.of_quantity(one["kind"]), 5), *most(one)] for one in found[:MOST_ROWS]]
+    words = (
+        "The parameter that changes a quantity most when it rises by its own size, and by how much of the quantity; "
+        "the report has all derivatives."
+    )
+    if report.get("without_derivatives"):
+        words = f"There are no derivatives: {report['without_derivatives']}."
+    elif report.get("about_to_change"):
+        words += f" They hold on one side: {'; '.join(report['about_to_change'])} is about to change its status."
+    rows = table(["quantity", "", "depends most on", "by"], rows, numbers=(1, 3))
+    return section("Quantities", rows, more(found, ""), f"<p><small>{escape(words)}</small></p>")
+
+
+def most(quantity):
+    """The parameter, of those that have a size of their own, that changes a quantity most, and by what part."""
+    shares = [
+        (one["derivative"] * one["at"] / quantity["value"], one["parameter"])
+        for one in quantity["derivatives"]
+        if one["at"] and one["derivative"] and quantity["value"]
+    ]
+    if not shares:
+        return ["–", "–"]
+    share, name = max(shares, key=lambda one: abs(one[0]))
+    return [name, f"{100 * share:+.3g} %"]
 
 
 def bars(results):

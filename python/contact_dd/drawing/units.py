@@ -15,6 +15,14 @@ class Units:
     force: str = "N/m"
     work: str = "J/m"
 
+    def of_quantity(self, kind):
+        """Of a quantity of a scene."""
+        if kind in ("displacement", "opening"):
+            return self.length
+        if kind in ("reaction", "contact_force"):
+            return self.force
+        return self.work if kind == "energy" else self.stress
+
 
 KNOWN = {"m": Units(), "mm": Units("mm", "MPa", "N/mm")}
 

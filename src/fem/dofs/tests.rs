@@ -3,6 +3,7 @@ use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::model::Support;
 use contact_dd_partition::problem::{InitialStress, InterfaceNode, Subdomain};
+use contact_dd_partition::quantity::NodalShares;
 
 use super::super::block::Block;
 use super::super::prescribed::Prescribed;
@@ -26,6 +27,7 @@ fn square() -> Subdomain {
         forces: Vec::new(),
         initial_stress: InitialStress::default(),
         interface: Vec::new(),
+        shares: NodalShares::default(),
         steps: Vec::new(),
     }
 }

@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use contact_dd_partition::crack_tip::FaceFacet;
 use contact_dd_partition::element::Elements;
 use contact_dd_partition::problem::Subdomain;
+use contact_dd_partition::quantity::NodalShares;
 use nalgebra::Vector2;
 
 use super::*;
@@ -75,6 +76,7 @@ fn block(tip: &CrackTip) -> Block {
             forces: Vec::new(),
             initial_stress: InitialStress::default(),
             interface: Vec::new(),
+            shares: NodalShares::default(),
             steps: Vec::new(),
         },
         interface: Vec::new(),

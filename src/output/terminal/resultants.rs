@@ -2,7 +2,9 @@
 
 use contact_dd_partition::scene::units::Units;
 
-use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants, StressIntensity};
+use crate::fem::quantity::QuantityValue;
+use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants};
+use crate::fem::stress_intensity::StressIntensity;
 
 /// Most lines that are printed of a table; the report has all.
 const LINES: usize = 12;
@@ -13,6 +15,8 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
         contacts,
         reactions,
         crack_tips,
+        quantities,
+        ..
     } = resultants;
     let title = "contact, on side a";
     let names = (contacts.iter().map(|c| c.name.as_str()))
@@ -64,6 +68,7 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
     );
     lines.extend(table(head, reactions, support));
     lines.extend(tips(crack_tips, units));
+    lines.extend(of_quantities(quantities, units, dim));
     lines
 }
 
@@ -87,6 +92,32 @@ fn tips(tips: &[StressIntensity], units: Units) -> Vec<String> {
             tip.energy_release_rate,
             100.0 * tip.dependence_on_radius
         )
+    })
+}
+
+/// The quantities that the scene asks for, and the parameter that changes each most, in proportion to its own value.
+fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<String> {
+    let title = "quantity";
+    let names = quantities.iter().map(|of| of.name.chars().count());
+    let width = names.max().unwrap_or(0).max(title.len());
+    let head = format!("{title:<width$} {:>14} {:<6} % per % of", "", "");
+    table(head, quantities, |of| {
+        let unit = match &of.kind[..] {
+            "displacement" | "opening" => units.length(),
+            "reaction" | "contact_force" => units.force(dim),
+            "energy" => units.work(dim),
+            _ => units.stress(),
+        };
+        // Of the parameters that have a size of their own.
+        let shares = of.derivatives.iter().filter_map(|one| {
+            let share = one.derivative * one.at? / of.value;
+            (share.is_finite() && share != 0.0).then_some((share, &one.parameter))
+        });
+        let most = shares.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        let most = most.map_or(String::new(), |(share, name)| {
+            format!(" {share:+.3} {name}")
+        });
+        format!("{:<width$} {:>14.6e} {unit:<6}{most}", of.name, of.value)
     })
 }
 

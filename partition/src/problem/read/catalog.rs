@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::contents::Contents;
 use super::header::Header;
-use super::{hierarchy, materials, points, probes, settings, tips};
+use super::{goals, hierarchy, materials, points, probes, settings, tips};
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::problem::{
@@ -48,6 +48,8 @@ pub(super) fn read(
         points,
         probes,
         tips: tips::read(contents)?,
+        quantities: goals::quantities(contents)?,
+        parameters: goals::parameters(contents)?,
         point_nodes,
         hierarchy: Hierarchy::default(),
         solver: settings::read(file)?,

@@ -1,7 +1,8 @@
 //! The cells of a subdomain, checked one by one and between each other.
 
 use super::ProblemFile;
-use super::subdomain::{NODE, Slices};
+use super::slice::NODE;
+use super::subdomain::Slices;
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;

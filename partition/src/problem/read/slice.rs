@@ -8,6 +8,9 @@ use crate::magnitude;
 use crate::problem::UNIT_TOLERANCE;
 use crate::problem::schema::Kind;
 
+/// Name of indices of nodes in messages.
+pub(super) const NODE: &str = "node of its subdomain";
+
 /// Consecutive rows of a dataset; rows are counted as in the dataset.
 pub(super) struct Slice<T> {
     name: &'static str,

@@ -4,14 +4,12 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ProblemFile;
-use super::slice::Slice;
+use super::goals::ShareSlices;
+use super::slice::{NODE, Slice};
 use crate::element::geometry::{dot, padded};
 use crate::error::InputError;
 use crate::model::{PlaneState, Support};
 use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
-
-/// Name of indices of nodes in messages.
-pub(super) const NODE: &str = "node of its subdomain";
 
 /// The datasets of consecutive subdomains, each value by itself as the schema says.
 pub(super) struct Slices {
@@ -35,6 +33,7 @@ pub(super) struct Slices {
     /// Absent where no cell has any.
     pub(super) stress_of_cells: Slice<f64>,
     pub(super) stress_of_nodes: Slice<f64>,
+    shares: ShareSlices,
 }
 
 impl Slices {
@@ -66,6 +65,7 @@ impl Slices {
             spring_conditions: contents.integers("/spring/condition", rows('Y'))?,
             force_nodes: contents.integers("/force/node", forces.clone())?,
             force_values: contents.numbers("/force/value", forces)?,
+            shares: ShareSlices::read(contents, subdomains)?,
         })
     }
 }
@@ -103,6 +103,11 @@ impl ProblemFile {
             forces: self.take_forces(slices, index, points.len())?,
             initial_stress: self.take_stress(slices, index, 0),
             interface: self.take_interface(slices, index)?,
+            shares: (slices.shares).take(
+                &self.contents,
+                index,
+                (points.len(), self.catalog.dim),
+            )?,
             steps: self.take_steps(slices, index),
             points,
         })

@@ -1,0 +1,273 @@
+//! Quantities: what those of a scene are on its mesh.
+
+use super::bodies::Bodies;
+use super::initial_stress::{InitialStress, mean_weights};
+use super::{Contact, Material, PlaneState};
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::{difference, length};
+use crate::error::InputError;
+use crate::mesh::bounding_box::BoundingBox;
+use crate::quantity::{NodeWeight, Quantity, QuantityKind};
+use crate::scene::Scene;
+use crate::scene::number::ConstantVector;
+use crate::scene::quantity::{self, Place, Target};
+use crate::scene::suggest::hint_and_known;
+
+/// Distance of two nodes at one place, relative to the extent of the mesh.
+const SAME: f64 = 1e-9;
+
+/// What quantities are looked for in.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub scene: &'a Scene,
+    pub bodies: &'a Bodies,
+    pub materials: &'a [Material],
+    pub contacts: &'a [Contact],
+    /// The names of supports, behind which those of springs come.
+    pub supports: &'a [String],
+    /// The initial stress in every load step.
+    pub initial: &'a [&'a InitialStress],
+}
+
+/// The quantities of a scene, and the weights of nodes in them.
+///
+/// # Errors
+/// A name that isn't there, with those that are; a node that isn't the only one at its place.
+pub(super) fn quantities(known: Known<'_>) -> Result<(Vec<Quantity>, Vec<NodeWeight>), InputError> {
+    let (mut all, mut weights) = (Vec::new(), Vec::new());
+    for (number, asked) in (0..).zip(&known.scene.quantity) {
+        let what = format!("quantity '{}'", asked.name);
+        let (quantity, of_nodes) = known.quantity(asked).map_err(InputError::about(&what))?;
+        let of_nodes = of_nodes.into_iter().filter(|(_, value)| *value != [0.0; 3]);
+        weights.extend(of_nodes.map(|(node, value)| NodeWeight {
+            quantity: number,
+            node,
+            value,
+        }));
+        all.push(quantity);
+    }
+    Ok((all, weights))
+}
+
+/// Nodes and the weights of their displacements.
+type Weights = Vec<(u32, [f64; 3])>;
+
+impl Known<'_> {
+    fn quantity(&self, asked: &quantity::Quantity) -> Result<(Quantity, Weights), String> {
+        let mut quantity = Quantity {
+            name: asked.name.clone(),
+            kind: QuantityKind::Energy,
+            direction: [0.0; 3],
+            constants: vec![0.0; self.initial.len()],
+            of: Vec::new(),
+            node: -1,
+        };
+        let mut weights = Vec::new();
+        match &asked.of {
+            Target::Displacement { at, along } => {
+                quantity.kind = QuantityKind::Displacement;
+                let node = self.node(at)?;
+                quantity.node = self.bodies.mesh.node_tags[node as usize];
+                quantity.direction = along.value;
+                weights.push((node, along.value));
+            }
+            Target::MeanStress { body, component } => {
+                quantity.kind = QuantityKind::MeanStress;
+                weights = self.mean_stress(body, *component as usize, &mut quantity)?;
+            }
+            Target::Reaction { on, along } => {
+                quantity.kind = QuantityKind::Reaction;
+                quantity.direction = self.of_force(along)?;
+                quantity.of = self.conditions(on)?;
+            }
+            Target::ContactForce { contact, along } => {
+                quantity.kind = QuantityKind::ContactForce;
+                let along = along.as_ref().map(|along| self.of_force(along));
+                quantity.direction = along.transpose()?.unwrap_or_default();
+                quantity.of = vec![self.contact(contact, true)?.0];
+            }
+            Target::Pressure { contact, kind } => {
+                quantity.kind = *kind;
+                quantity.of = vec![self.contact(contact, false)?.0];
+            }
+            Target::Opening { contact, at } => {
+                quantity.kind = QuantityKind::Opening;
+                let (number, points) = self.contact(contact, false)?;
+                let point = self.point(points, at)?;
+                quantity.node = point.tag();
+                quantity.of = vec![number, point.place];
+            }
+            Target::Energy => {}
+        }
+        Ok((quantity, weights))
+    }
+
+    /// The direction of a force; around an axis that along the axis.
+    fn of_force(&self, along: &ConstantVector) -> Result<[f64; 3], String> {
+        let is_ring = self.scene.plane == Some(PlaneState::Axisymmetric);
+        match is_ring && along.value[0] != 0.0 {
+            true => Err(
+                "around an axis the sum of forces is one along it; expected direction = \"y\""
+                    .into(),
+            ),
+            false => Ok(along.value),
+        }
+    }
+
+    /// The node of the mesh at a place.
+    fn node(&self, place: &Place) -> Result<u32, String> {
+        let mesh = &self.bodies.mesh;
+        let point = match place {
+            Place::Node(tag) => {
+                let place = mesh.node_tags.iter().position(|of| of == tag);
+                return (place.map(|node| node as u32))
+                    .ok_or_else(|| format!("no body has a node {tag}"));
+            }
+            Place::Point(point) => point.value,
+        };
+        let away = |x: &[f64; 3]| length(difference(*x, point));
+        let least = mesh.points.iter().map(away).fold(f64::INFINITY, f64::min);
+        let slack = SAME * BoundingBox::around(&mesh.points).extent();
+        let near = mesh.points.iter().zip(&mesh.node_tags).enumerate();
+        let near: Vec<(usize, i64)> = near
+            .filter(|(_, (x, _))| away(x) <= least + slack)
+            .map(|(node, (_, tag))| (node, *tag))
+            .collect();
+        match near[..] {
+            [(node, _)] => Ok(node as u32),
+            [(_, first), (_, second), ..] => Err(format!(
+                "the nodes {first} and {second} are both the nearest to 'at'; expected 'node', the tag of one"
+            )),
+            [] => Err("the mesh has no nodes".into()),
+        }
+    }
+
+    /// The point of a contact at a place.
+    fn point<'p>(
+        &self,
+        points: &'p [ContactPoint<u32>],
+        place: &Place,
+    ) -> Result<&'p ContactPoint<u32>, String> {
+        let found = match place {
+            Place::Node(tag) => points
+                .iter()
+                .find(|point| point.tag_a == *tag || point.tag_b == *tag),
+            Place::Point(at) => points.iter().min_by(|a, b| {
+                let away = |p: &ContactPoint<u32>| length(difference(p.position, at.value));
+                away(a).total_cmp(&away(b))
+            }),
+        };
+        found.ok_or_else(|| "the contact has no condition at that node".into())
+    }
+
+    /// The number and the points of a contact, or of a tie as well.
+    fn contact(&self, name: &str, or_tie: bool) -> Result<(u32, &[ContactPoint<u32>]), String> {
+        let fits = |contact: &Contact| {
+            let first = contact.points.first();
+            first.is_some_and(|point| or_tie || !point.law.is_tied())
+        };
+        let mut fitting = (0..)
+            .zip(self.contacts)
+            .filter(|(_, contact)| fits(contact));
+        if let Some((number, contact)) = fitting.clone().find(|(_, of)| of.name == name) {
+            return Ok((number, &contact.points));
+        }
+        let known = fitting.by_ref().map(|(_, contact)| contact.name.as_str());
+        let known: Vec<&str> = known.collect();
+        Err(match known.is_empty() {
+            true => format!("there is no contact '{name}'; the scene has none with conditions"),
+            false => format!(
+                "there is no contact '{name}'{}",
+                hint_and_known(name, known)
+            ),
+        })
+    }
+
+    /// The numbers of the supports and springs on a group.
+    fn conditions(&self, on: &str) -> Result<Vec<u32>, String> {
+        let scene = self.scene;
+        let loadings = scene.loadings();
+        let displacements = loadings.first().map_or(&[][..], |of| of.displacement);
+        let rest = self.supports.len() - displacements.len() - scene.bilateral.len();
+        let rest = rest - scene.spring.len();
+        let names = (displacements.iter().map(|of| Some(&of.on)))
+            .chain(scene.bilateral.iter().map(|of| Some(&of.on)))
+            .chain(std::iter::repeat_n(None, rest))
+            .chain(scene.spring.iter().map(|of| Some(&of.on)));
+        let groups = || {
+            names
+                .clone()
+                .map(|of| of.into_iter().flat_map(|of| of.iter()))
+        };
+        let found = (0..).zip(groups());
+        let found =
+            found.filter_map(|(number, mut groups)| groups.any(|of| of == on).then_some(number));
+        let found: Vec<u32> = found.collect();
+        if !found.is_empty() {
+            return Ok(found);
+        }
+        let mut known: Vec<&str> = groups().flatten().collect();
+        known.sort_unstable();
+        known.dedup();
+        Err(match known.is_empty() {
+            true => format!("nothing holds '{on}': the scene has no supports"),
+            false => format!("no support is on '{on}'{}", hint_and_known(on, known)),
+        })
+    }
+
+    /// The weights of nodes in the mean of a component of the stress of a body.
+    fn mean_stress(
+        &self,
+        name: &str,
+        component: usize,
+        quantity: &mut Quantity,
+    ) -> Result<Weights, String> {
+        let bodies = self.bodies;
+        let mut keys = (0..).zip(self.scene.bodies.keys());
+        let Some((body, _)) = keys.find(|(_, of)| *of == name) else {
+            let known = self.scene.bodies.keys().map(String::as_str);
+            return Err(format!(
+                "there is no body '{name}'{}",
+                hint_and_known(name, known)
+            ));
+        };
+        let of_cells = bodies.cell_body.iter().zip(&bodies.cell_material);
+        let of_body = of_cells
+            .filter(|(of, _)| **of == body)
+            .map(|(_, material)| *material);
+        quantity.of = of_body.collect();
+        quantity.of.sort_unstable();
+        quantity.of.dedup();
+        let Some(&material) = quantity.of.first() else {
+            return Err(format!("the body '{name}' has no cells"));
+        };
+        let stress = row(&self.materials[material as usize], component).ok_or(
+            "σ_zz isn't known; expected a material of 'young' and 'poisson', or with 'out_of_plane'",
+        )?;
+        let initial = self.initial.iter();
+        quantity.constants = initial.map(|of| of.mean(bodies, body)[component]).collect();
+        let weights = mean_weights(self.scene.plane, bodies, body, stress)?;
+        Ok((0..).zip(weights).collect())
+    }
+}
+
+/// The stress that does the work of strains which is a component of their stress: its row of C, in the order of results.
+fn row(material: &Material, component: usize) -> Option<[f64; 6]> {
+    let c = &material.stiffness;
+    let of_row = |row: &[f64]| match *row {
+        [xx, yy, xy] => [xx, yy, 0.0, xy, 0.0, 0.0],
+        [xx, yy, zz, xy] => [xx, yy, zz, xy, 0.0, 0.0],
+        [xx, yy, zz, yz, xz, xy] => [xx, yy, zz, xy, yz, xz],
+        _ => [0.0; 6],
+    };
+    let places: &[usize] = match c.size() {
+        3 => &[0, 1, usize::MAX, 2],
+        4 => &[0, 1, 2, 3],
+        _ => &[0, 1, 2, 5, 3, 4],
+    };
+    match places.get(component) {
+        Some(&usize::MAX) => material.out_of_plane.map(|row| of_row(&row)),
+        Some(&place) => Some(of_row(&c[place])),
+        None => Some([0.0; 6]),
+    }
+}

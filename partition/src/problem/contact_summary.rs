@@ -1,0 +1,48 @@
+//! The contacts of a scene in the catalog.
+
+use crate::contact_point::ContactPoint;
+
+/// A contact of the scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ContactSummary {
+    /// Name.
+    pub name: String,
+    /// Number of its conditions.
+    pub conditions: usize,
+    /// Whether one of its points has friction.
+    pub has_friction: bool,
+    /// The kind of its conditions.
+    pub kind: ContactKind,
+}
+
+/// Kind of the conditions of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactKind {
+    /// Sides that press on each other and part.
+    #[default]
+    Unilateral,
+    /// Sides that are tied to each other.
+    Tie,
+    /// A linear equation between displacements.
+    Equation,
+}
+
+impl ContactKind {
+    /// The kind of the contact of a point.
+    pub fn of<N>(point: &ContactPoint<N>) -> Self {
+        match (point.law.is_tied(), point.axes.is_empty()) {
+            (false, _) => Self::Unilateral,
+            (true, true) => Self::Tie,
+            (true, false) => Self::Equation,
+        }
+    }
+
+    /// Its name in messages.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Unilateral => "contact",
+            Self::Tie => "tie",
+            Self::Equation => "equation",
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The letters of shapes.
+
+/// Letters of shapes, and the nouns that they count.
+pub const LETTERS: &[(char, &str)] = &[
+    ('N', "subdomains"),
+    (
+        'P',
+        "points, summed over subdomains (shared nodes counted in each)",
+    ),
+    ('C', "cells"),
+    ('K', "connectivity entries"),
+    ('M', "materials"),
+    ('B', "bodies"),
+    ('T', "nodes of the hierarchy"),
+    ('Z', "clusters"),
+    ('L', "load steps"),
+    ('I', "entries of Γ, summed over subdomains"),
+    ('S', "supports, summed over subdomains"),
+    ('U', "conditions that supports and springs come from"),
+    ('Y', "blocks of springs, summed over subdomains"),
+    ('F', "loaded nodes, summed over subdomains"),
+    ('Q', "contacts"),
+    ('G', "contact groups"),
+    ('R', "contact points"),
+    ('E', "entries of contact points"),
+    ('V', "probes"),
+    ('H', "entries of probes"),
+    ('A', "crack tips"),
+    ('X', "facets of crack faces"),
+    ('J', "quantities"),
+    ('D', "numbers of what quantities are of"),
+    ('O', "parameters"),
+    ('p', "numbers of what parameters are of"),
+    (
+        'w',
+        "weights of nodes in quantities, summed over subdomains",
+    ),
+    ('f', "nodal forces of parameters, summed over subdomains"),
+    ('W', "warnings"),
+    ('d', "dimensions of space, 2 or 3"),
+    (
+        'v',
+        "components of a strain, 3 in the plane, 4 around an axis, 6 in space",
+    ),
+];

@@ -1,0 +1,159 @@
+//! Quantities of the solution that a user wants to know, and the parameters with respect to which their derivatives are given.
+
+/// A quantity of the solution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: QuantityKind,
+    /// The direction of a force, a unit vector; zeros for the sum of the normal forces, and where there is none.
+    pub direction: [f64; 3],
+    /// The constant part in every load step, the only one where there are none: what initial stress adds to a mean stress.
+    pub constants: Vec<f64>,
+    /// The numbers of what it is a quantity of, as its kind says.
+    pub of: Vec<u32>,
+    /// Tag of the node at which it is taken; −1 where it isn't one of a node.
+    pub node: i64,
+}
+
+/// Kind of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum QuantityKind {
+    /// Displacement of a node along a direction: its weights times displacements.
+    Displacement,
+    /// Mean of a component of the stress over a body, of these materials: its weights times displacements, and the constant.
+    MeanStress,
+    /// Force that these conditions, supports or springs, exert on the bodies.
+    Reaction,
+    /// Force on side a of a contact, or with direction zero the sum of its normal forces.
+    ContactForce,
+    /// The sum of the normal forces of a contact over the area of all its points.
+    MeanPressure,
+    /// The largest pressure of a contact.
+    LargestPressure,
+    /// The gap that is left at a point of a contact: the numbers of both.
+    Opening,
+    /// The elastic energy ½ uᵀ K u of all bodies.
+    Energy,
+}
+
+impl QuantityKind {
+    /// All kinds, in the order of their numbers in the problem file.
+    pub const ALL: [Self; 8] = [
+        Self::Displacement,
+        Self::MeanStress,
+        Self::Reaction,
+        Self::ContactForce,
+        Self::MeanPressure,
+        Self::LargestPressure,
+        Self::Opening,
+        Self::Energy,
+    ];
+
+    /// Its word in scenes and reports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::MeanStress => "mean_stress",
+            Self::Reaction => "reaction",
+            Self::ContactForce => "contact_force",
+            Self::MeanPressure => "mean_pressure",
+            Self::LargestPressure => "largest_pressure",
+            Self::Opening => "opening",
+            Self::Energy => "energy",
+        }
+    }
+}
+
+/// A parameter of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: ParameterKind,
+    /// Its value; NaN where it isn't the same everywhere.
+    pub value: f64,
+    /// The numbers of what it is a parameter of, as its kind says.
+    pub of: Vec<u32>,
+}
+
+/// Kind of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// The factor of a load, 1 as the load is.
+    Load,
+    /// What the stiffness of these materials is in proportion to: Young's modulus, or a factor.
+    Stiffness,
+    /// What is added to the gap of a contact (m).
+    Gap,
+    /// What is added to the displacements that a condition prescribes along an axis: the numbers of both (m).
+    Displacement,
+    /// Coefficient of friction of a contact.
+    Friction,
+}
+
+impl ParameterKind {
+    /// All kinds, in the order of their numbers in the problem file.
+    pub const ALL: [Self; 5] = [
+        Self::Load,
+        Self::Stiffness,
+        Self::Gap,
+        Self::Displacement,
+        Self::Friction,
+    ];
+
+    /// Its word in reports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Load => "load",
+            Self::Stiffness => "stiffness",
+            Self::Gap => "gap",
+            Self::Displacement => "displacement",
+            Self::Friction => "friction",
+        }
+    }
+}
+
+/// The parts that nodes have in quantities and loads: nodes of the mesh, or of a subdomain, whose parts add up.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodalShares {
+    /// Weights of displacements in quantities.
+    pub weights: Vec<NodeWeight>,
+    /// Nodal forces of loads.
+    pub forces: Vec<LoadForce>,
+}
+
+/// The weight of a node's displacement in a quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeWeight {
+    /// Number of the quantity.
+    pub quantity: u32,
+    /// Node.
+    pub node: u32,
+    /// A factor for each component.
+    pub value: [f64; 3],
+}
+
+/// The nodal force of a load that is a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadForce {
+    /// Number of the parameter.
+    pub parameter: u32,
+    /// Node.
+    pub node: u32,
+    /// The force in every load step, the only one where there are none (N per metre of thickness).
+    pub forces: Vec<[f64; 3]>,
+}
+
+/// Quantities, parameters, and the parts that nodes of the mesh have in them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Goals {
+    /// Quantities.
+    pub quantities: Vec<Quantity>,
+    /// Parameters; none without quantities.
+    pub parameters: Vec<Parameter>,
+    /// The parts of nodes.
+    pub shares: NodalShares,
+}

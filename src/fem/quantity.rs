@@ -1,0 +1,44 @@
+//! Quantities of the solution and their derivatives, as the report has them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A quantity that the scene asks for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct QuantityValue {
+    /// Its name in the scene.
+    pub name: String,
+    /// Its kind, by the scene's word for it.
+    pub kind: String,
+    /// Its value (m, Pa, N or J; forces and energies in the plane per metre of thickness).
+    pub value: f64,
+    /// Tag of the node at which it is taken, of the largest pressure that which has it; `null` where it isn't one of a node.
+    pub node: Option<i64>,
+    /// Its derivatives with respect to the parameters of the scene; empty where there are none.
+    pub derivatives: Vec<Derivative>,
+}
+
+/// Derivative of a quantity with respect to a parameter of the scene, with what is open, closed, sticking and slipping as it is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Derivative {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// Its kind: "load", a factor that is 1; "stiffness", Young's modulus or a factor of a stiffness; "gap" and "displacement",
+    /// what is added to those of the scene; "friction", the coefficient.
+    pub kind: String,
+    /// Its value; `null` where it isn't the same everywhere.
+    pub at: Option<f64>,
+    /// The derivative: change of the quantity over change of the parameter.
+    pub derivative: f64,
+}
+
+/// The quantities of a load step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Quantities {
+    /// Their values and derivatives, in the order of the scene.
+    pub values: Vec<QuantityValue>,
+    /// Contact points whose status is about to change, in words.
+    pub about_to_change: Vec<String>,
+    /// Why there are no derivatives, in words.
+    pub without_derivatives: Option<String>,
+}

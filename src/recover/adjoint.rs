@@ -1,0 +1,163 @@
+//! Quantities of the solution, and their derivatives by the transposed problem of the accepted active set.
+//!
+//! With closed conditions c and slipping tangents s, whose forces follow λ_s = M λ_c + Q s + φ, a change of the solution obeys
+//!
+//! ```text
+//! K du + B_cᵀ dλ_c + B_sᵀ dλ_s = df − dK u,    B_c du = dg,    D du = dv
+//! ```
+//!
+//! with D the rows of supports, whose forces are ρ. For a quantity with the derivatives a, b and r in u, λ and ρ the transposed problem
+//!
+//! ```text
+//! K w + B_cᵀ ν + B_sᵀ Q τ' + Dᵀ η = a,    B_c w = b_c − Mᵀ τ',    D w = −r,    τ' = B_s w − b_s
+//! ```
+//!
+//! makes its derivative w·(df − dK u) + ν·dg + η·dv − τ'·dφ for all parameters at once. M = μ e and, in space, Q = κ (I − e eᵀ).
+//! What slips isn't symmetric: M stands in the conditions here, where it stands in the forces there.
+
+mod derivatives;
+mod functional;
+mod near_change;
+mod slip_conditions;
+mod slipping;
+mod solved;
+mod transposed;
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use contact_dd_partition::quantity::{Parameter, Quantity};
+
+use self::derivatives::{Sensitivity, derivatives};
+use self::functional::{Functional, MaterialForces};
+use self::near_change::about_to_change;
+use self::slipping::SlippingPoints;
+use self::solved::Solved;
+use self::transposed::TransposedProblem;
+use crate::context::LoadPoint;
+use crate::fem::quantity::{Derivative, Quantities, QuantityValue};
+use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::solution::Solution;
+
+/// Difference of both sides of the law of reciprocity, relative to the sum of its terms, from which on derivatives are none.
+const RECIPROCITY: f64 = 1e-7;
+/// The same that is good enough, and how often a transposed problem is solved more exactly where it isn't.
+const GOOD: f64 = 1e-10;
+const REFINEMENTS: usize = 3;
+
+/// The quantities that the scene asks for, if this `moment` is the end of a load step, which began with the slips `before`.
+/// Collective.
+pub fn quantities_at(
+    moment: LoadPoint,
+    fixed: &FixedActiveSet<'_>,
+    solution: &Solution,
+    before: &BTreeMap<usize, Vec<f64>>,
+) -> Quantities {
+    let catalog = fixed.context.catalog;
+    if moment.part < 1.0 || catalog.quantities.is_empty() {
+        return Quantities::default();
+    }
+    let has_slipped = fixed.context.comm.largest(before.values().flatten()) > 0.0;
+    let has_come = catalog.points.iter().any(|point| point.since != [0.0; 3]);
+    let without = if has_slipped {
+        Some("friction remembers the load steps and increments before the last one")
+    } else if has_come {
+        Some("a contact that came later remembers the position of its bodies")
+    } else {
+        None
+    };
+    let solved = Solved {
+        fixed,
+        solution,
+        step: moment.step,
+    };
+    quantities(solved, without.map(Into::into))
+}
+
+/// The quantities of a solution, with their derivatives unless it is said why there are none, which the root knows. Collective.
+fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
+    let context = &solved.fixed.context;
+    let catalog = context.catalog;
+    let mut all = Quantities {
+        without_derivatives: without.or_else(|| solved.without_derivatives()),
+        ..Quantities::default()
+    };
+    context.comm.broadcast(&mut all.without_derivatives);
+    let forces = MaterialForces::new(context, &solved.solution.discrete);
+    let slipping: BTreeMap<usize, SlippingPoints> = (solved.solution.discrete.groups.iter())
+        .map(|(&g, of_group)| (g, SlippingPoints::new(&context.groups[&g], of_group)))
+        .collect();
+    if all.without_derivatives.is_none() {
+        all.about_to_change = about_to_change(solved);
+    }
+    let directions = RefCell::default();
+    for number in 0..catalog.quantities.len() {
+        let functional = Functional::new(solved, number, &forces);
+        let mut found = Vec::new();
+        if all.without_derivatives.is_none() {
+            let problem = TransposedProblem::new(solved, &functional, (&slipping, &directions));
+            let parts = (solved, &functional, &forces);
+            let is_off;
+            (found, is_off) = derivatives_of(parts, &problem);
+            if context.comm.decide(is_off) {
+                let name = &catalog.quantities[number].name;
+                all.without_derivatives = Some(format!(
+                    "the transposed problem of '{name}' can't be solved well enough with the contacts as they are"
+                ));
+                all.values.iter_mut().for_each(|of| of.derivatives.clear());
+                found.clear();
+            }
+        }
+        let quantity = &catalog.quantities[number];
+        (all.values).push(value(quantity, &functional, &catalog.parameters, &found));
+    }
+    all
+}
+
+/// The derivatives of a functional, and whether its transposed problem is solved badly; on the root. Collective.
+fn derivatives_of(
+    (solved, functional, forces): (Solved<'_>, &Functional, &MaterialForces),
+    problem: &TransposedProblem<'_>,
+) -> (Vec<f64>, bool) {
+    let mut state = problem.solve();
+    let mut off = f64::INFINITY;
+    for round in 0.. {
+        let sensitivity = Sensitivity {
+            solved,
+            functional,
+            problem,
+            state: &state,
+            forces,
+        };
+        let before = off;
+        off = sensitivity.reciprocity();
+        let goes_on = off > GOOD && off < 0.5 * before && round < REFINEMENTS;
+        if !solved.fixed.context.comm.decide(goes_on) {
+            return (derivatives(&sensitivity), off > RECIPROCITY || off.is_nan());
+        }
+        state = problem.refine(state);
+    }
+    (Vec::new(), true)
+}
+
+/// What the report says of a quantity.
+fn value(
+    quantity: &Quantity,
+    functional: &Functional,
+    parameters: &[Parameter],
+    found: &[f64],
+) -> QuantityValue {
+    let derivative = |(parameter, &derivative): (&Parameter, &f64)| Derivative {
+        parameter: parameter.name.clone(),
+        kind: parameter.kind.word().into(),
+        at: Some(parameter.value).filter(|value| value.is_finite()),
+        derivative,
+    };
+    QuantityValue {
+        name: quantity.name.clone(),
+        kind: quantity.kind.word().into(),
+        value: functional.value,
+        node: Some(functional.node).filter(|&node| node != -1),
+        derivatives: parameters.iter().zip(found).map(derivative).collect(),
+    }
+}

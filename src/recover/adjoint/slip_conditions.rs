@@ -1,0 +1,100 @@
+//! The conditions z of what slips in a transposed problem, z = G w(z), by generalized conjugate residuals.
+
+use super::slipping::{Direction, OnConditions, add, scaled};
+use super::transposed::TransposedProblem;
+use crate::context::Loads;
+use crate::fem::contact_group::GroupLoads;
+use crate::fem::load::BlockLoads;
+use crate::recover::BlockSolution;
+use crate::recover::fixed_active_set::FixedActiveSet;
+
+/// Most products of a round.
+const PRODUCTS: usize = 60;
+
+impl TransposedProblem<'_> {
+    /// W (I − G) z for a change z of these conditions. Collective.
+    fn product(&self, z: &OnConditions) -> OnConditions {
+        let context = &self.solved.fixed.context;
+        let blocks = self.solved.solution.discrete.blocks.iter();
+        let zeros = blocks
+            .filter(|(b, _)| self.around_contact[**b])
+            .map(|(&b, of_block)| {
+                let (u, pushes) = (vec![0.0; of_block.u.len()], Vec::new());
+                (b, BlockSolution { u, pushes })
+            });
+        let mut state = self.at_rest(zeros.collect());
+        let mut loads = Loads::default();
+        for &b in self.loads.blocks.keys() {
+            loads.blocks.insert(b, BlockLoads::default());
+        }
+        for (&g, points) in self.slipping {
+            let (gaps, forces) = points.split(&z[&g]);
+            if let Some(of_group) = state.groups.get_mut(&g) {
+                points.set_forces(&forces, of_group);
+            }
+            let held = Vec::new();
+            loads.groups.insert(g, GroupLoads { gaps, held });
+        }
+        state.share(context, &loads);
+        let fixed = FixedActiveSet {
+            only: Some(&self.around_contact),
+            ..*self.solved.fixed
+        };
+        self.correct_by(&fixed, &loads, &mut state);
+        let mut product = z.clone();
+        add(&mut product, -1.0, &self.wanted(&state));
+        self.weighed(product)
+    }
+
+    /// W times numbers of these conditions.
+    pub(super) fn weighed(&self, mut of: OnConditions) -> OnConditions {
+        for (g, points) in self.slipping {
+            if let Some(of) = of.get_mut(g) {
+                points.weigh(of);
+            }
+        }
+        of
+    }
+
+    /// z with W (I − G) z = `missing`, but for a part `reduction` of that. Collective.
+    pub(super) fn conditions_of_slips(
+        &self,
+        missing: &OnConditions,
+        reduction: f64,
+    ) -> OnConditions {
+        let mut directions = self.directions.borrow_mut();
+        let (mut sum, mut rest) = (self.zeros(), missing.clone());
+        let enough = reduction * self.norm(missing);
+        let mut products = 0;
+        for k in 0.. {
+            if k == directions.len() {
+                if self.norm(&rest) <= enough || products == PRODUCTS {
+                    break;
+                }
+                products += 1;
+                let next = self.direction(rest.clone(), &directions);
+                directions.push(next);
+            }
+            let (z, product) = &directions[k];
+            let share = self.dot(&rest, product);
+            add(&mut sum, share, z);
+            add(&mut rest, -share, product);
+        }
+        sum
+    }
+
+    /// A direction z and W (I − G) z, which is a unit vector orthogonal to those `before`. Collective.
+    fn direction(&self, mut z: OnConditions, before: &[Direction]) -> Direction {
+        let mut product = self.product(&z);
+        // Twice is enough for orthogonality to rounding.
+        for _ in 0..2 {
+            for (known, of_known) in before {
+                let share = self.dot(&product, of_known);
+                add(&mut z, -share, known);
+                add(&mut product, -share, of_known);
+            }
+        }
+        let size = self.norm(&product);
+        (scaled(&z, 1.0 / size), scaled(&product, 1.0 / size))
+    }
+}

@@ -1,0 +1,134 @@
+//! The points that slip: how their forces follow what presses and how they slip, λ_s = M λ_n + Q s + φ.
+
+use std::collections::BTreeMap;
+
+use crate::fem::contact_group::ContactGroup;
+use crate::recover::GroupSolution;
+use crate::vector::axpy;
+
+/// The slipping points of a contact group.
+#[derive(Clone, Debug, Default)]
+pub struct SlippingPoints(pub Vec<SlippingPoint>);
+
+/// A slipping point.
+#[derive(Clone, Debug)]
+pub struct SlippingPoint {
+    /// Its normal condition.
+    pub normal: usize,
+    /// Whether that is closed, so that it may follow what presses.
+    pub is_closed: bool,
+    /// Its slipping conditions and the parts e of its direction along them.
+    pub tangents: Vec<(usize, f64)>,
+    /// Coefficient of friction.
+    pub coefficient: f64,
+    /// κ (N/m): its force turns with the slip.
+    pub turning: f64,
+    /// Stiffness of the bodies against a jump, about (N/m).
+    pub stiffness: f64,
+    /// The force that presses (N/m).
+    pub pressing: f64,
+    /// The part of the bound without it (N/m).
+    pub cohesion: f64,
+}
+
+impl SlippingPoints {
+    /// Those of a group with a solution: what is at its bound in the direction of its force.
+    pub fn new(group: &ContactGroup, solution: &GroupSolution) -> Self {
+        let mut all = Vec::new();
+        for law in group.point_laws() {
+            let here = solution.point(&law);
+            let (size, way) = (here.size(), here.way());
+            let open = law.limits().filter(|&j| !solution.closed[j]);
+            let tangents = open.map(|j| (j, solution.forces[j] / size));
+            let tangents: Vec<(usize, f64)> = tangents.collect();
+            let Some(normal) = law.normal.filter(|_| size > 0.0 && !tangents.is_empty()) else {
+                continue;
+            };
+            all.push(SlippingPoint {
+                normal,
+                is_closed: law.is_closed(&solution.closed),
+                coefficient: law.bound.coefficient,
+                turning: match tangents.len() > 1 && way > 0.0 {
+                    true => size / way,
+                    false => 0.0,
+                },
+                tangents,
+                stiffness: law.stiffness,
+                pressing: solution.forces[normal],
+                cohesion: law.bound.cohesion,
+            });
+        }
+        Self(all)
+    }
+
+    /// What the transposed problem wants of these points where `left` is what is left at conditions, b_s − B_s w of what slips:
+    /// a jump at normal conditions (m), and forces at tangents, over their stiffness (m).
+    pub fn wanted(&self, left: &[f64]) -> Vec<f64> {
+        let mut wanted = vec![0.0; left.len()];
+        for point in &self.0 {
+            let along: f64 = point.tangents.iter().map(|&(j, e)| e * left[j]).sum();
+            if point.is_closed {
+                wanted[point.normal] += point.coefficient * along;
+            }
+            if point.turning > 0.0 {
+                for &(j, e) in &point.tangents {
+                    wanted[j] -= point.turning / point.stiffness * (left[j] - e * along);
+                }
+            }
+        }
+        wanted
+    }
+
+    /// The forces at tangents among what is wanted of conditions, and the jumps at all others.
+    pub fn split(&self, wanted: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut jumps, mut forces) = (wanted.to_vec(), vec![0.0; wanted.len()]);
+        for point in &self.0 {
+            for &(j, _) in &point.tangents {
+                jumps[j] = 0.0;
+                forces[j] = point.stiffness * wanted[j];
+            }
+        }
+        (jumps, forces)
+    }
+
+    /// Multiplies numbers of conditions by W = e eᵀ + r/(r + κ) (I − e eᵀ) of every point with the stiffness r: the forces that turn
+    /// with the slip are as large as others then.
+    pub fn weigh(&self, of: &mut [f64]) {
+        for point in self.0.iter().filter(|point| point.turning > 0.0) {
+            let along: f64 = point.tangents.iter().map(|&(j, e)| e * of[j]).sum();
+            let weight = point.stiffness / (point.stiffness + point.turning);
+            for &(j, e) in &point.tangents {
+                of[j] = e * along + weight * (of[j] - e * along);
+            }
+        }
+    }
+
+    /// Gives slipping tangents these forces.
+    pub fn set_forces(&self, forces: &[f64], of_group: &mut GroupSolution) {
+        for (j, _) in self.0.iter().flat_map(|point| &point.tangents) {
+            of_group.forces[*j] = forces[*j];
+        }
+    }
+}
+
+/// A number for every condition of the contact groups of this rank.
+pub type OnConditions = BTreeMap<usize, Vec<f64>>;
+
+/// A change z of the conditions of what slips, and W (I − G) z.
+pub type Direction = (OnConditions, OnConditions);
+
+/// Adds a multiple of other numbers to those of every condition.
+pub fn add(to: &mut OnConditions, factor: f64, others: &OnConditions) {
+    for (g, to) in to {
+        if let Some(others) = others.get(g) {
+            axpy(factor, others, to);
+        }
+    }
+}
+
+/// A multiple of these numbers.
+pub fn scaled(all: &OnConditions, factor: f64) -> OnConditions {
+    let all = all.iter();
+    all.map(|(&g, own)| (g, own.iter().map(|x| factor * x).collect()))
+        .collect()
+}

@@ -1,0 +1,34 @@
+//! The solution that quantities are of.
+
+use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::solution::Solution;
+
+/// The solution of a load step, of which there are quantities.
+#[derive(Clone, Copy)]
+pub struct Solved<'a> {
+    /// The problem with its active set.
+    pub fixed: &'a FixedActiveSet<'a>,
+    /// The solution.
+    pub solution: &'a Solution,
+    /// Load step.
+    pub step: usize,
+}
+
+impl Solved<'_> {
+    /// Why there are no derivatives, in words; on the root.
+    pub fn without_derivatives(&self) -> Option<String> {
+        let solution = self.solution;
+        let root = self.fixed.root?;
+        let is_ready = root.is_refined && root.can_solve();
+        let why = if !is_ready {
+            "the load step isn't converged"
+        } else if solution.minimum_norm.has_released_modes {
+            "contacts leave a motion free whose place isn't told by the loads"
+        } else if !solution.friction_limit.is_empty() {
+            "friction is at its limit"
+        } else {
+            return None;
+        };
+        Some(why.into())
+    }
+}

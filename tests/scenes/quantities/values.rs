@@ -1,0 +1,204 @@
+//! Values of quantities, against the fields that they are taken from, and what can't be one.
+
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
+
+use super::{FRICTION, KNOBS, Knob, in_plane, plane, quantities, varied};
+use crate::support::blocks::Blocks;
+use crate::support::close::close;
+use crate::support::scenes::model;
+use crate::support::solution::Solution;
+use crate::support::solver::{Case, solve_steps};
+
+#[test]
+fn quantities_are_those_of_the_fields() {
+    let knobs: Vec<&Knob> = KNOBS.iter().chain([&FRICTION]).collect();
+    let varied = varied(&plane(), super::COULOMB, &in_plane("quad4"), &knobs, None);
+    let solution = Case::of(&varied, 5).solve(&[]);
+    let all = quantities(&solution.report);
+    let check = |name: &str, expected: f64| {
+        let found = all[name]["value"].as_f64().unwrap();
+        close(found, expected, 1e-10 * expected.abs());
+    };
+    let node = all["sag"]["node"].as_i64().unwrap();
+    let mut tags = varied.mesh.node_tags.iter();
+    let at = tags.position(|&tag| tag == node).unwrap();
+    assert_eq!(varied.mesh.points[at], [1.0, 2.0, 0.0]);
+    let [x, y, _] = solution.displacement[&node];
+    check("sag", (x - 2.0 * y) / 5f64.sqrt());
+    // All cells of the lower body have the same area.
+    let below = solution.cells.iter().filter(|(center, _)| center[1] < 1.0);
+    let below: Vec<f64> = below.map(|(_, stress)| stress[1]).collect();
+    check(
+        "mean stress",
+        below.iter().sum::<f64>() / below.len() as f64,
+    );
+    let points = |name: &str| solution.contacts[name].iter();
+    check("pressed", points("joint").map(|point| point.force).sum());
+    let area = |name: &str| points(name).map(|point| point.force / point.pressure);
+    let closed = area("wall").filter(|area| area.is_finite()).count();
+    assert!(closed > 0 && closed < points("wall").count());
+    check("mean", points("wall").map(|point| point.force).sum::<f64>());
+    check(
+        "peak",
+        points("joint")
+            .map(|point| point.pressure)
+            .fold(0.0, f64::max),
+    );
+    let corner = points("wall")
+        .find(|point| point.position == [0.4, 1.0, 0.0])
+        .unwrap();
+    check("mouth", corner.gap);
+    let report = &solution.report;
+    check(
+        "sheared",
+        report["contacts"][0]["force"][0].as_f64().unwrap(),
+    );
+    check(
+        "support",
+        report["reactions"][0]["force"][1].as_f64().unwrap(),
+    );
+    let norm = report["error_estimate"]["energy_norm"].as_f64().unwrap();
+    // The estimate adds its own part to the energy of the displacement.
+    let error = report["error_estimate"]["error"].as_f64().unwrap();
+    let stored = all["stored"]["value"].as_f64().unwrap();
+    assert!((stored - 0.5 * norm * norm).abs() <= 0.5 * error * error + 1e-9 * stored);
+}
+
+/// A load step's derivative is that of its own loads, without friction.
+#[test]
+fn quantities_are_those_of_every_load_step_and_friction_in_a_later_one_has_no_derivatives() {
+    let steps = "[[step]]\nscale = 0.5\n[[step]]\nscale.pressure = 2.0\n";
+    let knobs: Vec<&Knob> = KNOBS.iter().chain([&FRICTION]).collect();
+    let solved = |law: &str| {
+        let text = format!("{}{steps}", plane());
+        solve_steps(&varied(&text, law, &in_plane("quad4"), &knobs, None), 4)
+    };
+    let without = solved("");
+    let pressed = |solution: &Solution| quantities(&solution.report)["support"].clone();
+    for (solution, scale) in without.iter().zip([0.5, 2.0]) {
+        let found = super::derivative(&pressed(solution), "pressure[1] on 'high top'");
+        // ∫ 1 + 0.3 x over the side.
+        close(
+            found,
+            scale * 1e6 * (1.2 + 0.15 * (1.6 * 1.6 - 0.4 * 0.4)),
+            1e-4,
+        );
+    }
+    let with = solved(super::COULOMB);
+    assert!(with[0].report["without_derivatives"].is_null());
+    let why = with[1].report["without_derivatives"].as_str().unwrap();
+    assert!(why.contains("friction remembers"), "{why}");
+    assert!(
+        pressed(&with[1])["derivatives"]
+            .as_array()
+            .unwrap()
+            .is_empty()
+    );
+}
+
+#[test]
+fn what_is_no_quantity_is_refused_with_what_there_is() {
+    let knobs: Vec<&Knob> = KNOBS.iter().collect();
+    let refused = |from: &str, to: &str| {
+        let mut text = format!("mesh = 'here.msh'\n{}", plane().replace("@law@", ""));
+        for Knob(word, value, ..) in &knobs {
+            text = text.replace(word, &format!("{value:?}"));
+        }
+        let text = text.replacen(from, to, 1);
+        match Scene::parse(&text) {
+            Ok(scene) => Model::new(&scene, in_plane("quad4"))
+                .unwrap_err()
+                .to_string(),
+            Err(error) => error.to_string(),
+        }
+    };
+    for (from, to, expected) in [
+        (
+            "contact = 'joint'",
+            "contact = 'jiont'",
+            "did you mean 'joint'",
+        ),
+        (
+            "contact = 'joint'",
+            "contact = 'x'",
+            "Known here: joint, wall",
+        ),
+        ("body = 'low'", "body = 'lower'", "did you mean 'low'"),
+        (
+            "on = 'low bottom'\ndirection",
+            "on = 'high top'\ndirection",
+            "no support is on 'high top'",
+        ),
+        ("kind = 'energy'", "kind = 'enrgy'", "did you mean 'energy'"),
+        (
+            "kind = 'energy'",
+            "kind = 'energy'\nbody = 'low'",
+            "that of all bodies",
+        ),
+        (
+            "name = 'mean'",
+            "name = 'peak'",
+            "has the name 'peak' already",
+        ),
+        ("at = [1.0, 2.0]", "at = [1.0, 2.0, 3.0]", "two components"),
+        (
+            "at = [1.0, 2.0]",
+            "at = [1.0, 1.0]",
+            "expected 'node', the tag of one",
+        ),
+        (
+            "at = [1.0, 2.0]",
+            "node = 123456",
+            "no body has a node 123456",
+        ),
+        ("component = 'yy'", "component = 'yz'", "no such shear"),
+        ("direction = [1, -2]", "direction = 'down'", "a direction"),
+        ("direction = 'x'", "direction = [0, 0]", "zero vector"),
+    ] {
+        let message = refused(from, to);
+        assert!(message.contains(expected), "{to}: {message}");
+        assert!(message.contains("quantity"), "{message}");
+    }
+}
+
+/// A wall that touches without a force, as the block beside it has Poisson's ratio 0.
+#[test]
+fn points_about_to_change_are_named() {
+    let scene = "
+plane = 'strain'
+materials.cork = {young = 1e8, poisson = 0}
+bodies.block.material = 'cork'
+[[bilateral]]
+on = 'block right'
+[[pressure]]
+on = 'block top'
+value = 1e5
+[[contact]]
+name = 'table'
+sides = ['block bottom']
+obstacle = {point = [0, 0], normal = [0, 1]}
+[[contact]]
+name = 'wall'
+sides = ['block left']
+obstacle = {point = [0, 0], normal = [1, 0]}
+gap = 0.0
+[[quantity]]
+name = 'sag'
+kind = 'displacement'
+at = [0.0, 1.0]
+direction = 'y'
+";
+    let mesh = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [3, 3]);
+    let solution = Case::of(&model(scene, mesh.mesh), 2).solve(&[]);
+    let named = solution.report["about_to_change"].as_array().unwrap();
+    assert_eq!(named.len(), 4, "{named:?}");
+    let of_wall = |name: &serde_json::Value| name.as_str().unwrap().contains("contact 'wall'");
+    assert!(named.iter().all(of_wall), "{named:?}");
+    let sag = &quantities(&solution.report)["sag"];
+    close(
+        super::derivative(sag, "pressure[1] on 'block top'"),
+        -1e-3,
+        1e-12,
+    );
+}
