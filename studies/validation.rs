@@ -18,11 +18,15 @@ pub struct Arguments {
     /// Writes the results as markdown.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
+    /// Writes the errors on all meshes, to be drawn.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> ExitCode {
     let (mut chapters, mut lines) = (String::new(), String::new());
     let mut kept = true;
+    let mut all = Vec::new();
     for case in cases() {
         if (arguments.only.as_ref()).is_some_and(|only| !case.title.contains(only)) {
             continue;
@@ -40,11 +44,15 @@ pub fn run(arguments: &Arguments) -> ExitCode {
         print!("{chapter}");
         chapters += &chapter;
         lines += &document::line(&case, &ran, &broken);
+        all.push(document::errors(&case, &ran));
         kept &= broken.is_empty();
     }
     if let Some(path) = &arguments.markdown {
         let text = document::whole(&lines, &chapters);
         std::fs::write(path, text).unwrap();
+    }
+    if let Some(path) = &arguments.json {
+        std::fs::write(path, serde_json::Value::from(all).to_string()).unwrap();
     }
     match kept {
         true => ExitCode::SUCCESS,

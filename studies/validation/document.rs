@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use serde_json::{Value, json};
+
 use crate::support::validation::{Case, Measured};
 
 /// Text before the cases.
@@ -38,13 +40,55 @@ Among the tests alone, as they need no finer meshes (`tests/scenes/friction`):
   same contact status.
 ";
 
+/// Built-in scenes that show what a case is, by its title.
+const PICTURES: [(&str, &str); 8] = [
+    ("Patch test: matching nodes", "patch"),
+    ("Junction", "junction"),
+    ("Hertz: a cylinder on a plane", "hertz"),
+    ("Closed inclined crack", "crack"),
+    ("Raous' plate", "raous"),
+    (
+        "Cattaneo and Mindlin: cylinders pushed to and fro",
+        "mindlin",
+    ),
+    ("Plate with a hole", "plain"),
+    ("Ball on a plate", "sphere"),
+];
+
+/// The picture of a case, where a built-in scene is like it.
+fn picture(title: &str) -> String {
+    let found = PICTURES.iter().find(|(of, _)| *of == title);
+    found.map_or(String::new(), |(_, scene)| {
+        let folder = format!("../partition/src/example/{scene}");
+        format!("[![The built-in scene {scene}]({folder}/{scene}.png)]({folder}/README.md)\n\n")
+    })
+}
+
 /// The whole document, of the lines on all cases and their chapters.
 pub fn whole(lines: &str, chapters: &str) -> String {
     format!(
         "{HEAD}## In short\n\n{}. Of each case the kind of cells with the smallest error, on its finest mesh.\n\n\
+         ![The errors of all cases over the degrees of freedom](figures/validation.svg)\n\n\
          | case | cells, dofs | errors | verdict |\n|---|---|---|---|\n{lines}\n{chapters}{TAIL}",
         crate::today()
     )
+}
+
+/// The first figure of a case on all of its meshes, by the kinds of cells.
+pub fn errors(case: &Case, ran: &[Vec<Measured>]) -> Value {
+    let kinds = case
+        .families
+        .iter()
+        .zip(ran)
+        .filter(|(_, all)| !all.is_empty());
+    let kinds: Vec<Value> = kinds
+        .map(|(family, all)| {
+            let dofs: Vec<usize> = all.iter().map(|mesh| mesh.dofs).collect();
+            let values: Vec<f64> = all.iter().map(|mesh| mesh.figures[0].value).collect();
+            json!({ "cells": family.name, "figure": all[0].figures[0].name, "dofs": dofs, "values": values })
+        })
+        .collect();
+    json!({ "title": case.title, "kinds": kinds })
 }
 
 /// A case in a line: the best of its kinds of cells, its first figures, and whether all gates are kept.
@@ -78,7 +122,12 @@ pub fn line(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
 
 /// A case with its table, and which gates it doesn't keep.
 pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
-    let mut text = format!("## {}\n\n{}\n", case.title, case.text);
+    let mut text = format!(
+        "## {}\n\n{}{}\n",
+        case.title,
+        picture(case.title),
+        case.text
+    );
     let finest: Vec<&Measured> = ran.iter().filter_map(|meshes| meshes.last()).collect();
     let figures = &finest[0].figures;
     // A figure that is round-off everywhere has no column of orders.

@@ -32,7 +32,9 @@ const SHORTEST: usize = 12;
 
 /// A test: the first column of tables of messages quotes the sources.
 pub fn quotes_messages() {
-    let sources: String = sources("src").chain(sources("partition/src")).collect();
+    let sources: String = (sources("src").chain(sources("partition/src")))
+        .chain(python_sources("python/contact_dd"))
+        .collect();
     let quoted = quoted();
     assert!(quoted.len() > 100, "{PAGE} explains {}", quoted.len());
     let wrong: Vec<_> = (quoted.iter())
@@ -111,6 +113,16 @@ fn sources(folder: &str) -> impl Iterator<Item = String> {
         let text = fs::read_to_string(file).unwrap();
         joined(text.split("#[cfg(test)]").next().unwrap())
     })
+}
+
+/// The sources of the Python package in a folder, as they stand there.
+fn python_sources(folder: &str) -> impl Iterator<Item = String> {
+    let entries = fs::read_dir(root().join(folder)).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let is_source = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "py");
+    paths
+        .filter(is_source)
+        .map(|path| fs::read_to_string(path).unwrap())
 }
 
 /// A source without comments and continued strings; quotes within strings as U+0001.
