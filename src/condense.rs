@@ -134,6 +134,7 @@ fn is_held(block: &Block, fixing_dofs: &[(u32, usize)]) -> bool {
     held.extend(fixing_dofs.iter().map(|&(node, k)| (node, axis(k))));
     let supports = block.subdomain.supports.iter();
     held.extend(supports.map(|support| (support.node, support.direction)));
+    held.retain(|&(node, _)| (node as usize) < block.subdomain.cell_nodes());
     let bounds = |pick: fn(f64, f64) -> f64, from: f64| {
         let points = block.points().iter();
         points.fold([from; 3], |all, x| {

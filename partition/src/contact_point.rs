@@ -44,6 +44,12 @@ pub struct ContactPoint<N> {
     pub tag_b: i64,
     /// The law that bounds its force.
     pub law: Law,
+    /// Stiffness of what lies between the sides, along the normal and along the tangents (N/m, per metre of thickness in the
+    /// plane); 0 where it is rigid.
+    pub stiffness: [f64; 2],
+    /// Displacement of the obstacle that it faces in every load step (m); of an equation, along the axis of its first entry,
+    /// what its value is beyond `gap`. None where nothing moves.
+    pub motion: Vec<[f64; 3]>,
 }
 
 /// The bound of the tangential force λ_t at a point, beside λ ≥ 0 for the normal one. Below the bound the sides
@@ -148,6 +154,21 @@ impl<N: Copy> ContactPoint<N> {
             tag_a,
             tag_b: -1,
             law: Law::Frictionless,
+            stiffness: [0.0; 2],
+            motion: Vec::new(),
+        }
+    }
+
+    /// Whether its sides overlap where they press, by their force over its stiffness.
+    pub fn is_compliant(&self) -> bool {
+        self.stiffness[0] > 0.0
+    }
+
+    /// The overlap of its sides under a normal force (m): 0 where nothing gives way.
+    pub fn overclosure(&self, force: f64) -> f64 {
+        match self.is_compliant() {
+            true => force / self.stiffness[0],
+            false => 0.0,
         }
     }
 
@@ -230,6 +251,8 @@ impl<N: Copy> ContactPoint<N> {
             tag_a: self.tag_a,
             tag_b: self.tag_b,
             law: self.law,
+            stiffness: self.stiffness,
+            motion: self.motion.clone(),
         }
     }
 }

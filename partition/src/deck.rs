@@ -15,6 +15,7 @@ mod groups;
 mod keyword;
 mod loads;
 mod material;
+mod model_change;
 mod parameters;
 mod place;
 mod scene;

@@ -9,6 +9,7 @@ mod blend;
 mod bodies;
 mod clip;
 mod contact;
+mod couplings;
 mod crack_tips;
 mod diagnostics;
 mod equations;
@@ -92,6 +93,8 @@ pub struct Model {
     pub goals: Goals,
     /// Description of what was found by itself: contacts, each with its name, and crack tips that are passed by.
     pub found: Vec<String>,
+    /// The last nodes of the mesh, which no cell has, each by a cell of the body that it belongs to.
+    pub reference_nodes: Vec<u32>,
     /// The partition that the scene asks for, a subdomain for every cell.
     pub prescribed_subdomains: Option<Vec<u32>>,
     /// Warnings.
@@ -99,6 +102,11 @@ pub struct Model {
 }
 
 impl Model {
+    /// Whether a node of the mesh is one that no cell has.
+    pub fn is_reference(&self, node: usize) -> bool {
+        node >= self.mesh.points.len() - self.reference_nodes.len()
+    }
+
     /// Finds out what `scene` means on `mesh`.
     ///
     /// # Errors
@@ -111,7 +119,7 @@ impl Model {
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         adjust::adjust(scene, &mut bodies, &topology, &mut warnings)?;
         let materials = bodies.with_modes(bodies::materials(scene, plane));
-        let loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
+        let mut loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let springs = springs::Springs::new(scene, &bodies, &topology, loads.names.len())?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
         let held = held_nodes::HeldNodes::new(&loads);
@@ -129,6 +137,8 @@ impl Model {
             &contacts,
         )?;
         let equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
+        let count = contacts.len() + equations.len();
+        let couplings = couplings::couplings(scene, (&bodies.mesh, &topology), count)?;
         let names = equations.iter().map(|of| &of.name[..]);
         let tables: Vec<&str> = tables.into_iter().chain(names).collect();
         let absent_contacts = activation::contacts(scene, &tables);
@@ -153,6 +163,10 @@ impl Model {
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
             .transpose()?;
+        let own = std::mem::take(&mut loads.names);
+        let mut support_names: Vec<String> = own.into_iter().chain(springs.names).collect();
+        let (coupled, reference_nodes) =
+            couplings::attach(couplings, &mut bodies.mesh, &mut loads, &mut support_names);
         Ok(Self {
             title: scene.title.clone(),
             solver: scene.solver,
@@ -164,7 +178,7 @@ impl Model {
             cell_body: bodies.cell_body,
             mesh: bodies.mesh,
             topology,
-            support_names: loads.names.into_iter().chain(springs.names).collect(),
+            support_names,
             supports: loads.supports,
             springs: springs.blocks,
             forces: loads.forces,
@@ -175,10 +189,13 @@ impl Model {
                     ..step
                 })
                 .collect(),
-            contacts: contacts.into_iter().chain(equations).collect(),
+            contacts: (contacts.into_iter().chain(equations))
+                .chain(coupled)
+                .collect(),
             tips,
             goals,
             found,
+            reference_nodes,
             prescribed_subdomains,
             // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.
             warnings: (warnings.iter().map(|text| name::in_a_line(text))).collect(),

@@ -3,6 +3,7 @@
 //! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
 //! same for somebody who writes one with h5py.
 
+pub mod auxiliary;
 pub mod consistency;
 mod contact_summary;
 pub mod copies;
@@ -80,6 +81,10 @@ pub struct Subdomain {
     pub shares: NodalShares,
     /// Values of its supports and forces in every load step; none where the problem has none.
     pub steps: Vec<StepLoads>,
+    /// Number of its nodes behind those of its cells that move with its body: those of the reference points of couplings.
+    pub reference_nodes: usize,
+    /// Number of the nodes behind these, which no file lists: those [between](auxiliary) the sides of contact points.
+    pub auxiliary_nodes: usize,
 }
 
 /// The loads of a subdomain in a load step.
@@ -103,6 +108,16 @@ pub struct InitialStress {
 }
 
 impl Subdomain {
+    /// Number of the nodes of its cells, which come first.
+    pub fn cell_nodes(&self) -> usize {
+        self.body_nodes() - self.reference_nodes
+    }
+
+    /// Number of the nodes that move with its body, which come first.
+    pub fn body_nodes(&self) -> usize {
+        self.points.len() - self.auxiliary_nodes
+    }
+
     /// Supports with the values that they have in a load step.
     pub fn supports_in(&self, step: usize) -> impl Iterator<Item = Support> + '_ {
         let loads = self.steps.get(step);

@@ -1,8 +1,10 @@
 //! The scene as a user writes it: `scene.toml`.
 
 mod activation;
+pub mod compliance;
 pub mod condition;
 pub mod contact;
+pub mod coupling;
 pub mod equation;
 pub mod expression;
 mod fault;
@@ -10,6 +12,7 @@ pub mod friction;
 pub mod initial;
 pub mod loading;
 pub mod material;
+mod motion;
 pub mod number;
 pub mod place;
 pub mod quantity;
@@ -31,6 +34,7 @@ use crate::solver::SolverSettings;
 use crate::source;
 use condition::{Bilateral, Body, Displacement, Force, Names, Pressure, Traction};
 use contact::Declaration;
+use coupling::Coupling;
 use equation::Equation;
 use material::{Elasticity, PlaneState};
 use quantity::Quantity;
@@ -91,6 +95,9 @@ pub struct Scene {
     /// Quantities of the solution.
     #[serde(default, deserialize_with = "place::list")]
     pub quantity: Vec<Quantity>,
+    /// Nodes that follow reference points.
+    #[serde(default, deserialize_with = "place::list")]
+    pub coupling: Vec<Coupling>,
     /// Load steps, one after the other; without any the loads of the scene are there at once.
     #[serde(default, deserialize_with = "place::list")]
     pub step: Vec<LoadStep>,

@@ -59,6 +59,9 @@ class Step(TypedDict, total=False):
     force: list[dict[str, Any]]
     body_force: dict[str, Vector]
     temperature: dict[str, Number]
+    motion: dict[str, Sequence[float]]
+    equation: dict[str, float]
+    coupling: dict[str, dict[str, Any]]
 
 
 class Model:
@@ -163,9 +166,12 @@ class Model:
         within: Number | None = None, name: str | None = None, friction: Number | None = None,
         cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
         interference: bool | None = None, pairing: str | None = None,
+        stiffness: dict[str, Number] | None = None,
     ) -> None:
         """Two sides that may touch, slide and part. Pressures and normals belong to side `a`, of curved sides best
         the one with the coarser mesh. The gap is measured from the mesh where it isn't given.
+
+        With a `stiffness`, {"normal": …} and with friction perhaps "tangential", the sides overlap by pressure over it.
 
         With `between` in place of sides: contacts wherever two of these bodies touch, or one touches itself, or "all";
         `within` is up to which distance."""
@@ -178,7 +184,7 @@ class Model:
             name = f"{joined(a)} on {joined(b)}"
         keys = given(
             between=between, within=within, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap,
-            interference=interference, pairing=pairing,
+            interference=interference, pairing=pairing, stiffness=stiffness,
         )
         entry = self._add("contact", name=name, sides=[a, b] if between is None else None, **keys)
         self._calls.add(entry, call("contact", a, b, name=called, **keys))
@@ -186,14 +192,18 @@ class Model:
     def obstacle(
         self, side: Groups, *, point: Sequence[float] | None = None, normal: Sequence[float] | None = None,
         center: Sequence[float] | None = None, axis: Sequence[float] | None = None, radius: float | None = None,
-        inside: bool | None = None, name: str | None = None, friction: Number | None = None,
-        cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
-        interference: bool | None = None,
+        inside: bool | None = None, motion: Sequence[float] | None = None, name: str | None = None,
+        friction: Number | None = None, cohesion: Number | None = None, tresca: Number | None = None,
+        gap: Number | None = None, interference: bool | None = None, stiffness: dict[str, Number] | None = None,
     ) -> None:
         """A side that may touch a rigid obstacle: a wall (`point`, `normal` out of the wall), a circle or sphere
-        (`center`, `radius`), in space a cylinder (`point`, `axis`, `radius`); `inside` keeps the body inside it."""
+        (`center`, `radius`), in space a cylinder (`point`, `axis`, `radius`); `inside` keeps the body inside it. It may
+        move by `motion`, or in steps."""
         shape = given(point=point, normal=normal, center=center, axis=axis, radius=radius, inside=inside)
-        keys = given(friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference)
+        keys = given(
+            motion=motion, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference,
+            stiffness=stiffness,
+        )
         name_of = name or f"{joined(side)} on obstacle"
         entry = self._add("contact", name=name_of, sides=[side], obstacle=shape, **keys)
         self._calls.add(entry, call("obstacle", side, **shape, name=name, **keys))
@@ -229,6 +239,18 @@ class Model:
         )
         entry = self._add("quantity", name=name, kind=kind, **keys)
         self._calls.add(entry, call("quantity", name, kind, **keys))
+
+    def coupling(
+        self, on: Groups, point: Sequence[float], *, name: str | None = None, kind: str | None = None,
+        force: Sequence[float] | None = None, moment: float | Sequence[float] | None = None, x: float | None = None,
+        y: float | None = None, z: float | None = None, rx: float | None = None, ry: float | None = None,
+        rz: float | None = None,
+    ) -> None:
+        """Couples a side, or points, to a reference point, "rigid" or "distributing": forces and moments act there, and
+        displacements and rotations of it may be prescribed."""
+        keys = given(kind=kind, force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
+        entry = self._add("coupling", name=name or f"coupling of {joined(on)}", on=on, point=point, **keys)
+        self._calls.add(entry, call("coupling", on, point, name=name, **keys))
 
     def steps(self, *steps: Step) -> None:
         """Load steps, one after the other."""

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 # What of a contact table has a row for each load step.
-STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip")
+STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip", "overclosure")
 
 
 class Result:

@@ -34,7 +34,12 @@ impl SharedNodes {
             for &(node, number) in &block.interface {
                 if sought.contains(&number) {
                     let frame = frames.get(&node).unwrap_or(&Frame::CARTESIAN);
-                    nodes.insert(number, (block.points()[node as usize], frame.axes));
+                    let axes = match (node as usize) < block.body_nodes() {
+                        true => frame.axes,
+                        // No motion of bodies moves what lies between them.
+                        false => [[0.0; 3]; 3],
+                    };
+                    nodes.insert(number, (block.points()[node as usize], axes));
                 }
             }
         }

@@ -75,7 +75,7 @@ impl BlockCheck {
         u: &[f64],
     ) -> (Self, SharedCheck) {
         let (mut check, mut shared) = (Self::default(), SharedCheck::default());
-        check.most.displacement = largest(u);
+        check.most.displacement = largest(&u[..block.dim * block.body_nodes()]);
         check.most.load = balance.largest_load;
         let prescribed = loads.supports.iter().map(|support| support.value);
         check.most.driven = prescribed.fold(0.0, larger);

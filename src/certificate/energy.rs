@@ -29,7 +29,7 @@ const NOT_ROUND_OFF: f64 = 1e-12;
 pub struct EnergyBalance {
     /// Work of loads.
     pub work_of_loads: f64,
-    /// Work of supports along prescribed displacements, and of springs to the ground.
+    /// Work of supports along prescribed displacements, and of springs, to the ground and in compliant contacts.
     pub work_of_supports: f64,
     /// Change of the elastic energy ½ uᵀ K u.
     pub elastic_energy: f64,

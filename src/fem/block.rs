@@ -53,6 +53,18 @@ impl Block {
         &self.subdomain.points
     }
 
+    /// Number of the nodes that move with its body; [auxiliary] ones follow them.
+    ///
+    /// [auxiliary]: contact_dd_partition::problem::auxiliary
+    pub fn body_nodes(&self) -> usize {
+        self.subdomain.body_nodes()
+    }
+
+    /// Coordinates of these nodes (m).
+    pub fn body_points(&self) -> &[[f64; 3]] {
+        &self.points()[..self.body_nodes()]
+    }
+
     /// Whether each node is on Γ.
     pub fn is_on_interface(&self) -> Vec<bool> {
         let mut on_interface = vec![false; self.nodes()];

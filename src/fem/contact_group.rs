@@ -2,6 +2,7 @@
 //! their nodes come together, and what they need to know of these nodes.
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
+use contact_dd_partition::element::geometry::dot;
 
 use super::contact_node::ContactNode;
 use crate::contact::friction::{ForceBound, TangentialCondition};
@@ -77,8 +78,30 @@ impl ContactGroup {
     /// The group of these points, whose tangents are those along which they [can slip](super::slip_directions).
     pub fn new(points: Vec<ContactPoint<u32>>, nodes: Vec<ContactNode>, dim: usize) -> Self {
         let mut group = Self { points, nodes, dim };
+        group.take_stiffness_between_sides();
         group.take_slip_directions();
         group
+    }
+
+    /// Tells the nodes between sides how stiff what they are of is, as that of a material (Pa).
+    fn take_stiffness_between_sides(&mut self) {
+        for j in 0..self.points.len() {
+            let point = &self.points[j];
+            if let Some((node, _)) = point.entries.last().filter(|_| point.is_compliant()) {
+                self.nodes[*node as usize].stiffness = point.stiffness[0] / self.width_at(j);
+            }
+        }
+    }
+
+    /// The part of the jump at a point, along a direction, that what moves with the load steps prescribes, on no body (m).
+    pub fn moved(&self, point: usize, direction: [f64; 3], loads: &GroupLoads) -> f64 {
+        let of_entry = |(node, row): (u32, [f64; 3])| {
+            let of_node = &self.nodes[node as usize];
+            let held = of_node.supports.iter().zip(&loads.held[node as usize]);
+            let along: f64 = held.map(|((d, _), value)| dot(row, *d) * value).sum();
+            if of_node.is_auxiliary { along } else { 0.0 }
+        };
+        self.points[point].row_along(direction).map(of_entry).sum()
     }
 
     /// Conditions: the normal one of every point, then the tangential ones of the points that have friction or are tied.

@@ -17,6 +17,8 @@ pub struct ContactNode {
     pub tag: i64,
     /// Body of the node.
     pub body: usize,
+    /// Whether it lies between the sides of a point, and moves with no body.
+    pub is_auxiliary: bool,
     /// Coordinates (m).
     pub at: [f64; 3],
     /// The stiffest material around it (Pa).
@@ -57,6 +59,7 @@ impl ContactNode {
                 interface,
                 tag: subdomain.node_tags[node as usize],
                 body: subdomain.body,
+                is_auxiliary: node as usize >= subdomain.body_nodes(),
                 at: subdomain.points[node as usize],
                 stiffness: stiffness[&node],
                 supports: (start..end).map(support).collect(),
@@ -72,6 +75,7 @@ impl ContactNode {
             tag: self.tag,
             body: self.body,
             at: self.at,
+            is_auxiliary: self.is_auxiliary,
         }
     }
 }

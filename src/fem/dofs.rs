@@ -189,7 +189,7 @@ impl Dofs {
         &self.sites.starts
     }
 
-    /// The sites of every cell of `block`.
+    /// The sites of every cell of `block`, and of every node that no cell has.
     pub fn cliques(&self, block: &Block) -> Cliques {
         let mut cliques = Cliques::default();
         let mut list = Vec::new();
@@ -208,6 +208,12 @@ impl Dofs {
             list.sort_unstable();
             list.dedup();
             cliques.push(list.iter().copied());
+        }
+        for node in block.subdomain.cell_nodes()..block.nodes() {
+            let unknowns = self.unknowns(&[node as u32]);
+            let mut sites: Vec<u32> = unknowns.iter().map(|&dof| self.sites.of(dof)).collect();
+            sites.dedup();
+            cliques.push(sites);
         }
         cliques
     }

@@ -47,7 +47,7 @@ impl Resultant {
 pub struct ContactResultant {
     /// Name of the contact.
     pub name: String,
-    /// Its kind: "contact", "tie" or "equation".
+    /// Its kind: "contact", "tie", "equation" or "coupling".
     pub kind: String,
     /// Number of conditions.
     pub conditions: usize,
@@ -58,6 +58,8 @@ pub struct ContactResultant {
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
     pub largest_pressure: f64,
+    /// Largest overlap of its sides (m): pressure over stiffness where it is compliant, else 0.
+    pub largest_overclosure: f64,
     /// State and work of its friction; `null` where it has none.
     pub friction: Option<Friction>,
     /// Number of conditions about to open, which slip under a part of their cohesion.
@@ -117,6 +119,10 @@ impl ContactResultant {
             });
             self.parting += usize::from(is_parting(point, state));
         }
+        // What a coupling carries acts on its reference point, too: loads and reactions tell.
+        if point.is_equation() && point.tag() == -1 {
+            return;
+        }
         if let (true, Some((_, factor))) = (point.is_equation(), point.entries.first()) {
             let force = point.normal().map(|n| -factor * state.force * n);
             self.resultant.add(point.position, force);
@@ -125,6 +131,8 @@ impl ContactResultant {
         let force = advance(state.tangential_force, -state.force, point.normal());
         self.resultant.add(point.force_point, force);
         self.largest_pressure = self.largest_pressure.max(state.force / point.area);
+        let overclosure = point.overclosure(state.force);
+        self.largest_overclosure = self.largest_overclosure.max(overclosure);
     }
 
     /// The warnings of a mesh on which a contact can't be right, in `dim` dimensions; `error` is the estimate of its error.

@@ -74,8 +74,9 @@ impl ContactGroup {
     /// Whether supports hold nodes of a point, and prescribe no displacement but 0.
     fn is_held_fast(&self, point: usize) -> bool {
         let nodes = self.points[point].entries.iter();
-        let mut supports = nodes.flat_map(|(node, _)| &self.nodes[*node as usize].supports);
-        supports.clone().next().is_some()
+        let mut nodes = nodes.map(|(node, _)| &self.nodes[*node as usize]);
+        let mut supports = nodes.clone().flat_map(|node| &node.supports);
+        nodes.any(|node| !node.is_auxiliary && !node.supports.is_empty())
             && supports.all(|(_, values)| values.iter().all(|&value| value == 0.0))
     }
 }
@@ -123,6 +124,7 @@ mod tests {
     /// it, of which the latter has the weight `beside`.
     fn tangents(tilt: f64, beside: f64) -> [[f64; 3]; 2] {
         let node = |interface: u32| ContactNode {
+            is_auxiliary: false,
             interface,
             tag: i64::from(interface),
             body: 0,

@@ -82,9 +82,11 @@ pub fn against_motions(block: &Block, frame: &BodyFrame) -> Vec<f64> {
         let mut unit = vec![0.0; modes];
         unit[k] = 1.0;
         let of_node = |x: &[f64; 3]| frame.displacement(dim, x, &unit);
-        (block.points().iter())
+        let mut motion: Vec<f64> = (block.body_points().iter())
             .flat_map(|x| of_node(x).into_iter().take(dim))
-            .collect()
+            .collect();
+        motion.resize(dim * block.nodes(), 0.0);
+        motion
     };
     if block.subdomain.springs.is_empty() {
         return vec![0.0; modes * modes];

@@ -67,7 +67,7 @@ impl<'a> Motions<'a> {
                 if let (Some(block), Some(field)) = (context.blocks.get(&b), fields.get(&b)) {
                     let is_first = first_in(block, b, &first_of);
                     let frame = &self.frames[block.subdomain.body];
-                    for (node, x) in block.points().iter().enumerate() {
+                    for (node, x) in block.body_points().iter().enumerate() {
                         let moves = frame.moves(dim, x);
                         if is_first[node] {
                             products.add_node(&moves);
@@ -110,7 +110,7 @@ impl<'a> Motions<'a> {
                 axpy(c, share, &mut taken);
             }
             let is_first = first_in(block, b, &first_of);
-            for (node, x) in block.points().iter().enumerate() {
+            for (node, x) in block.body_points().iter().enumerate() {
                 if kind == Field::Shared || is_first[node] {
                     let moved = self.frames[body].displacement(dim, x, &taken);
                     axpy(-1.0, &moved, &mut field[node * dim..(node + 1) * dim]);

@@ -28,7 +28,9 @@ pub fn reactions(
         },
         |_, of_block| {
             for (condition, at, force) in of_block {
-                reactions[condition as usize].resultant.add(at, force);
+                if let Some(reaction) = reactions.get_mut(condition as usize) {
+                    reaction.resultant.add(at, force);
+                }
             }
         },
     );

@@ -2,13 +2,14 @@
 
 use contact_dd_partition::element::geometry::{cross, difference, length};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
-use contact_dd_partition::model::PlaneState;
+use contact_dd_partition::model::{PlaneState, Support};
 use contact_dd_partition::problem::Catalog;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::scene::BodyState;
 use crate::context::{Context, Loads};
+use crate::fem::block::Block;
 use crate::fem::body_frame::BodyFrame;
 use crate::fem::load::BlockLoads;
 use crate::fem::springs::against_motions;
@@ -63,9 +64,9 @@ pub(super) fn body_states(
         context.plan.owners(),
         |s| {
             let frame = &frames[catalog.subdomains[s].body];
-            let (points, loads) = (context.blocks[&s].points(), &loads.blocks[&s]);
-            let mut part = of_subdomain(points, loads, dim, frame);
-            part.springs = against_motions(&context.blocks[&s], frame);
+            let block = &context.blocks[&s];
+            let mut part = of_subdomain(block, &loads.blocks[&s], frame);
+            part.springs = against_motions(block, frame);
             // No support moves a body along a motion that none has.
             for held in held_by_symmetry(catalog) {
                 for row in &mut part.supports {
@@ -139,14 +140,11 @@ struct BodyPart {
     springs: Vec<f64>,
 }
 
-fn of_subdomain(
-    points: &[[f64; 3]],
-    loads: &BlockLoads,
-    dim: usize,
-    frame: &BodyFrame,
-) -> BodyPart {
+fn of_subdomain(block: &Block, loads: &BlockLoads, frame: &BodyFrame) -> BodyPart {
+    let (points, dim) = (block.body_points(), block.dim);
     let modes = BodyFrame::count(dim);
-    let rows: Vec<Vec<f64>> = (loads.supports.iter())
+    let of_body = |support: &&Support| (support.node as usize) < points.len();
+    let rows: Vec<Vec<f64>> = (loads.supports.iter().filter(of_body))
         .map(|s| {
             let mut row = frame.action(dim, &points[s.node as usize], &s.direction);
             row.push(s.value);
@@ -160,7 +158,8 @@ fn of_subdomain(
         axpy(1.0, &action, &mut load);
         load_scale += force.iter().map(|f| f.abs()).sum::<f64>();
     }
-    let candidates = extreme_nodes(points, dim).into_iter();
+    // What no cell has holds nothing that is pinned to it.
+    let candidates = extreme_nodes(&points[..block.subdomain.cell_nodes()], dim).into_iter();
     BodyPart {
         supports: compressed(rows, modes + 1),
         load,

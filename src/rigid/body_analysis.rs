@@ -55,7 +55,7 @@ pub fn analyse_bodies(
 ) -> Result<RigidBodyAnalysis, Failure> {
     let Context { comm, catalog, .. } = *context;
     let frames = body_frames(context);
-    let (rows, conditions) = rigid_rows(context, &frames);
+    let (rows, conditions) = rigid_rows(context, &frames, loads);
     let mut scene = Scene {
         dim: catalog.dim,
         bodies: body_states(context, &frames, loads),
@@ -128,16 +128,20 @@ pub fn without_closing_motions(
     for (b, loads) in &mut loads.blocks {
         let block = &context.blocks[b];
         for support in &mut loads.supports {
-            let at = &block.points()[support.node as usize];
-            let moved = moved(analysis, dim, block.subdomain.body, at);
-            reduce(&mut support.value, &support.direction, &moved);
+            if let Some(at) = block.body_points().get(support.node as usize) {
+                let moved = moved(analysis, dim, block.subdomain.body, at);
+                reduce(&mut support.value, &support.direction, &moved);
+            }
         }
     }
     for (g, loads) in &mut loads.groups {
         let group = &context.groups[g];
         let nodes = group.nodes.iter();
         let moved: Vec<[f64; 3]> = nodes
-            .map(|node| moved(analysis, dim, node.body, &node.at))
+            .map(|node| match node.is_auxiliary {
+                true => [0.0; 3],
+                false => moved(analysis, dim, node.body, &node.at),
+            })
             .collect();
         for (condition, gap) in group.conditions().zip(&mut loads.gaps) {
             for (node, row) in group.row_of(&condition) {
@@ -178,7 +182,7 @@ pub fn with_closing_motions<'a>(
         if stays {
             return Some((b, u));
         }
-        for (x, u) in block.points().iter().zip(u.chunks_exact_mut(dim)) {
+        for (x, u) in block.body_points().iter().zip(u.chunks_exact_mut(dim)) {
             let moved = moved(analysis, dim, block.subdomain.body, x);
             u.iter_mut().zip(moved).for_each(|(u, m)| *u += m);
         }

@@ -25,14 +25,18 @@ type HalfSpace = ([f64; 3], f64);
 pub fn check(group: &ContactGroup, loads: &GroupLoads, catalog: &Catalog) -> Result<(), Failure> {
     let mut at_node: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (j, point) in group.points.iter().enumerate() {
-        if let ([(node, _)], false) = (&point.entries[..], point.law.is_tied()) {
+        let of_bodies = |(node, _): &&(u32, f64)| !group.nodes[*node as usize].is_auxiliary;
+        let mut nodes = point.entries.iter().filter(of_bodies);
+        let is_rigid = !point.law.is_tied() && !point.is_compliant();
+        if let (Some((node, _)), None, true) = (nodes.next(), nodes.next(), is_rigid) {
             at_node.entry(*node).or_default().push(j);
         }
     }
     for (node, at) in at_node {
         let of_points = at
             .iter()
-            .map(|&j| (group.points[j].normal(), loads.gaps[j]));
+            .map(|&j| (j, group.points[j].normal()))
+            .map(|(j, n)| (n, loads.gaps[j] - group.moved(j, n, loads)));
         let contact_node = &group.nodes[node as usize];
         let supports = contact_node.supports.iter().zip(&loads.held[node as usize]);
         let held = supports.flat_map(|(&(d, _), &value)| [(d, value), (d.map(|c| -c), -value)]);

@@ -87,6 +87,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
         name: format!("crack {c}"),
         conditions,
         has_friction: c == 0,
+        is_compliant: false,
     };
     Layout {
         partitions: cells.iter().map(|&cells| size(cells)).collect(),

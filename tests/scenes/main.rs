@@ -10,8 +10,10 @@ extern crate contact_dd_trials as support;
 
 mod axisymmetric;
 mod bending;
+mod compliant;
 mod conditioning;
 mod convergence;
+mod coupling;
 mod crack_tips;
 mod decks;
 mod elements;
@@ -26,6 +28,7 @@ mod iterative;
 mod laws;
 mod monolithic;
 mod mortar;
+mod moving;
 mod obstacles;
 mod quantities;
 mod redundant;

@@ -2,16 +2,38 @@
 
 use std::collections::BTreeMap;
 
+use super::document::Document;
 use super::loads::item;
 use super::place::Places;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 use crate::name;
 
-/// The law between two surfaces.
+/// The law between two surfaces, in the words of a scene.
+#[derive(Clone, Copy, Default)]
+pub(super) struct ContactLaw {
+    /// Coefficient of friction.
+    friction: f64,
+    /// Pressure over overclosure; `None` where nothing overlaps.
+    stiffness: Option<f64>,
+}
+
+impl ContactLaw {
+    /// Writes the keys of a contact with this law.
+    pub(super) fn write(&self, document: &mut Document) {
+        if self.friction != 0.0 {
+            document.key("friction", format!("{:?}", self.friction));
+        }
+        if let Some(stiffness) = self.stiffness {
+            document.key("stiffness", format!("{{ normal = {stiffness:?} }}"));
+        }
+    }
+}
+
+/// An interaction of two surfaces.
 #[derive(Default)]
 struct Interaction {
-    friction: f64,
+    law: ContactLaw,
     /// What is taken as hard contact though it isn't, in words.
     soft: Option<String>,
     /// Whether the sides hang together.
@@ -75,7 +97,7 @@ impl Contacts {
             .map(|pair| &pair.interaction)
             .chain(general);
         let mut laws = named.filter_map(|name| self.interactions.get(name));
-        laws.any(|interaction| interaction.friction != 0.0)
+        laws.any(|interaction| interaction.law.friction != 0.0)
     }
 
     /// Reads a block of contacts.
@@ -88,13 +110,7 @@ impl Contacts {
                     .insert(name.clone(), Interaction::default());
                 self.open = Some(name);
             }
-            "SURFACE BEHAVIOR" => {
-                let law = block.parameter("PRESSURE-OVERCLOSURE").unwrap_or("HARD");
-                let is_tied = law.eq_ignore_ascii_case("TIED");
-                let soft = soft(places, block)?;
-                let interaction = self.interaction(places, block)?;
-                (interaction.soft, interaction.is_tied) = (soft, is_tied);
-            }
+            "SURFACE BEHAVIOR" => self.behavior(places, block)?,
             "FRICTION" => {
                 let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
                 if let Some(key) = refused {
@@ -111,7 +127,7 @@ impl Contacts {
                     )?,
                     None => 0.0,
                 };
-                self.interaction(places, block)?.friction = friction;
+                self.interaction(places, block)?.law.friction = friction;
             }
             "CONTACT PAIR" => self.pairs(places, block)?,
             "CLEARANCE" => self.clearance(places, block)?,
@@ -139,6 +155,21 @@ impl Contacts {
             }
             _ => {}
         }
+        Ok(())
+    }
+
+    /// `*SURFACE BEHAVIOR`.
+    fn behavior(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let law = block.parameter("PRESSURE-OVERCLOSURE").unwrap_or("HARD");
+        let is_tied = law.eq_ignore_ascii_case("TIED");
+        let stiffness = match law.eq_ignore_ascii_case("LINEAR") {
+            true => Some(linear(places, block)?),
+            false => None,
+        };
+        let soft = soft(places, block)?;
+        let interaction = self.interaction(places, block)?;
+        (interaction.soft, interaction.is_tied) = (soft, is_tied);
+        interaction.law.stiffness = stiffness;
         Ok(())
     }
 
@@ -209,13 +240,13 @@ impl Contacts {
         Ok(())
     }
 
-    /// The coefficient of friction of a pair, and with `warnings` what its law was taken for.
-    pub(super) fn friction(
+    /// The law of a pair, and with `warnings` what it was taken for.
+    pub(super) fn law_of(
         &self,
         places: &Places,
         pair: &Pair,
         warnings: &mut Vec<String>,
-    ) -> Result<f64, InputError> {
+    ) -> Result<ContactLaw, InputError> {
         self.law(places, pair.place, &pair.interaction, warnings)
     }
 
@@ -225,18 +256,18 @@ impl Contacts {
         pair.tied || interaction.is_some_and(|interaction| interaction.is_tied)
     }
 
-    /// The coefficient of friction of general contact; `None` without any.
+    /// The law of general contact; `None` without any.
     pub(super) fn general(
         &self,
         places: &Places,
         warnings: &mut Vec<String>,
-    ) -> Result<Option<f64>, InputError> {
+    ) -> Result<Option<ContactLaw>, InputError> {
         let Some(general) = &self.general else {
             return Ok(None);
         };
         match &general.interaction {
             Some(name) => self.law(places, general.place, name, warnings).map(Some),
-            None => Ok(Some(0.0)),
+            None => Ok(Some(ContactLaw::default())),
         }
     }
 
@@ -246,7 +277,7 @@ impl Contacts {
         at: LinePlace,
         name: &str,
         warnings: &mut Vec<String>,
-    ) -> Result<f64, InputError> {
+    ) -> Result<ContactLaw, InputError> {
         let Some(interaction) = self.interactions.get(name) else {
             let message = format!("there is no *SURFACE INTERACTION '{}'", name::shown(name));
             return Err(places.source.error(at, message));
@@ -258,11 +289,30 @@ impl Contacts {
         {
             warnings.push(soft.clone());
         }
-        Ok(interaction.friction)
+        Ok(interaction.law)
     }
 }
 
-/// What of a `*SURFACE BEHAVIOR` is softer than hard contact, in words.
+/// The slope of a linear law of a `*SURFACE BEHAVIOR`.
+fn linear(places: &Places, block: &Block) -> Result<f64, InputError> {
+    let source = places.source;
+    let given = block
+        .data
+        .first()
+        .map(|data| (data.place, item(source, data, 0)));
+    let (place, text) = given.unwrap_or((block.place, ""));
+    let slope = source.real(place, text, "the slope of pressure over overclosure")?;
+    match slope > 0.0 {
+        true => Ok(slope),
+        false => {
+            let message =
+                format!("the slope of pressure over overclosure is {slope}; expected more than 0");
+            Err(source.error(place, message))
+        }
+    }
+}
+
+/// What of a `*SURFACE BEHAVIOR` is softer than it is taken for, in words.
 fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
     let source = places.source;
     let law = block
@@ -274,8 +324,7 @@ fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
         data.map_or("", |data| item(source, data, place)).to_owned()
     };
     let softness = match law.as_str() {
-        "HARD" => return Ok(None),
-        "LINEAR" => format!("K = {}: there sides overlap by p/K", number(0)),
+        "HARD" | "LINEAR" => return Ok(None),
         "EXPONENTIAL" => format!("p0 = {} at no clearance, 0 at {}", number(1), number(0)),
         "TABULAR" => "a table of pressures over overclosures".into(),
         "TIED" => {

@@ -8,6 +8,7 @@ use super::connections::Connections;
 use super::contacts::Contacts;
 use super::loads::item;
 use super::material::Material;
+use super::model_change::{self, Change};
 use super::place::Places;
 use super::sections::Section;
 use super::steps::Steps;
@@ -30,6 +31,8 @@ pub(super) struct Content {
     pub(super) contacts: Contacts,
     pub(super) connections: Connections,
     pub(super) steps: Steps,
+    /// Pairs that come and go.
+    pub(super) changes: Vec<Change>,
     /// The first step that asks for large displacements.
     pub(super) nlgeom: Option<LinePlace>,
 }
@@ -109,6 +112,11 @@ impl Content {
                 self.steps.read(places, block)?
             }
             "TIE" | "EQUATION" => self.connections.read(places, block)?,
+            "MODEL CHANGE" => {
+                let step = self.steps.is_open().then_some(self.steps.done.len());
+                let changes = model_change::read(places, block, &self.contacts.pairs, step)?;
+                self.changes.extend(changes);
+            }
             _ => self.contacts.read(places, block)?,
         }
         Ok(())

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 39] = [
+const READ: [&str; 40] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -45,6 +45,7 @@ const READ: [&str; 39] = [
     "CONTACT PROPERTY ASSIGNMENT",
     "TIE",
     "EQUATION",
+    "MODEL CHANGE",
     "STEP",
     "END STEP",
     "STATIC",
@@ -98,7 +99,7 @@ const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the answer: what is said of them, and what to do instead.
-const REFUSED: [(&[&str], &str, &str); 22] = [
+const REFUSED: [(&[&str], &str, &str); 21] = [
     (
         &[
             "PLASTIC",
@@ -213,11 +214,6 @@ const REFUSED: [(&[&str], &str, &str); 22] = [
         &["MASS", "ROTARY INERTIA", "USER ELEMENT"],
         "such elements aren't computed",
         "load the body by *DSLOAD",
-    ),
-    (
-        &["MODEL CHANGE"],
-        NOT_YET,
-        "leave it out, convert the deck, and say in the scene's [[step]] what is added and removed",
     ),
     (
         &[

@@ -5,7 +5,8 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 26] = [
+const PARAMETERS: [(&str, &[&str]); 27] = [
+    ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("MATERIAL", &["NAME", "RTOL"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
     ("EXPANSION", &["TYPE", "ZERO"]),

@@ -10,6 +10,7 @@ use super::group_load::{OnGroup, OnGroups};
 use super::groups::Groups;
 use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
+use super::model_change;
 use super::place::Places;
 use super::sections::{self, Body, Section};
 use super::steps::LoadStep;
@@ -74,16 +75,16 @@ pub(super) fn text(
     for load in &on_groups {
         load.write(0, "", &mut document);
     }
-    content.contact(places, (&sides, ties), &mut document, warnings)?;
+    let pairs = content.contact(places, (&sides, ties), &mut document, warnings)?;
     for equation in &equations {
         equation.write(&mut document);
     }
-    if content.steps.done.len() > 1 {
+    if content.steps.done.len() > 1 || !content.changes.is_empty() {
         for number in 0..content.steps.done.len() {
             content.step(
                 source,
                 number,
-                (&bodies, &names, &on_groups),
+                (&bodies, &names, &on_groups, &pairs),
                 dim,
                 &mut document,
             )?;
@@ -248,14 +249,15 @@ impl Content {
         Ok(force)
     }
 
-    /// Writes the contacts and ties.
+    /// Writes the contacts and ties, and returns the names of the pairs.
     fn contact(
         &self,
         places: &Places,
-        (sides, mut ties): (&[[String; 2]], Vec<SceneTie>),
+        (sides, ties): (&[[String; 2]], Vec<SceneTie>),
         document: &mut Document,
         warnings: &mut Vec<String>,
-    ) -> Result<(), InputError> {
+    ) -> Result<Vec<String>, InputError> {
+        let (mut pairs, mut tied) = (Vec::with_capacity(sides.len()), Vec::new());
         let mut taken = BTreeSet::new();
         let mut unique = |plain: String| {
             let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
@@ -264,18 +266,19 @@ impl Content {
             name.unwrap_or_default()
         };
         for (pair, [slave, master]) in self.contacts.pairs.iter().zip(sides) {
-            let plain = format!("{slave} on {master}").replace('/', " ");
+            let name = unique(format!("{slave} on {master}").replace('/', " "));
+            pairs.push(name.clone());
             if self.contacts.is_tied(pair) {
-                self.contacts.friction(places, pair, warnings)?;
-                ties.push(SceneTie {
-                    name: plain,
+                self.contacts.law_of(places, pair, warnings)?;
+                tied.push(SceneTie {
+                    name,
                     sides: [slave.clone(), master.clone()],
                     tolerance: None,
                     adjust: pair.adjust,
                 });
                 continue;
             }
-            let friction = self.contacts.friction(places, pair, warnings)?;
+            let law = self.contacts.law_of(places, pair, warnings)?;
             if pair.adjust && pair.gap.is_none() {
                 let place = places.source.place(pair.place);
                 warnings.push(format!(
@@ -283,27 +286,26 @@ impl Content {
                 ));
             }
             document.table("[[contact]]");
-            document.key("name", quoted(&unique(plain)));
+            document.key("name", quoted(&name));
             document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
             if let Some(gap) = pair.gap {
                 document.key("gap", format!("{gap:?}"));
             }
-            if friction != 0.0 {
-                document.key("friction", format!("{friction:?}"));
-            }
+            law.write(document);
         }
         for tie in &ties {
             tie.write(&unique(tie.name.clone()), document);
         }
-        if let Some(friction) = self.contacts.general(places, warnings)? {
+        for tie in &tied {
+            tie.write(&tie.name, document);
+        }
+        if let Some(law) = self.contacts.general(places, warnings)? {
             document.table("[[contact]]");
             document.key("name", quoted("contact"));
             document.key("between", quoted("all"));
-            if friction != 0.0 {
-                document.key("friction", format!("{friction:?}"));
-            }
+            law.write(document);
         }
-        Ok(())
+        Ok(pairs)
     }
 
     /// Writes a load step: all that it has in place of the scene's loads.
@@ -311,7 +313,7 @@ impl Content {
         &self,
         source: &Source,
         number: usize,
-        (bodies, names, on_groups): (&[Body], &[String], &[OnGroup]),
+        (bodies, names, on_groups, pairs): (&[Body], &[String], &[OnGroup], &[String]),
         dim: usize,
         document: &mut Document,
     ) -> Result<(), InputError> {
@@ -321,6 +323,7 @@ impl Content {
             document.key("name", quoted(name));
         }
         document.key("time", format!("{:?}", step.time));
+        model_change::write(&self.changes, number, pairs, document);
         for list in ["displacement", "pressure", "traction", "force"] {
             let mut of_list = on_groups.iter().filter(|load| load.list == list).peekable();
             let acts = on_groups

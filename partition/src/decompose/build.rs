@@ -105,6 +105,7 @@ fn summary(contact: &model::Contact) -> ContactSummary {
             .points
             .first()
             .map_or_else(ContactKind::default, ContactKind::of),
+        is_compliant: contact.points.iter().any(ContactPoint::is_compliant),
     }
 }
 
@@ -130,12 +131,15 @@ fn cut(
             interface: Vec::new(),
             shares: NodalShares::default(),
             steps: vec![StepLoads::default(); model.steps.len()],
+            reference_nodes: 0,
+            auxiliary_nodes: 0,
         })
         .collect();
     for (node, list) in owners.of.iter().enumerate() {
         for &(owner, local) in list {
             let subdomain = &mut subdomains[owner as usize];
             subdomain.points.push(mesh.points[node]);
+            subdomain.reference_nodes += usize::from(model.is_reference(node));
             subdomain.node_tags.push(mesh.node_tags[node]);
             if let Some(interface) = owners.interface[node] {
                 subdomain.interface.push(InterfaceNode {

@@ -110,13 +110,16 @@ impl fmt::Display for Summary<'_> {
             let (points, name) = (contact.conditions, &contact.name);
             let friction = catalog.friction(index).map(|words| format!(", {words}"));
             let friction = friction.unwrap_or_default();
+            let stiffness = catalog.contact_stiffness(index);
+            let stiffness = stiffness.map_or(String::new(), |words| format!(", {words}"));
             let tied = match contact.kind {
                 ContactKind::Tie => ", tied",
+                ContactKind::Coupling => ", coupled",
                 ContactKind::Unilateral | ContactKind::Equation => "",
             };
             writeln!(
                 f,
-                "              {points:>6} on {name}{pairing}{friction}{tied}"
+                "              {points:>6} on {name}{pairing}{friction}{stiffness}{tied}"
             )?;
         }
         write!(f, "groups        {}", self.sizes_of_groups())

@@ -1,8 +1,9 @@
 //! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
+mod laws;
 mod tie;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::held_nodes::{HeldNodes, ROUNDING};
 use super::mortar::{self, Mortar};
@@ -10,16 +11,15 @@ use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
 use super::surface::{CORNER, Surface, SurfaceFacet, Turn};
 use super::{Contact, groups, node_pairs, obstacle};
-use crate::contact_point::{ContactPoint, Law, Probe};
+use crate::contact_point::{ContactPoint, Probe};
 use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-use crate::scene::condition::Names;
+use crate::scene::condition::{Names, Obstacle};
 use crate::scene::contact::{self, Pairing, Partner};
-use crate::scene::friction::Friction;
 use crate::scene::material::PlaneState;
 use crate::scene::number::Number;
 use crate::scene::units::Units;
@@ -38,9 +38,6 @@ const FELT: f64 = 0.1;
 /// Height of the kinks between straight quadratic facets over their size from which on they are those of a curve.
 const KINKED: f64 = 1e-4;
 
-/// Coefficients of friction beyond this are rather angles in degrees, or meant as infinite, which costs digits.
-const STEEP: f64 = 10.0;
-
 /// The points of a contact before its laws.
 #[derive(Default)]
 struct Paired {
@@ -57,6 +54,8 @@ pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     held: HeldNodes,
+    /// The displacements of obstacles, by the names of their contacts.
+    motions: BTreeMap<&'a str, Vec<[f64; 3]>>,
     /// The largest coordinate (m).
     size: f64,
     plane: Option<PlaneState>,
@@ -64,12 +63,13 @@ pub(super) struct Contacts<'a> {
 }
 
 impl<'a> Contacts<'a> {
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, held: HeldNodes, scene: &Scene) -> Self {
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, held: HeldNodes, scene: &'a Scene) -> Self {
         let coordinates = mesh.points.iter().flatten();
         Self {
             mesh,
             topology,
             held,
+            motions: scene.motions(),
             size: coordinates.map(|c| c.abs()).fold(0.0, f64::max),
             plane: scene.plane,
             units: scene.units,
@@ -100,12 +100,8 @@ impl<'a> Contacts<'a> {
         let (facets, side_a) = self.side(&keys.side_a, &what)?;
         let mut paired = match &keys.partner {
             Partner::Obstacle(obstacle) => {
-                let nodes = side_nodes(self.mesh, &side_a, &what, &HashSet::new())?;
-                let points = obstacle::points(self.mesh, obstacle, &side_a, nodes);
-                Paired {
-                    points: points.map_err(InputError::about(&what))?,
-                    ..Paired::default()
-                }
+                let motion = self.motions.get(&keys.name[..]).cloned();
+                self.of_obstacle((obstacle, motion.unwrap_or_default()), &side_a, &what)?
             }
             Partner::Side(names) => {
                 let on_a = facets.into_iter().collect();
@@ -127,12 +123,17 @@ impl<'a> Contacts<'a> {
         }
         let Paired {
             mut points,
-            probes,
+            mut probes,
             off,
             ..
         } = paired;
         if let Some(friction) = &keys.friction {
-            warnings.extend(give_friction(friction, &mut points, &what)?);
+            warnings.extend(laws::give_friction(friction, &mut points, &what)?);
+        }
+        if let Some(stiffness) = &keys.stiffness {
+            laws::give_stiffness(stiffness, &mut points, &what)?;
+            // Its sides overlap where they press.
+            probes.clear();
         }
         if !keys.interference {
             warnings.extend(self.interference(&points, &side_a, off, &what));
@@ -155,6 +156,21 @@ impl<'a> Contacts<'a> {
             name: keys.name.clone(),
             points: kept,
             probes,
+        })
+    }
+
+    /// The points of side a in front of an obstacle, and its motion.
+    fn of_obstacle(
+        &self,
+        obstacle: (&Obstacle, Vec<[f64; 3]>),
+        side_a: &Surface,
+        what: &str,
+    ) -> Result<Paired, InputError> {
+        let nodes = side_nodes(self.mesh, side_a, what, &HashSet::new())?;
+        let points = obstacle::points(self.mesh, obstacle, side_a, nodes);
+        Ok(Paired {
+            points: points.map_err(InputError::about(what))?,
+            ..Paired::default()
         })
     }
 
@@ -353,37 +369,6 @@ fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
              that pressures oscillate from node to node; expected nodes on edges that lie on the curve, or linear cells, \
              whose pressures don't",
             short(off / side.facet_size())
-        )
-    })
-}
-
-/// Gives points their law of friction; the warning of a coefficient that is more likely an angle.
-///
-/// # Errors
-/// A value that isn't what it should be at a point.
-fn give_friction(
-    friction: &Friction,
-    points: &mut [ContactPoint<u32>],
-    what: &str,
-) -> Result<Option<String>, InputError> {
-    for point in &mut *points {
-        point.law = (friction.at(point.position))
-            .map_err(|reason| InputError::new(format!("{what}.{reason} (node {})", point.tag())))?;
-    }
-    Ok(steep_friction(points, what))
-}
-
-/// The warning of a coefficient of friction that is more likely an angle.
-fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
-    let coefficients = points.iter().map(|point| match point.law {
-        Law::Coulomb { coefficient, .. } => coefficient,
-        Law::Given { .. } | Law::Frictionless | Law::Tied => 0.0,
-    });
-    let largest = coefficients.fold(0.0, f64::max);
-    (largest > STEEP).then(|| {
-        format!(
-            "{what}.friction: a coefficient of {}; expected the tangent of the friction angle, a number like 0.6",
-            short(largest)
         )
     })
 }

@@ -9,6 +9,7 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::scene::Scene;
 use crate::scene::equation::Equation;
+use crate::scene::step::LoadStep;
 
 /// Factor of a node, relative to the largest, that is none.
 const NOTHING: f64 = 1e-14;
@@ -26,7 +27,7 @@ pub(super) fn equations(
     for (index, equation) in scene.equation.iter().enumerate() {
         let what = format!("equation[{}]", index + 1);
         let name = &equation.name;
-        let point = point(equation, mesh, &what)?;
+        let point = point((equation, &scene.step), mesh, &what)?;
         let place = match all.iter().position(|of| of.name == *name) {
             Some(place) => place,
             None => {
@@ -49,7 +50,11 @@ pub(super) fn equations(
 }
 
 /// The point of an equation.
-fn point(equation: &Equation, mesh: &Mesh, what: &str) -> Result<ContactPoint<u32>, InputError> {
+fn point(
+    (equation, steps): (&Equation, &[LoadStep]),
+    mesh: &Mesh,
+    what: &str,
+) -> Result<ContactPoint<u32>, InputError> {
     let mut nodes = Vec::new();
     let mut factors: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     let mut scale = 0.0;
@@ -78,8 +83,25 @@ fn point(equation: &Equation, mesh: &Mesh, what: &str) -> Result<ContactPoint<u3
         .collect();
     let entries = nodes.iter().map(|node| (*node, size(node))).collect();
     let position = mesh.points[node as usize];
+    let values: Vec<f64> = (steps.iter())
+        .map(|step| {
+            step.equation
+                .get(&equation.name)
+                .copied()
+                .unwrap_or(equation.value)
+        })
+        .collect();
+    let gap = values.first().copied().unwrap_or(equation.value);
+    let motion = match values.iter().all(|&value| value == gap) {
+        true => Vec::new(),
+        false => (values
+            .iter()
+            .map(|value| axes[0].map(|c| (value - gap) * c)))
+        .collect(),
+    };
     Ok(ContactPoint {
-        gap: equation.value,
+        gap,
+        motion,
         area: 1.0,
         law: Law::Tied,
         axes: axes.clone(),

@@ -81,9 +81,12 @@ impl HeldNodes {
     }
 
     /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None`
-    /// if one is free.
+    /// if one is free, or what lies between the sides gives way.
     fn prescribed_jump(&self, point: &ContactPoint<u32>) -> Option<Vec<f64>> {
         let mut jumps = Vec::new();
+        if point.is_compliant() {
+            return None;
+        }
         for (node, row) in point.row() {
             let mut free = row;
             for held in self.0.get(&node)? {
@@ -97,6 +100,9 @@ impl HeldNodes {
             if length(free) > PARALLEL {
                 return None;
             }
+        }
+        for (jump, motion) in jumps.iter_mut().zip(&point.motion) {
+            *jump -= dot(point.normal(), *motion);
         }
         Some(jumps)
     }

@@ -198,7 +198,7 @@ fn nodal_forces(
 }
 
 /// Adds ∫ N_i τ dS, with τ dS from the place and n dS.
-fn surface_load(
+pub(super) fn surface_load(
     surface: &Surface,
     forces: &mut [[f64; 3]],
     load: impl Fn([f64; 3], [f64; 3]) -> Result<[f64; 3], String>,

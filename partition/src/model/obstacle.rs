@@ -16,9 +16,12 @@ use crate::scene::condition::Obstacle;
 ///
 /// From the other nodes the body itself lies between them and the obstacle. Without them a whole
 /// outline may be given as a side, and a node meets one of two opposite walls only.
+///
+/// One that moves is where its `motion` ends when distances are measured, so that they are right there: of round ones
+/// they are linear on the way.
 pub(super) fn points(
     mesh: &Mesh,
-    obstacle: &Obstacle,
+    (obstacle, motion): (&Obstacle, Vec<[f64; 3]>),
     side: &Surface,
     nodes: Vec<SideNode>,
 ) -> Result<Vec<ContactPoint<u32>>, String> {
@@ -30,11 +33,12 @@ pub(super) fn points(
         let area: f64 = facing.map(|facet| facet.tributary_area(a.node)).sum();
         if area > 0.0 { area } else { a.tributary_area }
     };
+    let end = motion.last().copied().unwrap_or_default();
     let mut points = Vec::with_capacity(nodes.len());
     let mut place = HashMap::new();
     for a in nodes {
         let tag = mesh.node_tags[a.node as usize];
-        let Some((distance, out)) = distance(obstacle, a.position) else {
+        let Some((distance, out)) = distance(obstacle, difference(a.position, end)) else {
             return Err(format!(
                 "node {tag} lies in the obstacle's centre, where no point of it is nearest"
             ));
@@ -58,6 +62,10 @@ pub(super) fn points(
         );
     }
     blend_corners(side, &mut points, &place);
+    for point in &mut points {
+        point.gap -= dot(point.normal(), end);
+        point.motion.clone_from(&motion);
+    }
     Ok(points)
 }
 

@@ -28,6 +28,8 @@ pub struct NodePlace {
     pub body: usize,
     /// Coordinates (m).
     pub at: [f64; 3],
+    /// Whether it is an [auxiliary](super::auxiliary) one, on neither side.
+    pub is_auxiliary: bool,
 }
 
 /// The nodes that contact points name.
@@ -61,6 +63,9 @@ impl Places {
         if point.is_equation() {
             return self.fault_of_equation(point);
         }
+        let is_auxiliary =
+            |node: &SubdomainNode| self.nodes.get(node).is_some_and(|of| of.is_auxiliary);
+        let point = &point.rename(|node| (!is_auxiliary(&node)).then_some(node));
         let extent = self.extent;
         let around =
             PlaneState::thickness(self.plane, [point.position[0].abs() + extent, 0.0, 0.0]);
@@ -95,7 +100,7 @@ impl Places {
             place.is_some_and(|place| place.tag == point.tag_a)
         });
         let what = "expected the tag (GlobalNodeId) of a node of the equation";
-        (!named).then(|| ("node_a", format!("{}; {what}", point.tag_a)))
+        (!named && point.tag() != -1).then(|| ("node_a", format!("{}; {what}", point.tag_a)))
     }
 
     /// The fault of a point in the nodes that it names.

@@ -13,6 +13,8 @@ pub struct ContactSummary {
     pub has_friction: bool,
     /// The kind of its conditions.
     pub kind: ContactKind,
+    /// Whether one of its points is compliant.
+    pub is_compliant: bool,
 }
 
 /// Kind of the conditions of a contact.
@@ -25,6 +27,8 @@ pub enum ContactKind {
     Tie,
     /// A linear equation between displacements.
     Equation,
+    /// Nodes that follow a reference point.
+    Coupling,
 }
 
 impl ContactKind {
@@ -33,6 +37,7 @@ impl ContactKind {
         match (point.law.is_tied(), point.axes.is_empty()) {
             (false, _) => Self::Unilateral,
             (true, true) => Self::Tie,
+            (true, false) if [point.tag_a, point.tag_b] == [-1; 2] => Self::Coupling,
             (true, false) => Self::Equation,
         }
     }
@@ -43,6 +48,7 @@ impl ContactKind {
             Self::Unilateral => "contact",
             Self::Tie => "tie",
             Self::Equation => "equation",
+            Self::Coupling => "coupling",
         }
     }
 }

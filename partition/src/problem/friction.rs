@@ -1,4 +1,4 @@
-//! Friction of a contact in words.
+//! Friction and stiffness of a contact in words.
 
 use super::Catalog;
 use super::law::LawRow;
@@ -38,6 +38,21 @@ impl Catalog {
             words.push(format!("on {} of {all}", laws.len()));
         }
         (!words.is_empty()).then(|| words.join(", "))
+    }
+
+    /// The stiffness of a contact in words, per area; `None` of a rigid one.
+    pub fn contact_stiffness(&self, contact: usize) -> Option<String> {
+        let points = self.points.iter();
+        let of = points.filter(|point| point.contact as usize == contact && point.is_compliant());
+        let unit = format!("{}/{}", self.units.stress(), self.units.length());
+        let along = |direction: usize| {
+            let per_area = of.clone().map(move |p| p.stiffness[direction] / p.area);
+            // An area and the same one divided by leave round-off.
+            range(per_area.filter(|&k| k > 0.0))
+        };
+        let normal = along(0)?;
+        let tangential = along(1).map_or(String::new(), |k| format!(" and {k} along tangents"));
+        Some(format!("stiffness {normal} {unit}{tangential}"))
     }
 }
 

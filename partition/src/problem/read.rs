@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 
 use self::contents::Contents;
 use self::header::Header;
+use super::auxiliary::AuxiliaryNodes;
 use super::consistency::{NodePlace, Places};
 use super::copies::NodeCopies;
 use super::{Catalog, Problem, Subdomain, SubdomainNode};
@@ -37,6 +38,7 @@ pub struct ProblemFile {
     path: PathBuf,
     contents: Contents,
     catalog: Catalog,
+    auxiliary: AuxiliaryNodes,
 }
 
 /// Signature of an HDF5 file.
@@ -92,8 +94,9 @@ impl ProblemFile {
             })?;
         let header = Header::read(&file)?;
         let contents = Contents::open(&file, header.dim, header.plane)?;
-        let catalog = catalog::read(&file, header, &contents)?;
+        let mut catalog = catalog::read(&file, header, &contents)?;
         Ok(Self {
+            auxiliary: catalog.add_auxiliary_nodes(),
             path: path.to_path_buf(),
             contents,
             catalog,
@@ -152,6 +155,7 @@ impl ProblemFile {
                 tag: subdomain.node_tags[node.node as usize],
                 body: subdomain.body,
                 at: subdomain.points[node.node as usize],
+                is_auxiliary: node.node as usize >= subdomain.body_nodes(),
             };
             (node, place)
         };

@@ -3,6 +3,7 @@
 //! docs/problem-file.md are made from it.
 
 mod counts;
+mod kind;
 mod letters;
 
 use self::Kind::{
@@ -10,57 +11,8 @@ use self::Kind::{
     Offsets, Positive, Sizes, UnitVectors,
 };
 pub use self::counts::Counts;
+pub use self::kind::Kind;
 pub use self::letters::LETTERS;
-
-/// Content of a dataset, and the law that each of its values keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Integers.
-    Integers,
-    /// Numbers from 0 on of what a letter counts; the word says what in messages.
-    Indices(&'static str, char),
-    /// Numbers from 0 on of so many things, which the meaning lists; the word says what in messages.
-    Codes(&'static str, usize),
-    /// Positive integers whose sum is what a letter counts.
-    Sizes(char),
-    /// Integers that rise from 0 to what a letter counts.
-    Offsets(char),
-    /// Finite numbers.
-    Numbers,
-    /// Finite numbers above 0.
-    Positive,
-    /// Finite numbers from 0 on.
-    NotNegative,
-    /// Finite numbers, or NaN where one isn't known.
-    NumbersOrNan,
-    /// Finite numbers, of which each row is a unit vector.
-    UnitVectors,
-    /// Lines of text.
-    Lines,
-    /// Names, one at least.
-    Names,
-    /// Names of groups in the result file, each another one.
-    GroupNames,
-}
-
-impl Kind {
-    /// The word for its values.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Integers
-            | Self::Indices(..)
-            | Self::Codes(..)
-            | Self::Sizes(_)
-            | Self::Offsets(_) => "integers",
-            Self::Numbers
-            | Self::Positive
-            | Self::NotNegative
-            | Self::NumbersOrNan
-            | Self::UnitVectors => "numbers",
-            Self::Lines | Self::Names | Self::GroupNames => "strings",
-        }
-    }
-}
 
 /// A dataset.
 #[derive(Debug)]
@@ -182,6 +134,9 @@ pub const FIELDS: &[Field] = &[
         "a body is what hangs together through shared nodes, its subdomains through Γ"),
     field("/subdomains/body", "N", Indices("body", 'B'), "body of each subdomain"),
     field("/subdomains/group", "N", Integers, "contact group of each subdomain, −1 for none"),
+    optional("/subdomains/reference", "N", Integers,
+        "number of the last points of each subdomain that no cell has: corners of the frames of reference points of couplings, \
+         which move with its body; without it there are none"),
     field("/hierarchy/parent", "T", Integers, "parent of each node, −1 for a root"),
     optional("/hierarchy/cluster", "Z", Indices("node of the hierarchy", 'T'),
         "the nodes between which `--interface iterative` works, strictly ascending: each subdomain is one of them or \
@@ -257,6 +212,13 @@ pub const FIELDS: &[Field] = &[
         "coefficient of friction; 0 but for Coulomb's; with `law` and `shear_bound` or not at all"),
     optional("/contact/shear_bound", "R", NotNegative,
         "bound of the tangential force over `area` [Pa]; 0 where there is no friction"),
+    optional("/contact/stiffness", "R, 2", NotNegative,
+        "stiffness of what lies between the sides, along the normal and along the tangents, its `area` times the stiffness per \
+         area [N/m]; 0 where it is rigid. Along the normal the sides overlap by force over stiffness, along the tangents what \
+         sticks is displaced by it"),
+    optional("/contact/motion", "R, L?, d", Numbers,
+        "displacement of the obstacle that the point faces, in every load step [m]; of an equation, along the axis of its first \
+         entry, what its value is beyond `gap`; zeros at other points"),
     field("/probe/contact", "V", Indices("contact", 'Q'),
         "index of the contact of which the probe says whether its sides penetrate where no condition holds them"),
     field("/probe/node", "V", Integers, "name (`GlobalNodeId`) of its node, on the side without conditions"),

@@ -120,6 +120,10 @@ impl Problem {
         datasets.put("/subdomains/body", subdomains.iter().map(|s| s.body as i64))?;
         let groups = subdomains.iter().map(|s| s.group.map_or(-1, |g| g as i64));
         datasets.put("/subdomains/group", groups)?;
+        if self.subdomains.iter().any(|s| s.reference_nodes > 0) {
+            let counts = self.subdomains.iter().map(|s| s.reference_nodes as i64);
+            datasets.put("/subdomains/reference", counts)?;
+        }
         let parents = catalog.hierarchy.parent.iter();
         datasets.put(
             "/hierarchy/parent",
@@ -259,6 +263,17 @@ impl Problem {
             };
             let all: Vec<[f64; 3]> = points().flat_map(axes).collect();
             datasets.vectors("/contact/entry_axis", all.iter())?;
+        }
+        if points().any(ContactPoint::is_compliant) {
+            datasets.put("/contact/stiffness", points().flat_map(|p| p.stiffness))?;
+        }
+        if points().any(|p| !p.motion.is_empty()) {
+            let steps = self.catalog.steps.len().max(1);
+            let in_step = |p: &ContactPoint<SubdomainNode>, k: usize| p.motion.get(k).copied();
+            let all: Vec<[f64; 3]> = points()
+                .flat_map(|p| (0..steps).map(move |k| in_step(p, k).unwrap_or_default()))
+                .collect();
+            datasets.vectors("/contact/motion", all.iter())?;
         }
         if points().all(|p| p.law == Law::Frictionless) {
             return Ok(());

@@ -3,9 +3,10 @@
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
+use super::compliance::ContactStiffness;
 use super::condition::{Names, Obstacle};
 use super::friction::{self, Friction};
-use super::number::{Constant, Number};
+use super::number::{Constant, ConstantVector, Number};
 use crate::name;
 
 /// A table `[[contact]]`.
@@ -35,13 +36,19 @@ impl Declaration {
         }
     }
 
-    /// The gap in place of the geometric one (m), and the law of friction.
-    pub(super) fn laws(&self) -> (Option<&Number>, Option<&Friction>) {
-        let (gap, friction) = match self {
-            Self::Contact(contact) => (&contact.gap, &contact.friction),
-            Self::Between(between) => (&between.gap, &between.friction),
+    /// The gap in place of the geometric one (m), the law of friction, and the stiffness.
+    pub(super) fn laws(
+        &self,
+    ) -> (
+        Option<&Number>,
+        Option<&Friction>,
+        Option<&ContactStiffness>,
+    ) {
+        let (gap, friction, stiffness) = match self {
+            Self::Contact(of) => (&of.gap, &of.friction, &of.stiffness),
+            Self::Between(of) => (&of.gap, &of.friction, &of.stiffness),
         };
-        (gap.as_ref(), friction.as_ref())
+        (gap.as_ref(), friction.as_ref(), stiffness.as_ref())
     }
 }
 
@@ -56,12 +63,16 @@ pub struct Contact {
     pub partner: Partner,
     /// The discretization of two sides; `None` to let their nodes decide.
     pub pairing: Option<Pairing>,
+    /// The displacement of the obstacle (m); `None` of one that doesn't move, but for steps.
+    pub motion: Option<ConstantVector>,
     /// The gap in place of the geometric one (m).
     pub gap: Option<Number>,
     /// Whether negative gaps are intended.
     pub interference: bool,
     /// Law of friction; `None` without.
     pub friction: Option<Friction>,
+    /// The stiffness of what lies between the sides; `None` where they don't overlap.
+    pub stiffness: Option<ContactStiffness>,
     /// What is tied, where it is a tie; `None` of sides that may part.
     pub tie: Option<TieReach>,
 }
@@ -124,6 +135,8 @@ pub struct Between {
     pub interference: bool,
     /// As in [`Contact`].
     pub friction: Option<Friction>,
+    /// As in [`Contact`].
+    pub stiffness: Option<ContactStiffness>,
 }
 
 impl Between {
@@ -133,10 +146,12 @@ impl Between {
             name,
             side_a,
             partner: Partner::Side(side_b),
+            motion: None,
             pairing: self.pairing,
             gap: self.gap.clone(),
             interference: self.interference,
             friction: self.friction.clone(),
+            stiffness: self.stiffness.clone(),
             tie: None,
         }
     }
@@ -184,8 +199,8 @@ impl Chosen {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, sides or between, within, pairing, gap, interference, obstacle, friction, cohesion \
-                 and tresca"
+    expecting = "a table of name, sides or between, within, pairing, gap, interference, obstacle, motion, friction, \
+                 cohesion, tresca and stiffness"
 )]
 struct Keys {
     #[serde(deserialize_with = "contact_name")]
@@ -199,18 +214,41 @@ struct Keys {
     #[serde(default)]
     interference: bool,
     obstacle: Option<Obstacle>,
+    motion: Option<ConstantVector>,
     #[serde(default, deserialize_with = "friction::bound")]
     friction: Option<Number>,
     #[serde(default, deserialize_with = "friction::bound")]
     cohesion: Option<Number>,
     #[serde(default, deserialize_with = "friction::bound")]
     tresca: Option<Number>,
+    stiffness: Option<ContactStiffness>,
+}
+
+impl Keys {
+    /// Refuses keys that need another one beside them.
+    fn check(&self) -> Result<(), String> {
+        let sticks = self.friction.is_some() || self.tresca.is_some();
+        let has_tangential = |stiffness: &ContactStiffness| stiffness.tangential.is_some();
+        if !sticks && self.stiffness.as_ref().is_some_and(has_tangential) {
+            return Err(
+                "'tangential' is of what sticks; expected 'friction' or 'tresca' beside it".into(),
+            );
+        }
+        if self.motion.is_some() && self.obstacle.is_none() {
+            return Err(
+                "'motion' is of an 'obstacle', which is missing; a body moves by [[displacement]]"
+                    .into(),
+            );
+        }
+        Ok(())
+    }
 }
 
 impl TryFrom<Keys> for Declaration {
     type Error = String;
 
     fn try_from(keys: Keys) -> Result<Self, String> {
+        keys.check()?;
         let friction = Friction::new(keys.friction, keys.cohesion, keys.tresca)?;
         let sides = match (keys.between, keys.sides) {
             (Some(_), Some(_)) => {
@@ -228,6 +266,7 @@ impl TryFrom<Keys> for Declaration {
                     gap: keys.gap,
                     interference: keys.interference,
                     friction,
+                    stiffness: keys.stiffness,
                 }));
             }
             (None, None) => {
@@ -261,10 +300,12 @@ impl TryFrom<Keys> for Declaration {
             name: keys.name,
             side_a,
             partner,
+            motion: keys.motion,
             pairing: keys.pairing,
             gap: keys.gap,
             interference: keys.interference,
             friction,
+            stiffness: keys.stiffness,
             tie: None,
         }))
     }

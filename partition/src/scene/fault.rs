@@ -42,6 +42,8 @@ impl Scene {
             .or_else(|| self.plane.and_then(|_| self.wrong_dimension(2)))
             .or_else(|| self.wrong_step())
             .or_else(|| self.wrong_change())
+            .or_else(|| self.wrong_motion())
+            .or_else(|| self.wrong_coupling())
     }
 
     fn wrong_name(&self) -> Option<Fault> {
@@ -204,6 +206,8 @@ impl Scene {
             }
         }
         self.wrong_contacts(dim, &mut check);
+        self.motions_of_wrong_dimension(dim, &mut check);
+        self.couplings_of_wrong_dimension(dim, &mut check);
         found.into_iter().next()
     }
 
@@ -246,7 +250,9 @@ impl Scene {
             {
                 check(entry("contact", index, "obstacle"), obstacle.fault(dim));
             }
-            let (gap, friction) = contact.laws();
+            let (gap, friction, stiffness) = contact.laws();
+            let stiffness = stiffness.and_then(|stiffness| stiffness.fault(dim));
+            check(entry("contact", index, "stiffness"), stiffness);
             let gap = gap.and_then(|gap| gap.fault(dim));
             check(entry("contact", index, "gap"), gap);
             if let Some((key, fault)) = friction.and_then(|law| law.fault(dim)) {

@@ -7,7 +7,8 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, Visitor};
 
 use super::condition::{Displacement, Force, Names, Pressure, Traction};
-use super::number::{Constant, Number, Vector};
+use super::coupling::CouplingLoads;
+use super::number::{Constant, ConstantVector, Number, Vector};
 use super::place;
 
 /// A load step as a scene gives it.
@@ -15,7 +16,8 @@ use super::place;
 #[serde(
     deny_unknown_fields,
     default,
-    expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure, force and displacement"
+    expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure, force, displacement, \
+                 motion, equation and coupling"
 )]
 pub struct LoadStep {
     /// Name; its number without.
@@ -33,6 +35,14 @@ pub struct LoadStep {
     pub body_force: BTreeMap<String, Vector>,
     /// Temperatures in place of those of these bodies (K).
     pub temperature: BTreeMap<String, Number>,
+    /// Displacements in place of those of the obstacles of these contacts (m).
+    pub motion: BTreeMap<String, ConstantVector>,
+    /// Values in place of those of the equations of these names (m).
+    #[serde(deserialize_with = "values")]
+    pub equation: BTreeMap<String, f64>,
+    /// What acts on the reference points of the couplings of these names, and is prescribed there, where it is given here in
+    /// place of what the scene says.
+    pub coupling: BTreeMap<String, CouplingLoads>,
     /// In place of all tractions of the scene.
     #[serde(deserialize_with = "list")]
     pub traction: Option<Vec<Traction>>,
@@ -63,7 +73,7 @@ pub struct Scale {
     /// Of forces on nodes.
     #[serde(deserialize_with = "number")]
     pub force: f64,
-    /// Of prescribed displacements.
+    /// Of prescribed displacements, those of obstacles among them.
     #[serde(deserialize_with = "number")]
     pub displacement: f64,
     /// Of initial stresses.
@@ -134,6 +144,14 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
 
 fn time<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     number(deserializer).map(Some)
+}
+
+fn values<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, f64>, D::Error> {
+    let values = BTreeMap::<String, Constant>::deserialize(deserializer)?;
+    Ok(values
+        .into_iter()
+        .map(|(name, Constant(value))| (name, value))
+        .collect())
 }
 
 fn list<'de, D, T>(deserializer: D) -> Result<Option<Vec<T>>, D::Error>

@@ -4,7 +4,8 @@
 use toml::de::Error;
 
 /// The lists of a scene, `[[contact]]`, once for each.
-const LISTS: [&str; 10] = [
+const LISTS: [&str; 11] = [
+    "coupling",
     "displacement",
     "bilateral",
     "traction",

@@ -31,6 +31,8 @@ impl Tie {
             gap: None,
             interference: true,
             friction: None,
+            motion: None,
+            stiffness: None,
             tie: Some(self.reach),
         }
     }

@@ -179,17 +179,65 @@ fn what_is_left_out_is_named_once() {
     let blocks = step("*NODE PRINT, NSET=Top\nU\n*EL FILE\nS\n*DLOAD\nUpper, P2, 1.")
         .replace("STEP\n", "STEP, NLGEOM\n");
     let blocks = blocks.replace("END STEP, NLGEOM", "END STEP");
-    let deck =
-        format!("{CUBES}{MODEL}{blocks}").replace("OVERCLOSURE=HARD", "OVERCLOSURE=LINEAR\n1e7");
+    let deck = format!("{CUBES}{MODEL}{blocks}")
+        .replace("OVERCLOSURE=HARD", "OVERCLOSURE=EXPONENTIAL\n1e-3, 5.");
     let warnings = read(&deck).unwrap().mesh.warnings.join("\n");
     for expected in [
         "not needed, and left out: *EL FILE, *NODE PRINT",
         "line 50: NLGEOM is left out",
-        "line 42: the linear law of contact (K = 1e7: there sides overlap by p/K) is taken as hard contact",
+        "line 42: the exponential law of contact (p0 = 5. at no clearance, 0 at 1e-3) is taken as hard contact",
     ] {
         assert!(warnings.contains(expected), "{expected}: {warnings}");
     }
     assert_eq!(warnings.lines().count(), 3, "{warnings}");
+}
+
+#[test]
+fn linear_pressure_over_overclosure_is_a_stiffness() {
+    let deck = format!("{CUBES}{MODEL}{}", step("*DLOAD\nUpper, P2, 1."));
+    let of = |law: &str| read(&deck.replace("OVERCLOSURE=HARD", law));
+    let translation = of("OVERCLOSURE=LINEAR\n1e7, .2").unwrap();
+    assert!(translation.mesh.warnings.is_empty());
+    let scene = Scene::parse(&translation.scene).unwrap();
+    let stiffness = scene.contact[0].contact().unwrap().stiffness.clone();
+    assert_eq!(stiffness.unwrap().at([0.0; 3]).unwrap(), [1e7, 0.0]);
+    for law in ["OVERCLOSURE=LINEAR", "OVERCLOSURE=LINEAR\n-1."] {
+        let error = of(law).err().unwrap();
+        assert!(
+            error.contains("slope of pressure over overclosure"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn pairs_of_contact_come_and_go() {
+    let change = |what: &str| format!("*MODEL CHANGE, TYPE=CONTACT PAIR, {what}\nHigh, Low\n");
+    let deck = |changes: [&str; 2]| {
+        let steps = changes.map(|changes| step(&format!("{changes}*DLOAD\nUpper, P2, 1.")));
+        format!("{CUBES}{MODEL}{}", steps.concat())
+    };
+    let translation = read(&deck([&change("REMOVE"), &change("ADD")])).unwrap();
+    let scene = Scene::parse(&translation.scene).unwrap();
+    let name = scene.contact[0].name();
+    let absent: Vec<Vec<&str>> = (scene.absent().into_iter())
+        .map(|names| names.into_iter().collect())
+        .collect();
+    assert_eq!(absent, [vec![name], vec![]]);
+    for (changes, expected) in [
+        (
+            change("REMOVE").replace("High", "Nothing"),
+            "there is no *CONTACT PAIR",
+        ),
+        (change("REMOVE, ADD"), "neither or both of ADD and REMOVE"),
+        (
+            change("REMOVE").replace("CONTACT PAIR", "ELEMENT"),
+            "of TYPE=ELEMENT isn't read",
+        ),
+    ] {
+        let error = read(&deck([&changes, ""])).err().unwrap();
+        assert!(error.contains(expected), "{error}");
+    }
 }
 
 #[test]

@@ -128,6 +128,7 @@ impl Builder {
             tips: Vec::new(),
             goals: Goals::default(),
             found: Vec::new(),
+            reference_nodes: Vec::new(),
             prescribed_subdomains: None,
             warnings: vec!["something".into()],
         }

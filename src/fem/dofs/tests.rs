@@ -29,6 +29,8 @@ fn square() -> Subdomain {
         interface: Vec::new(),
         shares: NodalShares::default(),
         steps: Vec::new(),
+        reference_nodes: 0,
+        auxiliary_nodes: 0,
     }
 }
 

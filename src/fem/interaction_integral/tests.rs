@@ -78,6 +78,8 @@ fn block(tip: &CrackTip) -> Block {
             interface: Vec::new(),
             shares: NodalShares::default(),
             steps: Vec::new(),
+            reference_nodes: 0,
+            auxiliary_nodes: 0,
         },
         interface: Vec::new(),
         slides: BTreeMap::new(),

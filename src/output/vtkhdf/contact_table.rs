@@ -17,7 +17,8 @@ pub(super) struct ContactTables {
 #[derive(Debug)]
 struct Table {
     name: String,
-    columns: Vec<Written>,
+    /// Each with its place among all.
+    columns: Vec<(usize, Written)>,
     written: Vec<bool>,
 }
 
@@ -28,13 +29,15 @@ enum In {
     Each,
     /// Each one, where the contact has friction or is a tie.
     EachWithFriction,
+    /// Each one, where the contact is compliant.
+    EachOfCompliant,
 }
 
 /// The values of a column in some rows.
 type Values = fn(&[ContactRow]) -> Box<dyn List>;
 
-/// The columns, those of contacts with friction last.
-const COLUMNS: [(&str, In, Values); 10] = [
+/// The columns, those that not every contact has last.
+const COLUMNS: [(&str, In, Values); 11] = [
     ("node_a", In::First, |run| list(run, |(p, _)| p.tag_a)),
     ("node_b", In::First, |run| list(run, |(p, _)| p.tag_b)),
     ("position", In::First, |run| list(run, |(p, _)| p.position)),
@@ -52,6 +55,9 @@ const COLUMNS: [(&str, In, Values); 10] = [
     }),
     ("slip", In::EachWithFriction, |run| {
         list(run, |(_, state)| state.slip)
+    }),
+    ("overclosure", In::EachOfCompliant, |run| {
+        list(run, |(p, state)| p.overclosure(state.force))
     }),
 ];
 
@@ -98,7 +104,7 @@ impl ContactTables {
     /// All datasets as they lie in the file.
     pub(super) fn columns(&self) -> Result<Vec<Column>> {
         let all = self.tables.iter().flat_map(|table| &table.columns);
-        all.map(Written::column).collect()
+        all.map(|(_, column)| column.column()).collect()
     }
 
     /// Checks that every row was written in a load step, and makes ready for the next one; returns the digests of the
@@ -111,7 +117,7 @@ impl ContactTables {
             written.fill(false);
         }
         let all = (self.tables.iter_mut()).flat_map(|table| &mut table.columns);
-        Ok(all.map(Written::finish_step).collect())
+        Ok(all.map(|(_, column)| column.finish_step()).collect())
     }
 }
 
@@ -121,11 +127,17 @@ impl Table {
         let group =
             column::group(parent, name).map_err(|error| format!("contact '{name}': {error}"))?;
         let is_tied = contact.kind == ContactKind::Tie;
-        let is_there = |when: In| contact.has_friction || is_tied || when != In::EachWithFriction;
-        let columns = COLUMNS.iter().filter(|(_, when, _)| is_there(*when));
-        let columns = columns.map(|(name, when, values)| {
+        let is_there = |when: In| match when {
+            In::First | In::Each => true,
+            In::EachWithFriction => contact.has_friction || is_tied,
+            In::EachOfCompliant => contact.is_compliant,
+        };
+        let columns = COLUMNS.iter().enumerate();
+        let columns = columns.filter(|(_, (_, when, _))| is_there(*when));
+        let columns = columns.map(|(place, (name, when, values))| {
             let steps = if *when == In::First { 0 } else { steps };
-            Written::empty(&*values(&[]), &group, name, steps, rows)
+            let column = Written::empty(&*values(&[]), &group, name, steps, rows)?;
+            Ok((place, column))
         });
         Ok(Self {
             name: name.clone(),
@@ -142,7 +154,8 @@ impl Table {
             let rows = self.written.len();
             return Err(format!("contact '{name}' has {rows} conditions, none at {last}").into());
         };
-        for ((_, when, values), column) in COLUMNS.iter().zip(&mut self.columns) {
+        for (place, column) in &mut self.columns {
+            let (_, when, values) = &COLUMNS[*place];
             if step == 0 || *when != In::First {
                 column.fill(step, start, &*values(run))?;
             }

@@ -6,6 +6,7 @@ use crate::fem::contact_node::ContactNode;
 /// A point in space with this law, on a node.
 pub fn group(law: Law) -> ContactGroup {
     let node = ContactNode {
+        is_auxiliary: false,
         interface: 0,
         tag: 1,
         body: 0,
@@ -27,6 +28,8 @@ pub fn group(law: Law) -> ContactGroup {
         force_point: [0.0; 3],
         tag_a: 1,
         tag_b: -1,
+        stiffness: [0.0; 2],
+        motion: Vec::new(),
         law,
     };
     ContactGroup::new(vec![point], vec![node], 3)

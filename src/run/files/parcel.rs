@@ -54,7 +54,7 @@ impl Parcel {
                         results.present.extend(repeat_n(u8::from(is_there), cells));
                     }
                     if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&index)) {
-                        append_stress(results, stress);
+                        append_stress(results, stress, block.body_nodes());
                     }
                 }
                 // It takes its place without any content, so that the file names it.
@@ -88,13 +88,14 @@ fn cut(slab_ends: impl Iterator<Item = usize>, owner: impl Fn(usize) -> usize) -
 fn append_block(results: &mut SubdomainResults, block: &Block, displacement: &[f64]) {
     let subdomain = &block.subdomain;
     results.sizes.push(PartitionSize {
-        points: subdomain.points.len(),
+        points: block.body_nodes(),
         cells: subdomain.cells.len(),
         connectivity: subdomain.cells.connectivity().len(),
     });
-    results.points.extend_from_slice(&subdomain.points);
-    results.node_tags.extend_from_slice(&subdomain.node_tags);
-    let at_nodes = displacement.chunks_exact(block.dim);
+    let nodes = block.body_nodes();
+    results.points.extend_from_slice(block.body_points());
+    (results.node_tags).extend_from_slice(&subdomain.node_tags[..nodes]);
+    let at_nodes = displacement.chunks_exact(block.dim).take(nodes);
     results.displacement.extend(at_nodes.map(padded));
     let connectivity = subdomain.cells.connectivity().iter();
     results
@@ -108,11 +109,12 @@ fn append_block(results: &mut SubdomainResults, block: &Block, displacement: &[f
     results.materials.extend(materials.map(|&m| m as i32));
 }
 
-/// Appends the stresses of a block.
-fn append_stress(results: &mut SubdomainResults, stress: &Stress) {
+/// Appends the stresses of a block whose cells have so many `nodes`.
+fn append_stress(results: &mut SubdomainResults, stress: &Stress, nodes: usize) {
     let cells = &stress.cells;
-    results.nodal_stress.extend_from_slice(&stress.nodes);
-    let nodes = stress.nodes.iter();
+    let nodes = &stress.nodes[..nodes];
+    results.nodal_stress.extend_from_slice(nodes);
+    let nodes = nodes.iter();
     results.nodal_von_mises.extend(nodes.map(von_mises));
     results.cell_stress.extend_from_slice(cells);
     let norms = stress.errors.iter().map(|e| e.error.sqrt());

@@ -7,7 +7,7 @@ use crate::support::close::close;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::model;
 use crate::support::solution::Solution;
-use crate::support::solver::{Case, solve};
+use crate::support::solver::{Case, solve, solve_steps};
 
 use super::ROCK;
 
@@ -131,5 +131,36 @@ fn ranks_make_no_difference_to_equations() {
                 (0..2).for_each(|k| close(found.displacement[tag][k], u[k], 1e-9 * scale));
             }
         }
+    }
+}
+
+/// Every step has the value that it gives, as if it were the only one.
+#[test]
+fn a_value_goes_with_the_steps() {
+    let named = TEXT.replace(
+        "terms = [\n    {at = 'A', component = 'y'}",
+        "name = 'lever'\nterms = [\n    {at = 'A', component = 'y'}",
+    );
+    let values = [0.0, 3e-5, 3e-5, -1e-5];
+    let given = [None, Some(3e-5), Some(3e-5), Some(-1e-5)];
+    let step = |value: &Option<f64>| match value {
+        Some(value) => format!("[[step]]\nequation.lever = {value:?}\n"),
+        None => "[[step]]\n".into(),
+    };
+    let steps: String = given.iter().map(step).collect();
+    let solutions = solve_steps(&model(&format!("{ROCK}{named}{steps}"), mesh()), 4);
+    for (solution, value) in solutions.iter().zip(values) {
+        let text = named.replace(
+            "factor = -2.0},\n]",
+            &format!("factor = -2.0}},\n]\nvalue = {value:?}"),
+        );
+        let expected = solve(&model(&format!("{ROCK}{text}"), mesh()), 4);
+        let scale = expected.largest_displacement();
+        for (tag, u) in &solution.displacement {
+            let v = expected.displacement[tag];
+            (0..2).for_each(|k| close(u[k], v[k], 1e-10 * scale));
+        }
+        let [found, other] = [solution, &expected].map(|of| of.contacts["lever"][0].force);
+        close(found, other, 1e-9 * other.abs());
     }
 }

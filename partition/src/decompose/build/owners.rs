@@ -40,6 +40,10 @@ impl Owners {
         }
         let corners = (model.mesh.cells.iter().zip(subdomain))
             .flat_map(|((_, nodes), &s)| nodes.iter().map(move |&node| (node, (s, 0))));
+        let first = model.mesh.points.len() - model.reference_nodes.len();
+        let reference = (first as u32..).zip(&model.reference_nodes);
+        let reference = reference.map(|(node, &cell)| (node, (subdomain[cell as usize], 0)));
+        let corners = corners.chain(reference);
         let mut of = Lists::new(model.mesh.points.len(), corners);
         of.sort();
         of.dedup();

@@ -29,6 +29,7 @@ pub(super) fn read(
         let contact = &mut contacts[point.contact as usize];
         contact.has_friction |= point.law.has_friction();
         contact.kind = ContactKind::of(point);
+        contact.is_compliant |= point.is_compliant();
     }
     let probes = probes::read(contents, &subdomains)?;
     let mut catalog = Catalog {
@@ -254,6 +255,7 @@ fn read_contacts(contents: &Contents, groups: &[usize]) -> Result<Vec<ContactSum
             conditions,
             has_friction: false,
             kind: ContactKind::default(),
+            is_compliant: false,
         })
         .collect())
 }

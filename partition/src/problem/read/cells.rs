@@ -13,7 +13,7 @@ impl ProblemFile {
         &self,
         slices: &Slices,
         index: usize,
-        points: &[[f64; 3]],
+        (points, reference_nodes): (&[[f64; 3]], usize),
     ) -> Result<Elements, InputError> {
         let rows = self.contents.rows('C', index);
         let entries = self.contents.rows('K', index);
@@ -56,7 +56,13 @@ impl ProblemFile {
             let what = format!("offset {start}; expected {}", nodes.len());
             return Err(slices.offsets.error(first + rows.len(), &what));
         }
-        if let Some(node) = used.iter().position(|used| !used) {
+        let of_cells = points.len() - reference_nodes;
+        if let Some(node) = used[of_cells..].iter().position(|used| *used) {
+            let row = self.contents.rows('P', index).start + of_cells + node;
+            let what = "the point belongs to a cell; expected one of a reference point";
+            return Err(slices.points.error(row, what));
+        }
+        if let Some(node) = used[..of_cells].iter().position(|used| !used) {
             let row = self.contents.rows('P', index).start + node;
             return Err(slices.points.error(row, "the point belongs to no cell"));
         }

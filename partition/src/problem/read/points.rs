@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::contents::Contents;
 use super::entries::Entries;
 use crate::contact_point::{ContactPoint, Law};
-use crate::element::geometry::length;
+use crate::element::geometry::{length, padded};
 use crate::error::InputError;
 use crate::problem::law::LawRow;
 use crate::problem::{PointNode, SubdomainNode, SubdomainSummary};
@@ -32,6 +32,8 @@ pub(super) fn read(
     let tag_a = integers("/contact/node_a")?;
     let tag_b = integers("/contact/node_b")?;
     let laws = read_laws(contents)?;
+    let stiffness = read_stiffness(contents, &laws)?;
+    let mut motion = read_motion(contents)?;
     let entries = read_entries(contents, subdomains)?;
     let mut axes = read_axes(contents, &laws)?;
     let point = |(i, entries): (usize, _)| ContactPoint {
@@ -43,6 +45,8 @@ pub(super) fn read(
         force_point: force_point[i],
         tag_b: tag_b.all()[i],
         law: laws[i],
+        stiffness: stiffness[i],
+        motion: std::mem::take(&mut motion[i]),
         axes: std::mem::take(&mut axes[i]),
         ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
     };
@@ -70,6 +74,43 @@ fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
         values.law().map_err(wrong)
     };
     rows.map(of_row).collect()
+}
+
+/// What every point faces moves by in all load steps; none where it never moves.
+fn read_motion(contents: &Contents) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
+    let rows = contents.count('R');
+    if !contents.has("/contact/motion") {
+        return Ok(vec![Vec::new(); rows]);
+    }
+    let (dim, steps) = (contents.count('d'), contents.count('L').max(1));
+    let all = contents.numbers("/contact/motion", 0..rows)?;
+    let of_point = |of_point: &[f64]| {
+        let motion: Vec<[f64; 3]> = of_point.chunks_exact(dim).map(padded).collect();
+        match motion.iter().any(|m| *m != [0.0; 3]) {
+            true => motion,
+            false => Vec::new(),
+        }
+    };
+    Ok(all.all().chunks_exact(steps * dim).map(of_point).collect())
+}
+
+/// The stiffness between the sides at every point; none gives way where the file says nothing of it.
+fn read_stiffness(contents: &Contents, laws: &[Law]) -> Result<Vec<[f64; 2]>, InputError> {
+    if !contents.has("/contact/stiffness") {
+        return Ok(vec![[0.0; 2]; laws.len()]);
+    }
+    let all = contents.numbers("/contact/stiffness", 0..laws.len())?;
+    let (rows, _) = all.all().as_chunks::<2>();
+    for (row, (&[normal, tangential], law)) in rows.iter().zip(laws).enumerate() {
+        if law.is_tied() && normal > 0.0 {
+            return Err(all.error(row, "expected 0 at a point of law 3"));
+        }
+        if tangential > 0.0 && (normal == 0.0 || !law.has_friction()) {
+            let what = "expected a stiffness along tangents only beside one along the normal, of a point with friction";
+            return Err(all.error(row, what));
+        }
+    }
+    Ok(rows.to_vec())
 }
 
 /// The directions of the entries of every point; of an equation alone there are any.

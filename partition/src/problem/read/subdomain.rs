@@ -91,8 +91,9 @@ impl ProblemFile {
         let rows = self.contents.rows('P', index);
         let points = self.take_points(slices, rows.clone())?;
         let materials = slices.materials.of(self.contents.rows('C', index));
-        let cells = self.take_cells(slices, index, &points)?;
-        Ok(Subdomain {
+        let reference_nodes = self.reference_nodes(index, points.len())?;
+        let cells = self.take_cells(slices, index, (&points, reference_nodes))?;
+        let mut subdomain = Subdomain {
             index,
             body: self.catalog.subdomains[index].body,
             node_tags: take_node_tags(slices, rows)?,
@@ -110,6 +111,27 @@ impl ProblemFile {
             )?,
             steps: self.take_steps(slices, index),
             points,
+            reference_nodes,
+            auxiliary_nodes: 0,
+        };
+        if let Some(points) = self.auxiliary.get(&(index as u32)) {
+            subdomain.add_auxiliary_nodes(points, &self.catalog);
+        }
+        Ok(subdomain)
+    }
+
+    /// The number of the last of so many points that no cell has.
+    fn reference_nodes(&self, index: usize, points: usize) -> Result<usize, InputError> {
+        if !self.contents.has("/subdomains/reference") {
+            return Ok(0);
+        }
+        let counts = self.contents.all_integers("/subdomains/reference")?;
+        let count = counts.all()[index];
+        let count = usize::try_from(count).ok().filter(|&count| count < points);
+        count.ok_or_else(|| {
+            let what =
+                format!("expected 0 or more, and less than the {points} points of the subdomain");
+            counts.error(index, &what)
         })
     }
 

@@ -1,0 +1,302 @@
+//! Couplings: nodes that follow a reference point, by equations between displacements.
+//!
+//! The motion of a point R is that of the corners of a frame, R, R + L e₁ and in space R + L e₂, nodes that no cell has: with the
+//! displacements p₀, p₁, p₂ of these
+//!
+//! ```text
+//! u(x) = p₀ + θ × (x − R),   θ = ((p₂ − p₀)·e₃, −(p₁ − p₀)·e₃, (p₁ − p₀)·e₂) / L
+//! ```
+//!
+//! They are nodes of the body of the side: whatever rigid motion that makes, they go with it.
+
+mod frame;
+
+use nalgebra::{Matrix3, Vector3};
+
+use self::frame::{Acting, Form, Frame, FrameLoads};
+use super::loads::surface_load;
+use super::steps::Loads;
+use super::surface::Surface;
+use super::{Contact, Support, groups};
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::{advance, difference, length};
+use crate::error::InputError;
+use crate::mesh::Mesh;
+use crate::mesh::topology::Topology;
+use crate::scene::Scene;
+use crate::scene::coupling::{Coupling, CouplingKind, CouplingLoads};
+use crate::scene::step::{LoadStep, Scale};
+
+/// Inertia about an axis, relative to the largest, that is none.
+const NO_INERTIA: f64 = 1e-12;
+
+/// A coupling on the mesh.
+pub(super) struct CoupledFrame {
+    /// Its equations.
+    pub contact: Contact,
+    /// The nodes of the frame: position (m).
+    pub corners: Vec<[f64; 3]>,
+    /// A cell of the body that they belong to.
+    pub cell: u32,
+    /// The loads in every load step, or the ones that there are.
+    pub loads: Vec<FrameLoads>,
+}
+
+/// The couplings of a scene, whose equations are numbered from `first` on; their frames' nodes follow those of the mesh.
+///
+/// # Errors
+/// Groups that don't exist, nodes that don't tell how the point turns, values of what isn't prescribed.
+pub(super) fn couplings(
+    scene: &Scene,
+    (mesh, topology): (&Mesh, &Topology),
+    first: usize,
+) -> Result<Vec<CoupledFrame>, InputError> {
+    let mut node = mesh.points.len() as u32;
+    let mut all = Vec::new();
+    let mut absent = scene.absent().into_iter().flatten();
+    let comes = absent.find(|name| scene.bodies.contains_key(*name));
+    if let (Some(coupling), Some(body)) = (scene.coupling.first(), comes) {
+        return Err(InputError::new(format!(
+            "coupling '{}': the body '{body}' comes or goes, which isn't supported beside couplings; expected bodies that are \
+             there in all steps",
+            coupling.name
+        )));
+    }
+    for (index, coupling) in scene.coupling.iter().enumerate() {
+        let what = format!("coupling '{}'", coupling.name);
+        let of = CouplingOnMesh {
+            scene,
+            mesh,
+            topology,
+            coupling,
+            what,
+        };
+        let frame = of.frame((first + index) as u32, node)?;
+        node += frame.corners.len() as u32;
+        all.push(frame);
+    }
+    Ok(all)
+}
+
+/// Appends the nodes of the frames to a mesh, what acts on them to its loads and the names of what holds them to others;
+/// returns the equations, and for every new node a cell of its body.
+pub(super) fn attach(
+    frames: Vec<CoupledFrame>,
+    mesh: &mut Mesh,
+    loads: &mut Loads,
+    names: &mut Vec<String>,
+) -> (Vec<Contact>, Vec<u32>) {
+    let (mut contacts, mut cells) = (Vec::new(), Vec::new());
+    for frame in frames {
+        let first = mesh.points.len() as u32;
+        for corner in frame.corners {
+            let tag = mesh.node_tags.iter().max().map_or(1, |last| last + 1);
+            mesh.points.push(corner);
+            mesh.node_tags.push(tag);
+            cells.push(frame.cell);
+        }
+        let all = &frame.loads;
+        for (i, &(corner, axis, value)) in all[0].supports.iter().enumerate() {
+            loads.supports.push(Support {
+                node: first + corner as u32,
+                direction: std::array::from_fn(|k| f64::from(u8::from(k == axis))),
+                value,
+                condition: names.len() as u32,
+            });
+            for (step, of_step) in loads.steps.iter_mut().zip(all) {
+                step.supports.push(of_step.supports[i].2);
+            }
+        }
+        if !all[0].supports.is_empty() {
+            names.push(format!("coupling '{}'", frame.contact.name));
+        }
+        let is_loaded = |corner: &usize| all.iter().any(|of| of.forces[*corner] != [0.0; 3]);
+        for corner in (0..3).filter(is_loaded) {
+            loads
+                .forces
+                .push((first + corner as u32, all[0].forces[corner]));
+            for (step, of_step) in loads.steps.iter_mut().zip(all) {
+                step.forces.push(of_step.forces[corner]);
+            }
+        }
+        contacts.push(frame.contact);
+    }
+    (contacts, cells)
+}
+
+/// A coupling and where it is.
+struct CouplingOnMesh<'a> {
+    scene: &'a Scene,
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    coupling: &'a Coupling,
+    what: String,
+}
+
+impl CouplingOnMesh<'_> {
+    /// The frame of coupling `number` of the contacts, whose nodes are numbered from `first` on.
+    fn frame(&self, number: u32, first: u32) -> Result<CoupledFrame, InputError> {
+        let mesh = self.mesh;
+        let weights = self.weights()?;
+        let origin = self.coupling.point.value;
+        let far = |(node, _): &(u32, f64)| length(difference(mesh.points[*node as usize], origin));
+        let size = weights.iter().map(far).fold(0.0, f64::max);
+        let frame = Frame {
+            first,
+            origin,
+            size,
+            dim: mesh.dim,
+        };
+        let of_first = |(_, nodes): (_, &[u32])| nodes.contains(&weights[0].0);
+        let Some(cell) = mesh.cells.iter().position(of_first) else {
+            return Err(self.refused("its nodes belong to no cell of a body"));
+        };
+        let mut forms = match self.coupling.kind {
+            CouplingKind::Rigid => self.rigid(&frame, &weights)?,
+            CouplingKind::Distributing => self.distributing(&frame, &weights)?,
+        };
+        forms.extend(frame.rigid());
+        let steps = self.steps();
+        let mut points: Vec<ContactPoint<u32>> =
+            (forms.iter()).map(|form| frame.point(form, &[])).collect();
+        points.extend(frame.turned(&steps));
+        for (place, point) in (0..).zip(&mut points) {
+            (point.contact, point.place) = (number, place);
+        }
+        Ok(CoupledFrame {
+            contact: Contact {
+                name: self.coupling.name.clone(),
+                points,
+                probes: Vec::new(),
+            },
+            corners: frame.corners(),
+            cell: cell as u32,
+            loads: steps.iter().map(|step| frame.loads(step)).collect(),
+        })
+    }
+
+    fn refused(&self, why: &str) -> InputError {
+        InputError::new(format!("{}: {why}", self.what))
+    }
+
+    /// The coupled nodes, and their shares in a force: those of a uniform traction on sides, else equal ones.
+    fn weights(&self) -> Result<Vec<(u32, f64)>, InputError> {
+        let (mesh, what) = (self.mesh, &self.what[..]);
+        let nodes = groups::boundary_nodes(mesh, &self.coupling.on, what)?;
+        if !groups::are_of_facets(mesh, &self.coupling.on) {
+            let share = 1.0 / nodes.len() as f64;
+            return Ok(nodes.into_iter().map(|node| (node, share)).collect());
+        }
+        let facets = groups::facets(mesh, &self.coupling.on, what)?;
+        let surface = Surface::new(mesh, self.topology, self.scene.plane, &facets, what)?;
+        let mut shares = vec![[0.0; 3]; mesh.points.len()];
+        surface_load(&surface, &mut shares, |_, area| {
+            Ok([length(area), 0.0, 0.0])
+        })
+        .map_err(InputError::about(what))?;
+        let sum: f64 = nodes.iter().map(|&node| shares[node as usize][0]).sum();
+        let share = |node: u32| (node, shares[node as usize][0] / sum);
+        Ok(nodes.into_iter().map(share).collect())
+    }
+
+    /// What acts in every load step: that of the step, else that of the scene.
+    fn steps(&self) -> Vec<Acting> {
+        let own = &self.coupling.loads;
+        let acting = |step: Option<&LoadStep>| {
+            let none = CouplingLoads::default();
+            let given = step.and_then(|step| step.coupling.get(&self.coupling.name));
+            let given = given.unwrap_or(&none);
+            let scale = step.map_or_else(Scale::default, |step| step.scale);
+            let force = given.force.as_ref().or(own.force.as_ref());
+            let moment = given.moment.as_ref().or(own.moment.as_ref());
+            let (new, old) = (given.prescribed(), own.prescribed());
+            Acting {
+                force: force.map_or([0.0; 3], |force| force.value.map(|c| scale.force * c)),
+                moment: moment.map_or([0.0; 3], |moment| moment.value().map(|c| scale.force * c)),
+                motion: std::array::from_fn(|k| {
+                    new[k].or(old[k]).map(|value| scale.displacement * value)
+                }),
+            }
+        };
+        match self.scene.step.is_empty() {
+            true => vec![acting(None)],
+            false => self
+                .scene
+                .step
+                .iter()
+                .map(|step| acting(Some(step)))
+                .collect(),
+        }
+    }
+
+    /// Σ w (|r|² I − r rᵀ) of nodes with weights about a point.
+    ///
+    /// # Errors
+    /// They don't tell how it turns.
+    fn inertia(&self, weights: &[(u32, f64)], about: [f64; 3]) -> Result<Matrix3<f64>, InputError> {
+        let mut inertia = Matrix3::zeros();
+        for &(node, w) in weights {
+            let r = Vector3::from(difference(self.mesh.points[node as usize], about));
+            inertia += (Matrix3::identity() * r.norm_squared() - r * r.transpose()) * w;
+        }
+        let (least, most) = match self.mesh.dim {
+            2 => (inertia[(2, 2)], inertia[(2, 2)]),
+            _ => {
+                let all = inertia.symmetric_eigenvalues();
+                (all.min(), all.max())
+            }
+        };
+        match most > 0.0 && least > NO_INERTIA * most {
+            true => Ok(inertia),
+            false => Err(self.refused(
+                "its nodes don't tell how the point turns, as they lie on a line with it; expected a side, or nodes that don't",
+            )),
+        }
+    }
+
+    /// The equations of nodes that move as one with the point.
+    fn rigid(&self, frame: &Frame, weights: &[(u32, f64)]) -> Result<Vec<Form>, InputError> {
+        self.inertia(weights, frame.origin)?;
+        let of_node = |&(node, _): &(u32, f64)| {
+            (0..frame.dim).map(move |axis| {
+                let mut form = Form::new();
+                form.entry(node).or_default()[axis] += 1.0;
+                frame.add_at(&mut form, self.mesh.points[node as usize], axis, -1.0);
+                form
+            })
+        };
+        Ok(weights.iter().flat_map(of_node).collect())
+    }
+
+    /// The equations of nodes whose mean motion is that of the point: Σ w u is that of their middle, and Σ w r × u what turns
+    /// them so.
+    fn distributing(&self, frame: &Frame, weights: &[(u32, f64)]) -> Result<Vec<Form>, InputError> {
+        let at = |node: u32| self.mesh.points[node as usize];
+        let middle = (weights.iter()).fold([0.0; 3], |sum, &(node, w)| advance(sum, w, at(node)));
+        let inertia = self.inertia(weights, middle)?;
+        let mean = |axis: usize| {
+            let mut form = Form::new();
+            for &(node, w) in weights {
+                form.entry(node).or_default()[axis] += w;
+            }
+            frame.add_at(&mut form, middle, axis, -1.0);
+            form
+        };
+        let turned = |about: usize| {
+            let mut form = Form::new();
+            let (p, q) = ((about + 1) % 3, (about + 2) % 3);
+            for &(node, w) in weights {
+                let r = difference(at(node), middle);
+                let of_node = form.entry(node).or_default();
+                of_node[q] += w * r[p] / frame.size;
+                of_node[p] -= w * r[q] / frame.size;
+            }
+            for other in frame.rotations() {
+                frame.add_rotation(&mut form, other, -inertia[(about, other)] / frame.size);
+            }
+            form
+        };
+        let means = (0..frame.dim).map(mean);
+        Ok(means.chain(frame.rotations().map(turned)).collect())
+    }
+}

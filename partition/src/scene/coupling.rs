@@ -1,0 +1,151 @@
+//! Couplings of a side, or of points, to a reference point.
+
+use serde::Deserialize;
+
+use super::condition::Names;
+use super::contact::contact_name;
+use super::number::{Constant, ConstantVector, OR_IN_SPACE, expected_components};
+
+/// Components of the motion of a reference point, and their keys: translations, then rotations.
+pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+/// Nodes that follow a reference point, on which forces and moments act and whose motion may be prescribed.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(from = "CouplingKeys")]
+pub struct Coupling {
+    /// Name.
+    pub name: String,
+    /// The groups of facets or points that it couples.
+    pub on: Names,
+    /// The reference point (m).
+    pub point: ConstantVector,
+    /// How they follow.
+    pub kind: CouplingKind,
+    /// What acts on the point, and what is prescribed there.
+    pub loads: CouplingLoads,
+}
+
+/// The way in which nodes follow a reference point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CouplingKind {
+    /// They move as one rigid body with it.
+    #[default]
+    Rigid,
+    /// Its motion is their mean one; forces on it are distributed over them, which may deform.
+    Distributing,
+}
+
+/// What acts on a reference point, and what is prescribed there; in a step in place of what the scene says.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    default,
+    expecting = "a table of force, moment, x, y, z, rx, ry and rz"
+)]
+pub struct CouplingLoads {
+    /// Force (N).
+    pub force: Option<ConstantVector>,
+    /// Moment about the point (N m).
+    pub moment: Option<Moment>,
+    x: Option<Constant>,
+    y: Option<Constant>,
+    z: Option<Constant>,
+    rx: Option<Constant>,
+    ry: Option<Constant>,
+    rz: Option<Constant>,
+}
+
+/// A moment: in the plane a number, in space a vector.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a number in the plane, three in space")]
+pub enum Moment {
+    /// About z.
+    Plane(Constant),
+    /// About x, y and z.
+    Space([Constant; 3]),
+}
+
+impl Moment {
+    /// Its components (N m).
+    pub fn value(&self) -> [f64; 3] {
+        match self {
+            Self::Plane(Constant(about_z)) => [0.0, 0.0, *about_z],
+            Self::Space(components) => [0, 1, 2].map(|k| components[k].0),
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table of name, on, point, kind, force, moment, x, y, z, rx, ry and rz"
+)]
+struct CouplingKeys {
+    #[serde(deserialize_with = "contact_name")]
+    name: String,
+    on: Names,
+    point: ConstantVector,
+    #[serde(default)]
+    kind: CouplingKind,
+    force: Option<ConstantVector>,
+    moment: Option<Moment>,
+    x: Option<Constant>,
+    y: Option<Constant>,
+    z: Option<Constant>,
+    rx: Option<Constant>,
+    ry: Option<Constant>,
+    rz: Option<Constant>,
+}
+
+impl From<CouplingKeys> for Coupling {
+    fn from(keys: CouplingKeys) -> Self {
+        Self {
+            name: keys.name,
+            on: keys.on,
+            point: keys.point,
+            kind: keys.kind,
+            loads: CouplingLoads {
+                force: keys.force,
+                moment: keys.moment,
+                x: keys.x,
+                y: keys.y,
+                z: keys.z,
+                rx: keys.rx,
+                ry: keys.ry,
+                rz: keys.rz,
+            },
+        }
+    }
+}
+
+impl CouplingLoads {
+    /// The prescribed components of the motion (m, rad), in the order of [`COMPONENTS`].
+    pub fn prescribed(&self) -> [Option<f64>; 6] {
+        let all = [&self.x, &self.y, &self.z, &self.rx, &self.ry, &self.rz];
+        all.map(|component| component.as_ref().map(|Constant(value)| *value))
+    }
+
+    /// The key that is wrong in space of `dim` dimensions, and why.
+    pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
+        let wrong_force = self.force.as_ref().filter(|force| force.dim != dim);
+        if wrong_force.is_some() {
+            return Some(("force", expected_components(dim)));
+        }
+        let expected = match (&self.moment, dim) {
+            (Some(Moment::Space(_)), 2) => {
+                Some(format!("a plane scene has one number{OR_IN_SPACE}"))
+            }
+            (Some(Moment::Plane(_)), 3) => Some("a scene in space has three components".into()),
+            _ => None,
+        };
+        if let Some(expected) = expected {
+            return Some(("moment", expected));
+        }
+        let given = self.prescribed().into_iter().zip(COMPONENTS);
+        let mut beside =
+            given.filter(|(value, key)| value.is_some() && ["z", "rx", "ry"].contains(key));
+        let (_, key) = beside.next().filter(|_| dim == 2)?;
+        Some((key, format!("a plane scene has no '{key}'{OR_IN_SPACE}")))
+    }
+}

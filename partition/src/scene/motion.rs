@@ -1,0 +1,175 @@
+//! What moves with the load steps: obstacles, the values of equations, and the reference points of couplings.
+
+use std::collections::BTreeMap;
+
+use super::condition::Obstacle;
+use super::contact::{Contact, Partner};
+use super::coupling::COMPONENTS;
+use super::fault::{Fault, entry};
+use super::material::PlaneState;
+use super::number::ConstantVector;
+use super::place::Step;
+use super::step::LoadStep;
+use super::{Scene, suggest};
+
+impl Scene {
+    /// The displacement of every obstacle that ever moves, by the name of its contact, in all load steps (m), or the one that it
+    /// has without steps.
+    pub fn motions(&self) -> BTreeMap<&str, Vec<[f64; 3]>> {
+        let of_contact = |(contact, _): (&'_ Contact, &Obstacle)| {
+            let own = contact.motion.as_ref().map(|motion| motion.value);
+            let in_step = |step: &LoadStep| {
+                let given = step.motion.get(&contact.name).map(|motion| motion.value);
+                let motion = given.or(own).unwrap_or_default();
+                motion.map(|c| step.scale.displacement * c)
+            };
+            match self.step.is_empty() {
+                true => own.into_iter().collect(),
+                false => self.step.iter().map(in_step).collect::<Vec<_>>(),
+            }
+        };
+        let all = self.obstacles();
+        let all =
+            all.map(|(_, contact, obstacle)| (&contact.name[..], of_contact((contact, obstacle))));
+        all.filter(|(_, motion)| motion.iter().any(|m| *m != [0.0; 3]))
+            .collect()
+    }
+
+    /// The contacts with obstacles, each with its place in the list.
+    fn obstacles(&self) -> impl Iterator<Item = (usize, &Contact, &Obstacle)> {
+        let all = self.contact.iter().enumerate();
+        all.filter_map(|(index, declared)| match declared.contact() {
+            Some(contact) => match &contact.partner {
+                Partner::Obstacle(obstacle) => Some((index, contact, obstacle)),
+                Partner::Side(_) => None,
+            },
+            None => None,
+        })
+    }
+
+    /// A step that moves no obstacle, or gives a value to no equation.
+    pub(super) fn wrong_motion(&self) -> Option<Fault> {
+        for (index, step) in self.step.iter().enumerate() {
+            let path =
+                |list: &str, name: &str| [entry("step", index, list), vec![name.into()]].concat();
+            let known = || self.obstacles().map(|(_, contact, _)| &contact.name[..]);
+            if let Some(name) = step
+                .motion
+                .keys()
+                .find(|name| known().all(|of| of != **name))
+            {
+                let hint = suggest::hint_and_known(name, known());
+                return Some((
+                    path("motion", name),
+                    format!("there is no contact '{name}' with an obstacle{hint}"),
+                ));
+            }
+            let known = || self.equation.iter().map(|of| &of.name[..]);
+            if let Some(name) = step
+                .equation
+                .keys()
+                .find(|name| known().all(|of| of != **name))
+            {
+                let hint = suggest::hint_and_known(name, known());
+                return Some((
+                    path("equation", name),
+                    format!("there is no equation '{name}'{hint}"),
+                ));
+            }
+        }
+        None
+    }
+
+    /// Motions of the wrong dimension.
+    pub(super) fn motions_of_wrong_dimension(
+        &self,
+        dim: usize,
+        check: &mut impl FnMut(Vec<Step>, Option<String>),
+    ) {
+        for (index, contact, _) in self.obstacles() {
+            let fault = contact.motion.as_ref().and_then(|motion| motion.fault(dim));
+            check(entry("contact", index, "motion"), fault);
+        }
+        for (index, step) in self.step.iter().enumerate() {
+            for (name, motion) in &step.motion {
+                let path = [entry("step", index, "motion"), vec![name.as_str().into()]].concat();
+                check(path, motion.fault(dim));
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// Two couplings of one name, or a step that prescribes what a coupling doesn't.
+    pub(super) fn wrong_coupling(&self) -> Option<Fault> {
+        let names = || self.coupling.iter().map(|of| &of.name[..]);
+        for (index, coupling) in self.coupling.iter().enumerate() {
+            let others = self.connections().map(|(_, _, name)| name);
+            if others
+                .chain(names().take(index))
+                .any(|name| name == coupling.name)
+            {
+                let message = format!("there is another '{}' already", coupling.name);
+                return Some((entry("coupling", index, "name"), message));
+            }
+        }
+        for (index, step) in self.step.iter().enumerate() {
+            for (name, loads) in &step.coupling {
+                let path = [entry("step", index, "coupling"), vec![name.as_str().into()]].concat();
+                let Some(coupling) = self.coupling.iter().find(|of| of.name == *name) else {
+                    let hint = suggest::hint_and_known(name, names());
+                    return Some((path, format!("there is no coupling '{name}'{hint}")));
+                };
+                let both = loads
+                    .prescribed()
+                    .into_iter()
+                    .zip(coupling.loads.prescribed());
+                let is_new =
+                    |both: (Option<f64>, Option<f64>)| both.0.is_some() && both.1.is_none();
+                if let Some((_, key)) = both.zip(COMPONENTS).find(|&(both, _)| is_new(both)) {
+                    let message = format!(
+                        "expected '{key}' in [[coupling]], too: all steps hold the same components"
+                    );
+                    return Some(([path, vec![key.into()]].concat(), message));
+                }
+            }
+        }
+        None
+    }
+
+    /// Couplings that space of `dim` dimensions has no place for.
+    pub(super) fn couplings_of_wrong_dimension(
+        &self,
+        dim: usize,
+        check: &mut impl FnMut(Vec<Step>, Option<String>),
+    ) {
+        for (index, coupling) in self.coupling.iter().enumerate() {
+            let fault = (self.plane == Some(PlaneState::Axisymmetric)).then(|| {
+                "there are no couplings around an axis; expected a scene of the plane or in space".into()
+            });
+            check(entry("coupling", index, "on"), fault);
+            check(entry("coupling", index, "point"), coupling.point.fault(dim));
+            if let Some((key, fault)) = coupling.loads.fault(dim) {
+                check(entry("coupling", index, key), Some(fault));
+            }
+        }
+        for (index, step) in self.step.iter().enumerate() {
+            for (name, loads) in &step.coupling {
+                if let Some((key, fault)) = loads.fault(dim) {
+                    let path = vec![name.as_str().into(), key.into()];
+                    check(
+                        [entry("step", index, "coupling"), path].concat(),
+                        Some(fault),
+                    );
+                }
+            }
+        }
+    }
+}
+
+impl ConstantVector {
+    /// Why it is no vector of space of `dim` dimensions.
+    pub(super) fn fault(&self, dim: usize) -> Option<String> {
+        (self.dim != dim).then(|| super::number::expected_components(dim))
+    }
+}
