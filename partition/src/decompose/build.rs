@@ -109,6 +109,27 @@ fn summary(contact: &model::Contact) -> ContactSummary {
     }
 }
 
+/// A subdomain without nodes and cells in a scene of so many load steps.
+fn empty(index: usize, steps: usize) -> Subdomain {
+    Subdomain {
+        index,
+        body: usize::MAX,
+        points: Vec::new(),
+        node_tags: Vec::new(),
+        cells: Elements::default(),
+        cell_material: Vec::new(),
+        supports: Vec::new(),
+        springs: Vec::new(),
+        forces: Vec::new(),
+        initial_stress: InitialStress::default(),
+        interface: Vec::new(),
+        shares: NodalShares::default(),
+        steps: vec![StepLoads::default(); steps],
+        reference_nodes: 0,
+        auxiliary_nodes: 0,
+    }
+}
+
 fn cut(
     model: &Model,
     decomposition: &Decomposition,
@@ -117,23 +138,7 @@ fn cut(
 ) -> Result<Vec<Subdomain>, InputError> {
     let mesh = &model.mesh;
     let mut subdomains: Vec<Subdomain> = (0..owners.count)
-        .map(|index| Subdomain {
-            index,
-            body: usize::MAX,
-            points: Vec::new(),
-            node_tags: Vec::new(),
-            cells: Elements::default(),
-            cell_material: Vec::new(),
-            supports: Vec::new(),
-            springs: Vec::new(),
-            forces: Vec::new(),
-            initial_stress: InitialStress::default(),
-            interface: Vec::new(),
-            shares: NodalShares::default(),
-            steps: vec![StepLoads::default(); model.steps.len()],
-            reference_nodes: 0,
-            auxiliary_nodes: 0,
-        })
+        .map(|index| empty(index, model.steps.len()))
         .collect();
     for (node, list) in owners.of.iter().enumerate() {
         for &(owner, local) in list {

@@ -207,7 +207,6 @@ impl Scene {
         }
         self.wrong_contacts(dim, &mut check);
         self.motions_of_wrong_dimension(dim, &mut check);
-        self.couplings_of_wrong_dimension(dim, &mut check);
         found.into_iter().next()
     }
 

@@ -80,7 +80,7 @@ impl Scene {
         None
     }
 
-    /// Motions of the wrong dimension.
+    /// Motions and couplings of the wrong dimension.
     pub(super) fn motions_of_wrong_dimension(
         &self,
         dim: usize,
@@ -96,6 +96,7 @@ impl Scene {
                 check(path, motion.fault(dim));
             }
         }
+        self.couplings_of_wrong_dimension(dim, check);
     }
 }
 
@@ -138,7 +139,7 @@ impl Scene {
     }
 
     /// Couplings that space of `dim` dimensions has no place for.
-    pub(super) fn couplings_of_wrong_dimension(
+    fn couplings_of_wrong_dimension(
         &self,
         dim: usize,
         check: &mut impl FnMut(Vec<Step>, Option<String>),
