@@ -175,8 +175,8 @@ class Result:
         if name not in found:
             known = ", ".join(repr(known) for known in found) or "none, as the scene asks for none"
             raise InputError(f"{self.path}: there is no quantity {name!r}; known are {known}")
-        if report.get("without_derivatives"):
-            raise InputError(f"{self.path}: quantities have no derivatives: {report['without_derivatives']}")
+        if not found[name] and report.get("without_derivatives"):
+            raise InputError(f"{self.path}: quantity {name!r} has no derivatives: {report['without_derivatives']}")
         return {one["parameter"]: number(one["derivative"]) for one in found[name]}
 
     def _report_of_step(self) -> dict[str, Any]:

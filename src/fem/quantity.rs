@@ -39,6 +39,6 @@ pub struct Quantities {
     pub values: Vec<QuantityValue>,
     /// Contact points whose status is about to change, in words.
     pub about_to_change: Vec<String>,
-    /// Why there are no derivatives, in words.
+    /// Why there are no derivatives, or none of a quantity, in words.
     pub without_derivatives: Option<String>,
 }

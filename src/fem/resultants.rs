@@ -216,7 +216,7 @@ pub struct Resultants {
     pub quantities: Vec<QuantityValue>,
     /// Contact points whose status is about to change, in words: a derivative is the one on the side where it doesn't.
     pub about_to_change: Vec<String>,
-    /// Why quantities have no derivatives, in words; `null` where they have some.
+    /// Why quantities have no derivatives, or one of them, in words; `null` where all have some.
     pub without_derivatives: Option<String>,
 }
 

@@ -83,18 +83,19 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
         ..Quantities::default()
     };
     context.comm.broadcast(&mut all.without_derivatives);
+    let has_derivatives = all.without_derivatives.is_none();
     let forces = MaterialForces::new(context, &solved.solution.discrete);
     let slipping: BTreeMap<usize, SlippingPoints> = (solved.solution.discrete.groups.iter())
         .map(|(&g, of_group)| (g, SlippingPoints::new(&context.groups[&g], of_group)))
         .collect();
-    if all.without_derivatives.is_none() {
+    if has_derivatives {
         all.about_to_change = about_to_change(solved);
     }
     let directions = RefCell::default();
     for number in 0..catalog.quantities.len() {
         let functional = Functional::new(solved, number, &forces);
         let mut found = Vec::new();
-        if all.without_derivatives.is_none() {
+        if has_derivatives {
             let problem = TransposedProblem::new(solved, &functional, (&slipping, &directions));
             let parts = (solved, &functional, &forces);
             let is_off;
@@ -104,7 +105,6 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
                 all.without_derivatives = Some(format!(
                     "the transposed problem of '{name}' can't be solved well enough with the contacts as they are"
                 ));
-                all.values.iter_mut().for_each(|of| of.derivatives.clear());
                 found.clear();
             }
         }

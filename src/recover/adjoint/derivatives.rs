@@ -175,21 +175,19 @@ impl Sensitivity<'_> {
         context.comm.gather(
             context.plan.owners(),
             |b| self.reciprocity_of_block(b),
-            |_, [left, right]: [f64; 2]| terms.push([left, right]),
+            |_, part: [f64; 2]| terms.push(part),
         );
         context.comm.gather(
             &context.plan.group_owners(),
             |g| self.reciprocity_of_group(g),
-            |_, [left, right]: [f64; 2]| terms.push([left, right]),
+            |_, part: [f64; 2]| terms.push(part),
         );
-        let off: f64 = terms.iter().map(|[left, right]| left - right).sum();
-        let size: f64 = terms
-            .iter()
-            .map(|[left, right]| left.abs() + right.abs())
-            .sum();
+        let off: f64 = terms.iter().map(|[off, _]| off).sum();
+        let size: f64 = terms.iter().map(|[_, size]| size).sum();
         if size > 0.0 { off.abs() / size } else { 0.0 }
     }
 
+    /// The part of a block in the difference of both sides, and the size of its terms.
     fn reciprocity_of_block(&self, b: usize) -> [f64; 2] {
         let fixed = self.solved.fixed;
         let solution = &self.solved.solution.discrete;
@@ -205,8 +203,10 @@ impl Sensitivity<'_> {
         };
         let dim = block.dim;
         let of_nodes = self.functional.of_nodes.get(&b);
-        let mut left = of_nodes.map_or(0.0, |of_nodes| dot(of_nodes, &of_block.u));
-        let mut right = dot(&w.u, &loads.nodal_forces(block));
+        let of_nodes = of_nodes.map_or(&[][..], Vec::as_slice);
+        let forces = loads.nodal_forces(block);
+        let mut off = dot(of_nodes, &of_block.u) - dot(&w.u, &forces);
+        let mut size = sizes(of_nodes, &of_block.u) + sizes(&w.u, &forces);
         let of_supports = self.functional.of_supports.get(&b);
         let unbalanced = of_supports.and_then(|_| fixed.balance(b, of_block));
         for (i, support) in loads.supports.iter().enumerate() {
@@ -214,12 +214,15 @@ impl Sensitivity<'_> {
                 let at = &field[support.node as usize * dim..][..dim];
                 dot(at, &support.direction[..dim])
             };
-            right += self.state.residuals.get(&b).map_or(0.0, |of| rest(of)) * support.value;
+            let residual = self.state.residuals.get(&b);
+            let mut terms = [residual.map_or(0.0, |of| rest(of)) * support.value, 0.0];
             if let (Some(weights), Some(balance)) = (of_supports, &unbalanced) {
-                left -= weights[i] * rest(&balance.residual);
+                terms[1] = weights[i] * rest(&balance.residual);
             }
+            off -= terms[0] + terms[1];
+            size += terms[0].abs() + terms[1].abs();
         }
-        [left, right]
+        [off, size]
     }
 
     fn reciprocity_of_group(&self, g: usize) -> [f64; 2] {
@@ -232,10 +235,15 @@ impl Sensitivity<'_> {
             return [0.0; 2];
         };
         let weights = self.functional.of_forces.get(&g);
-        let left = weights.map_or(0.0, |weights| dot(weights, &of_group.forces));
+        let weights = weights.map_or(&[][..], Vec::as_slice);
+        let mut off = dot(weights, &of_group.forces);
+        let mut size = sizes(weights, &of_group.forces);
         let known = (state.forces.iter().zip(&loads.gaps)).zip(&of_group.closed);
         let closed = known.filter(|(_, closed)| **closed);
-        let mut right: f64 = closed.map(|((force, gap), _)| force * gap).sum();
+        for ((force, gap), _) in closed {
+            off -= force * gap;
+            size += (force * gap).abs();
+        }
         for point in self
             .problem
             .slipping
@@ -245,15 +253,21 @@ impl Sensitivity<'_> {
         {
             let slip = point.tangents.iter();
             let along: f64 = slip.map(|&(j, e)| e * state.gaps[j]).sum();
-            right += along * point.cohesion;
+            off -= along * point.cohesion;
+            size += (along * point.cohesion).abs();
             // Q acts on the slip since where the sides stuck.
             let before: f64 = slip_before(&loads.gaps, point).map(|(_, e, s)| e * s).sum();
             let turned =
                 slip_before(&loads.gaps, point).map(|(j, e, s)| state.gaps[j] * (s - e * before));
-            right -= point.turning * turned.sum::<f64>();
+            off += point.turning * turned.sum::<f64>();
         }
-        [left, right]
+        [off, size]
     }
+}
+
+/// Σ |x y|.
+fn sizes(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| (x * y).abs()).sum()
 }
 
 /// The slipping conditions of a point, the parts of its direction along them, and the jumps from which slips count.
