@@ -52,14 +52,13 @@ impl ContactGroup {
             self.row(&condition, frames)
         });
         let turned = |x: f64, y: f64| from_fn(|k| x * first[k] + y * second[k]);
-        let squares = product(&a, &a) + product(&b, &b);
-        if let Some((cos, sin)) = only_direction(&a, &b, NO_ROW * squares) {
+        if !self.is_held_fast(point) {
+            let round_off = NO_ROW * (product(&a, &a) + product(&b, &b));
+            let (cos, sin) = only_direction(&a, &b, round_off)?;
             return Some([turned(cos, sin), turned(-sin, cos)]);
         }
-        if !self.is_held_fast(point) {
-            return None;
-        }
-        let [a, b] = [a, b].map(|row| less(&row, product(&row, &n) / product(&n, &n), &n));
+        let of_normal = product(&n, &n).max(f64::MIN_POSITIVE);
+        let [a, b] = [a, b].map(|row| less(&row, product(&row, &n) / of_normal, &n));
         let weights = of_point.entries.iter().map(|(_, weight)| weight * weight);
         let negligible = HELD * weights.sum::<f64>();
         match product(&a, &a) + product(&b, &b) <= negligible {

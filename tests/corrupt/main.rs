@@ -30,7 +30,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Changes that make another problem which nothing in the file contradicts.
-const FREE: [&str; 47] = [
+const FREE: [&str; 63] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -56,6 +56,22 @@ const FREE: [&str; 47] = [
     "/probe/entry_subdomain",
     "/probe/entry_node",
     "/probe/entry_weight",
+    "/quantity/name",
+    "/quantity/kind",
+    "/quantity/direction",
+    "/quantity/constant",
+    "/quantity/node",
+    "/quantity/of",
+    "/weight/quantity",
+    "/weight/node",
+    "/weight/value",
+    "/parameter/name",
+    "/parameter/kind",
+    "/parameter/value",
+    "/parameter/of",
+    "/load/parameter",
+    "/load/node",
+    "/load/force",
     "/steps/name",
     "/steps/time",
     "/steps/body",

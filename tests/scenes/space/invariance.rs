@@ -64,7 +64,7 @@ impl Blocks {
 }
 
 /// A change of a scene.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Change {
     is_turned: bool,
     is_mirrored: bool,
@@ -172,7 +172,11 @@ fn agree(first: &Solution, second: &Solution, change: Change, old: &BTreeMap<i64
         let other = by_tag[&old[&point.tags[0]]];
         assert_eq!(
             [point.closed, point.slipping],
-            [other.closed, other.slipping]
+            [other.closed, other.slipping],
+            "{change:?} at {:?}: {:?} and {:?}",
+            point.position,
+            (point.force, point.tangential_force, point.slip),
+            (other.force, other.tangential_force, other.slip)
         );
         close(point.force, scale * other.force, largest);
         close(point.gap, change.larger * other.gap, slack * size);

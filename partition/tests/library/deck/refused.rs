@@ -76,7 +76,7 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         ),
         (
             "*MODEL CHANGE",
-            "line 49: *MODEL CHANGE isn't supported yet; instead leave it out, convert the deck",
+            "line 49: *MODEL CHANGE stands in no step; expected it behind *STEP",
         ),
         (
             "*FRICTON\n0.1",

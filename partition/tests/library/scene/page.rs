@@ -42,7 +42,7 @@ fn the_parts_that_the_page_shows_make_a_scene() {
     assert_eq!((scene.materials.len(), scene.bodies.len()), (2, 2));
     assert_eq!((scene.displacement.len(), scene.bilateral.len()), (1, 1));
     assert_eq!((scene.pressure.len(), scene.traction.len()), (1, 1));
-    assert_eq!(scene.contact.len(), 7);
+    assert_eq!(scene.contact.len(), 9);
 }
 
 #[test]

@@ -28,7 +28,10 @@ fn what_is_about_to_open_in_space_slips_under_a_part_of_its_cohesion() {
         let trial = trial(seed, 0);
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
         let warnings = trial.report.unwrap()["warnings"].to_string();
-        assert!(warnings.contains("about to open"), "{seed}: {warnings}");
+        assert!(
+            warnings.contains("on the verge of opening"),
+            "{seed}: {warnings}"
+        );
     }
 }
 

@@ -29,11 +29,11 @@ value = 1e6
 [[step]]
 [[step.traction]]
 on = 'upper x1'
-value = [4e5, 0.0, 0.0]
+value = [5.5e5, 0.0, 0.0]
 [[step]]
 [[step.traction]]
 on = 'upper x1'
-value = [-2e5, 0.0, 0.0]
+value = [-5e5, 0.0, 0.0]
 ";
 
 /// Amount by which nodes are off: by nothing, or so little that normals leave the plane of symmetry, and nodes beside it
