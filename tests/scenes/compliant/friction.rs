@@ -112,9 +112,9 @@ fn what_sticks_moves_by_shear_stress_over_stiffness() {
             let area = point.force / point.pressure;
             let u = solution.displacement[&point.tags[0]];
             // What is left of the jump beside that of the spring: nothing slides.
-            for k in 0..dim - 1 {
+            for (k, u) in u.iter().enumerate().take(dim - 1) {
                 close(
-                    u[k],
+                    *u,
                     -point.tangential_force[k] / (tangential * area),
                     1e-9 * PRESSURE / tangential,
                 );

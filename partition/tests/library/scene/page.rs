@@ -16,15 +16,21 @@ fn page() -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// The parts of a scene that the page shows, together.
-fn parts(page: &str) -> String {
+/// The parts of a scene that the page shows, those of couplings, which are of space, or all others.
+fn shown(page: &str, of_couplings: bool) -> String {
     let above = page.split("## A crack").next().unwrap();
     let blocks = above.split("```toml\n").skip(1);
-    let parts: Vec<&str> = blocks
+    blocks
         .map(|block| block.split("```").next().unwrap())
-        .collect();
-    assert!(parts.len() > 3);
-    format!("mesh = 'a.msh'\nplane = 'strain'\n{}", parts.concat())
+        .filter(|part| part.contains("[[coupling]]") == of_couplings)
+        .collect()
+}
+
+/// The parts of a plane scene that the page shows, together.
+fn parts(page: &str) -> String {
+    let parts = shown(page, false);
+    assert!(!parts.is_empty());
+    format!("mesh = 'a.msh'\nplane = 'strain'\n{parts}")
 }
 
 /// The words that a message lists as known.
@@ -43,6 +49,14 @@ fn the_parts_that_the_page_shows_make_a_scene() {
     assert_eq!((scene.displacement.len(), scene.bilateral.len()), (1, 1));
     assert_eq!((scene.pressure.len(), scene.traction.len()), (1, 1));
     assert_eq!(scene.contact.len(), 9);
+}
+
+#[test]
+fn the_couplings_that_the_page_shows_make_a_scene_of_space() {
+    let body = "[materials.a]\nyoung = 1\npoisson = 0\n[bodies.b]\nmaterial = 'a'\n";
+    let couplings = shown(&page(), true);
+    let scene = Scene::parse(&format!("mesh = 'a.msh'\n{body}{couplings}")).unwrap();
+    assert_eq!((scene.coupling.len(), scene.step.len()), (2, 1));
 }
 
 #[test]
