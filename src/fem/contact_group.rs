@@ -75,7 +75,7 @@ impl GroupLoads {
 }
 
 impl ContactGroup {
-    /// The group of these points, whose tangents are those along which they [can slip](super::slip_directions).
+    /// The group of these points, whose tangents are those along which they can slip.
     pub fn new(points: Vec<ContactPoint<u32>>, nodes: Vec<ContactNode>, dim: usize) -> Self {
         let mut group = Self { points, nodes, dim };
         group.take_stiffness_between_sides();
