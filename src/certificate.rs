@@ -48,6 +48,9 @@ pub struct Certificate {
     /// largest contact force; slip of sticking points, over the largest displacement; slip times the misalignment of
     /// slip and force, over the product of both scales.
     pub friction: f64,
+    /// Slip of sticking points over the largest displacement, one of these three.
+    #[serde(skip)]
+    pub drift: f64,
     /// Sum of loads and reactions over the load scale.
     pub force_balance: f64,
     /// Sum of their moments over the load scale times the size of the scene.
@@ -90,6 +93,7 @@ impl Certificate {
             tension: worse(self.tension, other.tension),
             complementarity: worse(self.complementarity, other.complementarity),
             friction: worse(self.friction, other.friction),
+            drift: worse(self.drift, other.drift),
             force_balance: worse(self.force_balance, other.force_balance),
             moment_balance: worse(self.moment_balance, other.moment_balance),
             interface_jump: worse(self.interface_jump, other.interface_jump),
@@ -137,6 +141,7 @@ pub fn certificate(
         external.moment_scale,
         SMALL_MOMENT * external.force_scale * external.reach,
     );
+    let drift = ratio(most.astray, most.displacement);
     Certificate {
         equilibrium: ratio(most.residual, most.scale),
         equilibrium_of_load: ratio(most.residual, most.external),
@@ -147,11 +152,12 @@ pub fn certificate(
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
         friction: [
             ratio(most.beyond_bound, most.contact_force),
-            ratio(most.astray, most.displacement),
+            drift,
             ratio(most.not_opposed, most.contact_force * most.displacement),
         ]
         .into_iter()
         .fold(0.0, larger),
+        drift,
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
         interface_jump: ratio(most.jump, most.displacement),

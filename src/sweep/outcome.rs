@@ -15,6 +15,9 @@ const LOADED: f64 = 1e-2;
 const TOO_FAR: f64 = 1e3;
 /// Violation of the law of friction of an answer that isn't one.
 pub const AGAINST_FRICTION: f64 = 1e-9;
+/// Slip of sticking points over the largest displacement of an answer that isn't one: like penetration a fault of
+/// displacements, which no round-off of forces excuses.
+const DRIFT: f64 = 1e-13;
 /// Tension, or product of force and gap, of an answer that isn't one.
 const AGAINST_CONTACT: f64 = 1e-11;
 /// Equilibrium relative to the load of an answer that says nothing.
@@ -197,9 +200,10 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         farther,
         penetration,
         friction,
+        drift,
         ..
     } = *certificate;
-    if friction > AGAINST_FRICTION {
+    if friction > AGAINST_FRICTION || drift > DRIFT {
         return Some(format!(
             "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
         ));
@@ -287,6 +291,20 @@ mod tests {
                 SweepStatus::Converged,
                 "{bad:?}"
             );
+        }
+    }
+
+    #[test]
+    fn points_that_stick_stay_where_they_are_more_exactly_than_forces_keep_their_bounds() {
+        let friction = 7e-10;
+        for (drift, accepted) in [(1e-16, true), (3e-11, false)] {
+            let certificate = Certificate {
+                friction,
+                drift,
+                ..Certificate::default()
+            };
+            let status = status(&certificate, true);
+            assert_eq!(status == SweepStatus::Converged, accepted, "{drift:e}");
         }
     }
 
