@@ -96,6 +96,28 @@ impl DiscreteSolution {
         slips
     }
 
+    /// Notes on the root which contact points are closed, and the least gap of each (m), beside what was noted before.
+    /// Collective.
+    pub fn least_gaps(&self, context: &Context<'_>, (closed, gaps): &mut (Vec<bool>, Vec<f64>)) {
+        let plan = context.plan;
+        context.comm.gather(
+            &plan.group_owners(),
+            |g| {
+                let of_group = &self.groups[&g];
+                let points = 0..context.groups[&g].points.len();
+                let of_points = points.map(|j| (of_group.closed[j], of_group.gaps[j]));
+                of_points.collect::<Vec<(bool, f64)>>()
+            },
+            |g, of_points| {
+                let places = &plan.tree.nodes[plan.groups[g].node].points;
+                for (&j, (is_closed, gap)) in places.iter().zip(of_points) {
+                    closed[j as usize] |= is_closed;
+                    gaps[j as usize] = gaps[j as usize].min(gap);
+                }
+            },
+        );
+    }
+
     /// Tells contact groups what gaps the displacements leave, and blocks what their forces push. Collective.
     pub fn share(&mut self, context: &Context<'_>, loads: &Loads) {
         let &Context { comm, plan, .. } = context;

@@ -8,11 +8,13 @@ mod operators;
 mod restart;
 mod stage;
 mod step_totals;
+mod working_set;
 
 use std::cell::Cell;
 use std::ops::Range;
 use std::time::Instant;
 
+use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
 use faer::Par;
@@ -21,11 +23,12 @@ use self::files::{RunFiles, absent_rows};
 use self::increment::{Increment, Increments};
 use self::operators::Operators;
 use self::restart::{Finished, finished_steps, keep};
-use self::stage::{Handover, Stages, reason_to_hand_over};
+use self::stage::{Handover, Stages, Successor, reason_to_hand_over};
+use self::working_set::{WorkingSet, gaps_left, open_rows};
 use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, phase};
 use crate::context::{Context, LoadPoint};
-use crate::error::Failure;
+use crate::error::{Failure, FailureKind};
 use crate::fem::contact_state::ContactRow;
 use crate::output::lock::OutputLock;
 use crate::output::report::Status;
@@ -39,7 +42,7 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
-use crate::step::transfer::StageEnd;
+use crate::step::transfer::{StageEnd, StageTransfer};
 
 /// End of a run that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,12 +139,108 @@ impl Stages<'_> {
         next: Option<&Range<usize>>,
         progress: &mut Progress,
     ) -> Result<(), Failure> {
-        let stage = (self.file.catalog()).stage(steps, &progress.finished.transfer.since);
-        let mut handover = self.solve_from(None, &stage, next, progress)?;
-        while handover.is_some() {
-            handover = self.solve_from(handover, &stage, next, progress)?;
+        let whole = (self.file.catalog()).stage(steps, &progress.finished.transfer.since);
+        if progress.finished.working_set.is_none()
+            && working_set::pays(&whole.catalog, self.settings)
+        {
+            progress.finished.working_set = self.predict_working_set(&whole, progress)?;
         }
-        Ok(())
+        let mut handover = None;
+        loop {
+            let set = progress.finished.working_set.as_ref();
+            let stage = set.map(|set| whole.with_points(&set.points));
+            let stage = stage.as_ref().unwrap_or(&whole);
+            match self.solve_from(handover.clone(), stage, next, progress) {
+                Ok(None) => return Ok(()),
+                Ok(again) => handover = again,
+                // Bodies that the points of the set don't hold may be held by others.
+                Err(failure)
+                    if failure.kind == FailureKind::IllPosed
+                        && stage.points.len() < whole.points.len() =>
+                {
+                    progress.finished.working_set = Some(WorkingSet::all(&whole.catalog));
+                }
+                Err(failure) => return Err(failure),
+            }
+        }
+    }
+
+    /// The working set of a stage with friction: the points that close without it, and those nearest to that; `None` where
+    /// that isn't solved, or where they are most. Collective.
+    ///
+    /// # Errors
+    /// A signal stopped the run.
+    fn predict_working_set(
+        &self,
+        whole: &Stage<'_>,
+        progress: &mut Progress,
+    ) -> Result<Option<WorkingSet>, Failure> {
+        self.log.phase("predicting which contacts close", None);
+        match self.close_without_friction(&whole.frictionless(), progress) {
+            Ok(found) => {
+                let set = found.and_then(|(closed, gaps)| {
+                    WorkingSet::predicted(&whole.catalog, &closed, &gaps)
+                });
+                Ok(set)
+            }
+            Err(failure) if failure.kind == FailureKind::IllPosed => Ok(None),
+            Err(failure) => Err(failure),
+        }
+    }
+
+    /// Which points of a stage without friction are closed after some of its load steps, and the least gap of each (m); `None`
+    /// where a step isn't solved. Collective.
+    ///
+    /// # Errors
+    /// As a whole run.
+    fn close_without_friction(
+        &self,
+        stage: &Stage<'_>,
+        progress: &mut Progress,
+    ) -> Result<Option<(Vec<bool>, Vec<f64>)>, Failure> {
+        let settings = &Settings {
+            no_stress: true,
+            ..self.settings.clone()
+        };
+        let choices = self.choices(&stage.catalog, None)?;
+        let parts = self.parts(stage, &choices, false)?;
+        let context = self.context(stage, &parts);
+        let analyses = analyse_steps(&context, stage.steps.clone(), &[])?;
+        let mut state = StepState::default();
+        let loads = state.loads(&context, LoadPoint::end_of(stage.steps.start), &analyses[0]);
+        let operators = &Operators::new(
+            context,
+            self.log,
+            &loads,
+            &analyses[0],
+            &mut progress.seconds,
+        )?;
+        let mut close = (
+            vec![false; stage.points.len()],
+            vec![f64::INFINITY; stage.points.len()],
+        );
+        let mut earlier: &[Vec<f64>] = &[];
+        for (k, analysis) in stage.steps.clone().zip(&analyses) {
+            stop_if_asked(&context, settings, progress.finished.count)?;
+            let increments = Increments {
+                context,
+                settings,
+                log: self.log,
+                operators,
+                is_relieved: false,
+                linear_solves: &progress.linear_solves,
+            };
+            let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds)?;
+            if !increments.is_converged(&solved) {
+                return Ok(None);
+            }
+            solved.solution.discrete.least_gaps(&context, &mut close);
+            earlier = &analysis.closing_motions;
+            state = solved.into_state(settings.method);
+        }
+        self.comm.broadcast(&mut close);
+        progress.linear_solves.take();
+        Ok(Some(close))
     }
 
     /// Solves the load steps of a `stage` that are left, from where another solver handed over, if one did; returns where
@@ -177,8 +276,7 @@ impl Stages<'_> {
             let kept = progress.finished.file.take();
             progress.files = RunFiles::create(&context, settings, kept).map_err(after)?;
         }
-        let absent = comm
-            .is_root()
+        let absent = (comm.is_root() && self.file.catalog().has_stages())
             .then(|| absent_rows(self.file.catalog(), stage));
         (progress.seconds).add(|s| &mut s.read, comm.times() - lap);
 
@@ -191,6 +289,7 @@ impl Stages<'_> {
         let robust = self.more_robust(&stage.catalog, parts.plan.merging);
         let steps = StageSteps {
             stage,
+            whole: self.file.catalog(),
             next,
             context,
             analyses: &analyses,
@@ -199,8 +298,11 @@ impl Stages<'_> {
             absent: &absent.unwrap_or_default(),
             robust: robust.as_ref(),
         };
-        let (from, took_over) = handover.map(|h| ((h.state, h.plan), h.why)).unzip();
-        let start = progress.finished.start(&context, from, stage);
+        let took_over = match handover.as_ref().map(|handover| &handover.to) {
+            Some(Successor::Solver { why, .. }) => Some(why.clone()),
+            _ => None,
+        };
+        let start = progress.finished.start(&context, handover, stage);
         let handover = self.solve_steps(&steps, (start, took_over), progress)?;
         progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
         progress.plan = Some((parts.plan, parts.why));
@@ -240,22 +342,51 @@ impl Stages<'_> {
             };
             let (analysis, earlier) = (&analyses[k - first], &analyses[..k - first]);
             let earlier = (earlier.last()).map_or(steps.before, |last| &last.closing_motions);
-            let start = robust.map(|robust| (robust, state.clone()));
+            let waits = steps.has_points_outside(&progress.finished);
+            let start = (robust.is_some() || waits).then(|| state.clone());
             let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds);
-            if let Some((robust, start)) = start
-                && let Some(why) = reason_to_hand_over(increments.ended(&solved))
-            {
+            let why = reason_to_hand_over(increments.ended(&solved));
+            if let Some((start, why)) = start.as_ref().zip(why) {
                 progress.finished.count = k;
-                return Ok(Some(Handover::new(context.plan, robust, start, &why)));
+                let handover = match robust {
+                    Some(robust) => Handover::to_solver(context.plan, robust, start.clone(), &why),
+                    None => {
+                        let all = WorkingSet::all(self.file.catalog());
+                        steps.with_set(all, k, start, &mut progress.finished)
+                    }
+                };
+                return Ok(Some(handover));
             }
             let mut solved = solved.map_err(|failure| {
                 state::finished(context.in_step(failure, k), &context, settings, k)
             })?;
+            let mut rows = steps.absent.to_vec();
+            if let (Some(set), Some(start)) = (&progress.finished.working_set, &start) {
+                let catalog = self.file.catalog();
+                let jumps = set.jumps_outside(&context, catalog, &solved.solution.displacement);
+                let gaps = gaps_left(catalog, &jumps);
+                let overlap: Vec<usize> = (0..gaps.len()).filter(|&j| gaps[j] < 0.0).collect();
+                if !overlap.is_empty() {
+                    progress.finished.count = k;
+                    let grown = set.grown(catalog, &overlap, &gaps);
+                    return Ok(Some(steps.with_set(
+                        grown,
+                        k,
+                        start,
+                        &mut progress.finished,
+                    )));
+                }
+                rows.extend(open_rows(catalog, &jumps));
+                progress.finished.working_set = Some(WorkingSet {
+                    outside: jumps,
+                    ..set.clone()
+                });
+            }
             if let Some((outcome, why)) = solved.outcome.as_mut().zip(took_over.take()) {
                 outcome.take_over(why);
             }
             log.phase("writing", None);
-            progress.finish_step(&context, &solved, analysis, steps.absent)?;
+            progress.finish_step(&context, &solved, analysis, &rows)?;
             if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
                 let end = StageEnd {
                     displacement: &solved.solution.displacement,
@@ -279,6 +410,8 @@ impl Stages<'_> {
 /// The data that the load steps of a stage share.
 struct StageSteps<'a> {
     stage: &'a Stage<'a>,
+    /// The whole problem.
+    whole: &'a Catalog,
     /// The load steps of the next stage.
     next: Option<&'a Range<usize>>,
     context: Context<'a>,
@@ -291,6 +424,42 @@ struct StageSteps<'a> {
     absent: &'a [ContactRow],
     /// The solver that takes over where the steps don't converge.
     robust: Option<&'a Choice>,
+}
+
+impl StageSteps<'_> {
+    /// Whether contact points are left out until they close.
+    fn has_points_outside(&self, finished: &Finished) -> bool {
+        let set = finished.working_set.as_ref();
+        set.is_some_and(|set| !set.outside.is_empty())
+    }
+
+    /// The handover of load step k, before which the state is `start`, to another working `set`, which takes the place of the
+    /// one before. Collective.
+    fn with_set(
+        &self,
+        set: WorkingSet,
+        k: usize,
+        start: &StepState,
+        finished: &mut Finished,
+    ) -> Handover {
+        let outside = (finished.working_set.take()).map(|before| before.outside);
+        let transfer = (k > self.stage.steps.start).then(|| {
+            let outside = outside.unwrap_or_default();
+            StageTransfer::between_sets(
+                &self.context,
+                self.stage,
+                &start.slips,
+                &outside,
+                self.whole,
+            )
+        });
+        finished.working_set = Some(set);
+        Handover::new(
+            self.context.plan,
+            start.clone(),
+            Successor::Points(transfer),
+        )
+    }
 }
 
 impl Progress {

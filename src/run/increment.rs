@@ -152,7 +152,7 @@ impl Increments<'_> {
     }
 
     /// Whether the sweeps converged. Collective.
-    fn is_converged(&self, increment: &Increment) -> bool {
+    pub fn is_converged(&self, increment: &Increment) -> bool {
         let status = increment.outcome.as_ref().map(|outcome| &outcome.status);
         (self.context.comm).decide(status == Some(&SweepStatus::Converged))
     }

@@ -25,8 +25,9 @@ use crate::contact::pair::PairState;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::{ResultFile, kept as file};
-use crate::plan::Plan;
 use crate::report::totals::StepTotals;
+use crate::run::stage::{Handover, Successor};
+use crate::run::working_set::WorkingSet;
 use crate::settings::Settings;
 use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;
@@ -50,6 +51,8 @@ struct KeptState {
     energies: Vec<BlockEnergy>,
     /// Transfer to the stage of the next load step.
     transfer: StageTransfer,
+    /// The working set of contact points, where there is one.
+    working_set: Option<WorkingSet>,
 }
 
 /// Two runs that agree in this go the same way.
@@ -95,6 +98,8 @@ pub struct Finished {
     pub steps: Vec<StepTotals>,
     /// Transfer to the stage of the next one.
     pub transfer: StageTransfer,
+    /// The working set of contact points, where there is one.
+    pub working_set: Option<WorkingSet>,
     /// The state that the next one starts from; on the root.
     kept: Option<KeptState>,
     /// The unfinished result file; on the root.
@@ -121,6 +126,7 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
         finished.count = kept.steps.len();
         finished.steps = take(&mut kept.steps);
         finished.transfer = take(&mut kept.transfer);
+        finished.working_set = kept.working_set.take();
         finished.kept = Some(kept);
     } else {
         finished.warning = Some(format!(
@@ -130,20 +136,33 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
     }
     comm.broadcast(&mut finished.count);
     comm.broadcast(&mut finished.transfer);
+    comm.broadcast(&mut finished.working_set);
     Ok(finished)
 }
 
 impl Finished {
-    /// The state that the next load step of a `stage` starts from: that `from` which another solver handed over, with the
-    /// owners of its plan, if one did. Collective.
+    /// The state that the next load step of a `stage` starts from, that of a `handover` if there was one. Collective.
     pub fn start(
         &mut self,
         context: &Context<'_>,
-        from: Option<(StepState, Plan)>,
+        handover: Option<Handover>,
         stage: &Stage<'_>,
     ) -> StepState {
-        let state = match from {
-            Some((state, plan)) => state.handed_over(context, &plan),
+        let state = match handover {
+            Some(Handover { state, plan, to }) => match to {
+                Successor::Solver { .. } => state.handed_over(context, &plan),
+                Successor::Points(transfer) => {
+                    let state = StepState {
+                        slips: BTreeMap::new(),
+                        ..state
+                    };
+                    let slips = transfer.map(|transfer| transfer.state(context, stage).slips);
+                    StepState {
+                        slips: slips.unwrap_or_default(),
+                        ..state.handed_over(context, &plan)
+                    }
+                }
+            },
             None if self.count > stage.steps.start => self.state(context),
             None => self.transfer.state(context, stage),
         };
@@ -233,6 +252,7 @@ pub fn keep(
             slips: slips.into_iter().map(|Reals(slips)| slips).collect(),
             energies,
             transfer: finished.transfer.clone(),
+            working_set: finished.working_set.clone(),
         };
         let mut bytes = Vec::new();
         ciborium::into_writer(&kept, &mut bytes)

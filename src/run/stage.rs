@@ -21,6 +21,7 @@ use crate::read::{check_copies, collect_groups, read_blocks};
 use crate::report::log::{Checked, RunLog};
 use crate::settings::Settings;
 use crate::step::state::{StepState, analyse_steps};
+use crate::step::transfer::StageTransfer;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// The data that all stages of a run share.
@@ -50,37 +51,55 @@ pub struct Parts {
     pub why: String,
 }
 
-/// A handover: where a more robust solver takes over in a stage.
+/// A handover: where a load step is to be solved again, by a more robust solver or for more contact points.
+#[derive(Clone)]
 pub struct Handover {
-    /// The choice of the more robust solver.
-    pub choice: Choice,
-    /// The state that it starts from, with the owners of the plan before.
+    /// The state before the load step, with the owners of the plan before.
     pub state: StepState,
     /// The plan before.
     pub plan: Plan,
-    /// The solver that didn't converge, and the reason, as the root knows it.
-    pub why: String,
+    /// The change.
+    pub to: Successor,
+}
+
+/// The change with which a load step is solved again.
+#[derive(Clone)]
+pub enum Successor {
+    /// A more robust solver.
+    Solver {
+        /// Its choice.
+        choice: Choice,
+        /// The solver that didn't converge, and the reason, as the root knows it.
+        why: String,
+    },
+    /// A larger working set of contact points, with the transfer of the slips to it; none before the first load step.
+    Points(Option<StageTransfer>),
 }
 
 impl Handover {
-    /// The handover of a stage from one solver to another, which starts from the `state` before the load step that didn't
-    /// converge.
-    pub fn new(plan: &Plan, to: &Choice, state: StepState, why: &str) -> Self {
+    /// The handover from the solver of a plan, which didn't converge for this reason, to another one, from the `state` before
+    /// the load step.
+    pub fn to_solver(plan: &Plan, to: &Choice, state: StepState, why: &str) -> Self {
         let (from, choice) = (plan.merging, to.clone());
+        let why = format!(
+            "{} didn't converge ({why}); {} took over",
+            from.solver(),
+            to.merging.solver()
+        );
+        Self::new(plan, state, Successor::Solver { choice, why })
+    }
+
+    /// The handover from the `state` before a load step.
+    pub fn new(plan: &Plan, state: StepState, to: Successor) -> Self {
         Self {
-            // Of another solver the state on Γ says nothing.
+            // Of other unknowns the state on Γ says nothing.
             state: StepState {
                 interface: None,
                 pairs: BTreeMap::new(),
                 ..state
             },
             plan: plan.clone(),
-            why: format!(
-                "{} didn't converge ({why}); {} took over",
-                from.solver(),
-                to.merging.solver()
-            ),
-            choice,
+            to,
         }
     }
 }
@@ -134,9 +153,9 @@ impl Stages<'_> {
         catalog: &Catalog,
         handover: Option<&Handover>,
     ) -> Result<Vec<Choice>, Failure> {
-        match handover {
-            Some(handover) => Ok(vec![handover.choice.clone()]),
-            None => (self.comm).agree(Choice::all(catalog, self.settings.wishes())),
+        match handover.map(|handover| &handover.to) {
+            Some(Successor::Solver { choice, .. }) => Ok(vec![choice.clone()]),
+            _ => (self.comm).agree(Choice::all(catalog, self.settings.wishes())),
         }
     }
 
@@ -172,11 +191,16 @@ impl Stages<'_> {
         }
         let groups = collect_groups(comm, file, catalog, &chosen.plan, &blocks)?;
         let ChosenPlan {
-            choice,
+            mut choice,
             plan,
             costs,
             available,
         } = chosen;
+        let (left, all) = (catalog.points.len(), file.catalog().points.len());
+        if left < all && !file.catalog().has_stages() {
+            choice.why +=
+                &format!("; only {left} of {all} contact points may close, as far as is known");
+        }
         if first {
             self.log.problem(file.catalog(), &plan, &choice.why);
         }

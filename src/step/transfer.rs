@@ -48,61 +48,47 @@ impl StageTransfer {
         whole: &Catalog,
         next: &Range<usize>,
     ) -> Self {
-        let &Context { comm, plan, .. } = context;
-        let dim = whole.dim;
+        let comm = context.comm;
         let coming: Vec<usize> = (0..whole.points.len())
             .filter(|j| stage.points.binary_search(j).is_err())
             .filter(|&j| whole.is_there(&whole.points[j], next.start))
             .collect();
-        let entries = || coming.iter().flat_map(|&j| &whole.points[j].entries);
-        let mut wanted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (at, _) in entries() {
-            wanted.entry(at.subdomain).or_default().push(at.node);
-        }
-        let mut moved = BTreeMap::new();
-        comm.gather(
-            plan.owners(),
-            |b| {
-                let u = &end.displacement[&b];
-                let nodes = wanted.get(&(b as u32)).into_iter().flatten();
-                let of_node = |&node: &u32| padded(&u[node as usize * dim..][..dim]);
-                nodes.map(of_node).collect::<Vec<[f64; 3]>>()
-            },
-            |b, u| {
-                moved.insert(b as u32, u.into_iter());
-            },
-        );
+        let jumps = jumps_of(&coming, context, whole, end.displacement);
         let mut transfer = Self {
             since: match self.since.is_empty() {
                 true => vec![[0.0; 3]; whole.points.len()],
                 false => self.since.clone(),
             },
-            slips: BTreeMap::new(),
+            slips: slips_of_points(context, stage, whole, end.slips),
             closing_motions: end.closing_motions.to_vec(),
         };
-        for &j in coming.iter().filter(|_| comm.is_root()) {
-            let displacement = |at: &SubdomainNode| {
-                let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
-                u.unwrap_or_default()
-            };
-            transfer.since[j] = jump(&whole.points[j], displacement);
+        for (&j, jump) in coming.iter().zip(jumps) {
+            transfer.since[j] = jump;
         }
-        comm.gather(
-            &plan.group_owners(),
-            |g| Reals(end.slips.get(&g).cloned().unwrap_or_default()),
-            |g, Reals(slips)| {
-                let mut rest = &slips[..];
-                for &j in &plan.tree.nodes[plan.groups[g].node].points {
-                    let place = stage.points[j as usize];
-                    let (own, others) = rest.split_at(whole.points[place].tangents(dim).len());
-                    rest = others;
-                    if !own.is_empty() {
-                        transfer.slips.insert(place, own.to_vec());
-                    }
-                }
-            },
-        );
         comm.broadcast(&mut transfer);
+        transfer
+    }
+
+    /// The transfer within a stage, from a working set of contact points to another: the tangential jumps of its points are
+    /// `slips`, those of the points `outside` follow from their jumps. Collective.
+    pub fn between_sets(
+        context: &Context<'_>,
+        stage: &Stage<'_>,
+        slips: &BTreeMap<usize, Vec<f64>>,
+        outside: &BTreeMap<usize, [f64; 3]>,
+        whole: &Catalog,
+    ) -> Self {
+        let mut slips = slips_of_points(context, stage, whole, slips);
+        for (&place, jump) in outside {
+            let tangents = whole.points[place].tangents(whole.dim).iter();
+            slips.insert(place, tangents.map(|t| dot(*t, *jump)).collect());
+        }
+        let mut transfer = Self {
+            since: vec![[0.0; 3]; whole.points.len()],
+            slips,
+            closing_motions: Vec::new(),
+        };
+        context.comm.broadcast(&mut transfer);
         transfer
     }
 
@@ -131,6 +117,68 @@ impl StageTransfer {
             ..StepState::default()
         }
     }
+}
+
+/// The jumps ⟦u⟧ of these contact points of the `whole` problem under the displacement of every block (m); on the root.
+/// Collective.
+pub fn jumps_of(
+    places: &[usize],
+    context: &Context<'_>,
+    whole: &Catalog,
+    displacement: &BTreeMap<usize, Vec<f64>>,
+) -> Vec<[f64; 3]> {
+    let (comm, dim) = (context.comm, whole.dim);
+    let mut wanted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for (at, _) in places.iter().flat_map(|&j| &whole.points[j].entries) {
+        wanted.entry(at.subdomain).or_default().push(at.node);
+    }
+    let mut moved = BTreeMap::new();
+    comm.gather(
+        context.plan.owners(),
+        |b| {
+            let u = &displacement[&b];
+            let nodes = wanted.get(&(b as u32)).into_iter().flatten();
+            let of_node = |&node: &u32| padded(&u[node as usize * dim..][..dim]);
+            nodes.map(of_node).collect::<Vec<[f64; 3]>>()
+        },
+        |b, u| {
+            moved.insert(b as u32, u.into_iter());
+        },
+    );
+    let mut of_node = |at: &SubdomainNode| {
+        let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
+        u.unwrap_or_default()
+    };
+    let own = places.iter().filter(|_| comm.is_root());
+    own.map(|&j| jump(&whole.points[j], &mut of_node)).collect()
+}
+
+/// The tangential jumps of the contact points of a `stage` with friction (m), by their places in the `whole` problem, from
+/// those of the groups of this rank; on the root. Collective.
+fn slips_of_points(
+    context: &Context<'_>,
+    stage: &Stage<'_>,
+    whole: &Catalog,
+    slips: &BTreeMap<usize, Vec<f64>>,
+) -> BTreeMap<usize, Vec<f64>> {
+    let &Context { comm, plan, .. } = context;
+    let mut of_points = BTreeMap::new();
+    comm.gather(
+        &plan.group_owners(),
+        |g| Reals(slips.get(&g).cloned().unwrap_or_default()),
+        |g, Reals(slips)| {
+            let mut rest = &slips[..];
+            for &j in &plan.tree.nodes[plan.groups[g].node].points {
+                let place = stage.points[j as usize];
+                let (own, others) = rest.split_at(whole.points[place].tangents(whole.dim).len());
+                rest = others;
+                if !own.is_empty() {
+                    of_points.insert(place, own.to_vec());
+                }
+            }
+        },
+    );
+    of_points
 }
 
 /// The jump of a point under the displacements of its nodes, of an equation along the axis of its first one.

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::{Absent, Catalog, SubdomainNode};
-use crate::contact_point::ContactPoint;
+use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::dot;
 
 /// The part of a problem that is there in consecutive load steps.
@@ -91,11 +91,7 @@ impl Catalog {
         for &body in absent {
             catalog.bodies[body as usize].is_absent = true;
         }
-        catalog.points = points.iter().map(|&j| self.points[j].clone()).collect();
-        catalog.point_nodes = points
-            .iter()
-            .map(|&j| self.point_nodes[j].clone())
-            .collect();
+        catalog.keep_points(&points);
         for (point, &j) in catalog.points.iter_mut().zip(&points) {
             point.since = since.get(j).copied().unwrap_or_default();
             point.gap += dot(point.since, point.normal());
@@ -108,16 +104,58 @@ impl Catalog {
         catalog.probes.retain(|probe| {
             !came.contains(&probe.contact) && self.are_there(probe.contact, &probe.entries, k)
         });
-        let mut first = 0;
-        for count in &mut catalog.groups {
-            let end = first + *count;
-            *count = points.partition_point(|&j| j < end) - points.partition_point(|&j| j < first);
-            first = end;
-        }
         Stage {
             steps,
             catalog: Cow::Owned(catalog),
             points,
+        }
+    }
+
+    /// Leaves out all contact points but these, whose places ascend.
+    fn keep_points(&mut self, points: &[usize]) {
+        self.points = points.iter().map(|&j| self.points[j].clone()).collect();
+        self.point_nodes = (points.iter())
+            .map(|&j| self.point_nodes[j].clone())
+            .collect();
+        let mut first = 0;
+        for count in &mut self.groups {
+            let end = first + *count;
+            *count = points.partition_point(|&j| j < end) - points.partition_point(|&j| j < first);
+            first = end;
+        }
+    }
+}
+
+impl Stage<'_> {
+    /// The stage with these of its contact points alone, whose places in the catalog of the whole problem ascend.
+    #[must_use]
+    pub fn with_points(&self, points: &[usize]) -> Self {
+        let kept: Vec<usize> = (self.points.iter().enumerate())
+            .filter(|(_, place)| points.binary_search(place).is_ok())
+            .map(|(j, _)| j)
+            .collect();
+        let mut catalog = Catalog::clone(&self.catalog);
+        catalog.keep_points(&kept);
+        Self {
+            steps: self.steps.clone(),
+            catalog: Cow::Owned(catalog),
+            points: kept.into_iter().map(|j| self.points[j]).collect(),
+        }
+    }
+
+    /// The stage without friction.
+    #[must_use]
+    pub fn frictionless(&self) -> Self {
+        let mut catalog = Catalog::clone(&self.catalog);
+        for point in &mut catalog.points {
+            if point.law.has_friction() {
+                point.law = Law::Frictionless;
+            }
+        }
+        Self {
+            steps: self.steps.clone(),
+            catalog: Cow::Owned(catalog),
+            points: self.points.clone(),
         }
     }
 }

@@ -162,23 +162,27 @@ impl FrictionCones<'_> {
         }
         let n = unknowns.len();
         let mut a = Mat::<f64>::zeros(n, n);
-        for (k, equation) in equations.iter().flatten().enumerate() {
-            for &(i, factor) in &equation.forces {
-                if i >= m {
-                    if let Some(own) = column[i] {
-                        a[(k, own)] += factor;
+        // Column by column, as they lie in memory: the largest part of all that is written here.
+        let jumps: Vec<(usize, usize, f64)> = (equations.iter().flatten().enumerate())
+            .flat_map(|(k, equation)| equation.forces.iter().map(move |&(i, c)| (k, i, c)))
+            .filter(|&(_, i, _)| i < m)
+            .collect();
+        for (l, &j) in unknowns.iter().enumerate() {
+            for &(k, i, factor) in &jumps {
+                let response = match j < m {
+                    true => contact.h[(i, j)],
+                    false => {
+                        let own = contact.rows.row(j - m).iter().find(|(jump, _)| *jump == i);
+                        own.map_or(0.0, |(_, c)| *c)
                     }
-                    continue;
-                }
-                for (l, &j) in unknowns.iter().enumerate() {
-                    let response = match j < m {
-                        true => contact.h[(i, j)],
-                        false => {
-                            let own = contact.rows.row(j - m).iter().find(|(jump, _)| *jump == i);
-                            own.map_or(0.0, |(_, c)| *c)
-                        }
-                    };
-                    a[(k, l)] -= factor * response;
+                };
+                a[(k, l)] -= factor * response;
+            }
+        }
+        for (k, equation) in equations.iter().flatten().enumerate() {
+            for &(i, factor) in equation.forces.iter().filter(|(i, _)| *i >= m) {
+                if let Some(own) = column[i] {
+                    a[(k, own)] += factor;
                 }
             }
             for &(i, factor) in &equation.ways {

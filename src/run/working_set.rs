@@ -1,0 +1,166 @@
+//! The working set of contact points: those that a run with friction solves for, where most points never close.
+//!
+//! The matrix of all conditions grows with the square of their number, and of a pin with clearance one point in ten is
+//! closed. Points outside of the set are left open and have no unknowns. Their gaps are checked after every load step:
+//! points that overlap join, and the step is solved again. Where none overlaps, the solution is that of all points.
+
+use std::collections::BTreeMap;
+
+use contact_dd_partition::contact_point::{ContactPoint, Law};
+use contact_dd_partition::element::geometry::dot;
+use contact_dd_partition::problem::{Catalog, SubdomainNode};
+use contact_dd_partition::solver::Method;
+use serde::{Deserialize, Serialize};
+
+use crate::context::Context;
+use crate::fem::contact_state::{ContactRow, ContactState};
+use crate::settings::Settings;
+use crate::step::transfer::jumps_of;
+
+/// Conditions, tangential ones among them, up to which all points are solved for at once.
+const FEW: usize = 3000;
+/// Share of the points that have to be apart at first: where sides touch, most points stay closed.
+const APART: f64 = 0.5;
+/// Largest share of all points in a set: a larger one saves less than it costs.
+const WORTH: f64 = 0.7;
+
+/// A working set, and the position of the points outside of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WorkingSet {
+    /// The points that are solved for, by their places in the catalog, ascending.
+    pub points: Vec<usize>,
+    /// The jump ⟦u⟧ of every point outside after the last load step (m), 0 at first.
+    pub outside: BTreeMap<usize, [f64; 3]>,
+}
+
+/// Whether a problem may have a working set: friction at many points, most of which are apart at first.
+pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
+    let wishes = settings.wishes();
+    let of_point = |point: &ContactPoint<SubdomainNode>| 1 + point.tangents(catalog.dim).len();
+    let conditions: usize = catalog.points.iter().map(of_point).sum();
+    let apart = catalog
+        .points
+        .iter()
+        .filter(|point| can_wait(point))
+        .count();
+    catalog.has_friction()
+        && conditions > FEW
+        && apart as f64 >= APART * catalog.points.len() as f64
+        // Quantities may name any point, and what comes or goes has a state of its own.
+        && catalog.quantities.is_empty()
+        && !catalog.has_stages()
+        && wishes.method == Method::Newton
+        && wishes.iterative != Some(true)
+        && !wishes.second_start
+        && settings.max_sweeps.is_none()
+}
+
+/// Whether a point is apart at first, and free as long as it is open.
+fn can_wait(point: &ContactPoint<SubdomainNode>) -> bool {
+    let is_free = match point.law {
+        Law::Frictionless => true,
+        Law::Coulomb { cohesion, .. } => cohesion == 0.0,
+        Law::Given { .. } | Law::Tied => false,
+    };
+    let has_unknowns = point.is_equation() || point.is_compliant() || !point.motion.is_empty();
+    is_free && point.gap > 0.0 && !has_unknowns
+}
+
+impl WorkingSet {
+    /// The set with which to begin: of all points that `closed` in some load step without friction, and as many more of the
+    /// least of the `gaps` that were left; `None` where that are most. Both by places in the catalog.
+    pub fn predicted(catalog: &Catalog, closed: &[bool], gaps: &[f64]) -> Option<Self> {
+        let always = |j: &usize| closed[*j] || !can_wait(&catalog.points[*j]);
+        let set = Self::default().with(catalog, (0..closed.len()).filter(always), gaps);
+        set.is_worth(catalog).then_some(set)
+    }
+
+    /// Whether it is small enough.
+    fn is_worth(&self, catalog: &Catalog) -> bool {
+        self.points.len() as f64 <= WORTH * catalog.points.len() as f64
+    }
+
+    /// The set of all points.
+    pub fn all(catalog: &Catalog) -> Self {
+        Self {
+            points: (0..catalog.points.len()).collect(),
+            outside: BTreeMap::new(),
+        }
+    }
+
+    /// The set after points `join`, and as many more of the least of all `gaps`, which may close as these do; all of them
+    /// where it isn't worth to leave out the rest.
+    #[must_use]
+    pub fn grown(&self, catalog: &Catalog, join: &[usize], gaps: &[f64]) -> Self {
+        let grown = self.with(catalog, join.iter().copied(), gaps);
+        match grown.is_worth(catalog) {
+            true => grown,
+            false => Self::all(catalog),
+        }
+    }
+
+    fn with(&self, catalog: &Catalog, join: impl Iterator<Item = usize>, gaps: &[f64]) -> Self {
+        let count = catalog.points.len();
+        let mut is_in = vec![false; count];
+        self.points.iter().for_each(|&j| is_in[j] = true);
+        let mut joined = 0;
+        for j in join {
+            joined += usize::from(!is_in[j]);
+            is_in[j] = true;
+        }
+        let mut others: Vec<usize> = (0..count).filter(|&j| !is_in[j]).collect();
+        others.sort_by(|&a, &b| gaps[a].total_cmp(&gaps[b]));
+        others.iter().take(joined).for_each(|&j| is_in[j] = true);
+        let old = |j: usize| self.outside.get(&j).copied().unwrap_or_default();
+        Self {
+            points: (0..count).filter(|&j| is_in[j]).collect(),
+            outside: (0..count)
+                .filter(|&j| !is_in[j])
+                .map(|j| (j, old(j)))
+                .collect(),
+        }
+    }
+
+    /// The jumps ⟦u⟧ of the points outside under a displacement (m), on all ranks. Collective.
+    pub fn jumps_outside(
+        &self,
+        context: &Context<'_>,
+        whole: &Catalog,
+        displacement: &BTreeMap<usize, Vec<f64>>,
+    ) -> BTreeMap<usize, [f64; 3]> {
+        let places: Vec<usize> = self.outside.keys().copied().collect();
+        let jumps = jumps_of(&places, context, whole, displacement);
+        let mut jumps = places.into_iter().zip(jumps).collect();
+        context.comm.broadcast(&mut jumps);
+        jumps
+    }
+}
+
+/// The gaps that jumps leave at points outside of a working set, of other points none (m).
+pub fn gaps_left(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<f64> {
+    let mut gaps = vec![f64::INFINITY; catalog.points.len()];
+    for (&j, jump) in jumps {
+        let point = &catalog.points[j];
+        gaps[j] = point.gap - dot(point.normal(), *jump);
+    }
+    gaps
+}
+
+/// The rows of the points outside of a working set, open, with these jumps.
+pub fn open_rows(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<ContactRow> {
+    let row = |(&j, jump): (&usize, &[f64; 3])| {
+        let point = &catalog.points[j];
+        let mut slip = [0.0; 3];
+        for t in point.tangents(catalog.dim) {
+            let along = dot(*t, *jump);
+            slip = std::array::from_fn(|k| slip[k] + along * t[k]);
+        }
+        let state = ContactState {
+            gap: point.gap - dot(point.normal(), *jump),
+            slip,
+            ..ContactState::default()
+        };
+        (point.rename(|_| None), state)
+    };
+    jumps.iter().map(row).collect()
+}
