@@ -8,6 +8,7 @@ mod axes;
 mod connections;
 mod contacts;
 mod content;
+mod couplings;
 mod document;
 mod elastic;
 mod group_load;
@@ -106,6 +107,7 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
     let mut places = Places::new(&source, deck);
     let mut content = Content::default();
     content.read_amplitudes(&source)?;
+    content.read_couplings(&mut places)?;
     for block in &source.blocks {
         content.read(&mut places, block)?;
     }

@@ -1,11 +1,26 @@
 //! Decks of Abaqus and CalculiX, solved as they are.
 
+mod couplings;
+
 use contact_dd_partition::deck;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
 
 use crate::support::close::close;
+use crate::support::solution::Solution;
 use crate::support::solver::solve_steps;
+
+/// The solutions of all steps of a deck.
+#[track_caller]
+fn solved(deck: &str) -> Vec<Solution> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part.inp");
+    std::fs::write(&path, deck).unwrap();
+    let translation = deck::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let scene = Scene::parse(&translation.scene).unwrap();
+    let model = Model::new(&scene, translation.mesh).unwrap_or_else(|e| panic!("{e}"));
+    solve_steps(&model, 2)
+}
 
 /// A column of two cubes that touch, without Poisson's effect: under a pressure, with its weight, and under forces alone.
 const COLUMN: &str = "\
@@ -77,13 +92,7 @@ Top, 3, -2.5
 
 #[test]
 fn a_column_of_a_deck_is_as_short_as_by_hooke() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("column.inp");
-    std::fs::write(&path, COLUMN).unwrap();
-    let translation = deck::read(&path).unwrap();
-    let scene = Scene::parse(&translation.scene).unwrap();
-    let model = Model::new(&scene, translation.mesh).unwrap();
-    let steps = solve_steps(&model, 2);
+    let steps = solved(COLUMN);
     // -∫ (p + γ (2 - z)) dz / E up to the middle and up to the top.
     let expected = [(10.0, 0.0), (10.0, 30.0), (10.0, 0.0)];
     assert_eq!(steps.len(), expected.len());

@@ -6,6 +6,7 @@ use super::amplitude::Amplitude;
 use super::axes::{Axes, System};
 use super::connections::Connections;
 use super::contacts::Contacts;
+use super::couplings::Couplings;
 use super::loads::item;
 use super::material::Material;
 use super::model_change::{self, Change};
@@ -30,6 +31,7 @@ pub(super) struct Content {
     pub(super) temperatures: BTreeMap<u32, f64>,
     pub(super) contacts: Contacts,
     pub(super) connections: Connections,
+    pub(super) couplings: Couplings,
     pub(super) steps: Steps,
     /// Pairs that come and go.
     pub(super) changes: Vec<Change>,
@@ -46,6 +48,21 @@ impl Content {
             let amplitude = Amplitude::read(source, block)?;
             self.steps.amplitudes.insert(name, amplitude);
         }
+        Ok(())
+    }
+
+    /// Reads all couplings, before anything loads or holds their reference nodes.
+    pub(super) fn read_couplings(&mut self, places: &mut Places) -> Result<(), InputError> {
+        for block in &places.source.blocks {
+            match block.keyword.as_str() {
+                "PART" | "INSTANCE" | "END PART" | "END INSTANCE" => places.enter(block),
+                "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {
+                    self.couplings.read(places, block)?;
+                }
+                _ => {}
+            }
+        }
+        self.steps.loads.references = self.couplings.references(places)?;
         Ok(())
     }
 
@@ -111,6 +128,8 @@ impl Content {
             "BOUNDARY" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" => {
                 self.steps.read(places, block)?
             }
+            // They have been read before all others.
+            "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {}
             "TIE" | "EQUATION" => self.connections.read(places, block)?,
             "MODEL CHANGE" => {
                 let step = self.steps.is_open().then_some(self.steps.done.len());

@@ -115,6 +115,26 @@ impl<'a, 'b> Groups<'a, 'b> {
         name
     }
 
+    /// Whether a cell has a node.
+    pub(super) fn is_of_body(&self, node: u32) -> bool {
+        self.has_cell[node as usize]
+    }
+
+    /// The number of a node in the deck.
+    pub(super) fn tag(&self, node: u32) -> i64 {
+        self.places.deck.node_tags[node as usize]
+    }
+
+    /// The position of a node.
+    pub(super) fn position(&self, node: u32) -> [f64; 3] {
+        self.places.deck.points[node as usize]
+    }
+
+    /// The dimension of the cells.
+    pub(super) fn dim(&self) -> usize {
+        self.places.dim()
+    }
+
     /// The error of what is wrong at a place of the deck.
     pub(super) fn error(&self, at: LinePlace, message: &str) -> InputError {
         self.places.source.error(at, message)

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 40] = [
+const READ: [&str; 44] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -45,6 +45,10 @@ const READ: [&str; 40] = [
     "CONTACT PROPERTY ASSIGNMENT",
     "TIE",
     "EQUATION",
+    "COUPLING",
+    "KINEMATIC",
+    "DISTRIBUTING",
+    "RIGID BODY",
     "MODEL CHANGE",
     "STEP",
     "END STEP",
@@ -168,16 +172,9 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "write it as *EQUATION, or hold a plane of symmetry by *BOUNDARY",
     ),
     (
-        &[
-            "RIGID BODY",
-            "COUPLING",
-            "KINEMATIC",
-            "DISTRIBUTING",
-            "KINEMATIC COUPLING",
-            "DISTRIBUTING COUPLING",
-        ],
-        NOT_YET,
-        "move the nodes by *BOUNDARY, or load their faces by *DSLOAD",
+        &["KINEMATIC COUPLING", "DISTRIBUTING COUPLING"],
+        "isn't read",
+        "give *COUPLING with *KINEMATIC or *DISTRIBUTING",
     ),
     (
         &["PRE-TENSION SECTION"],

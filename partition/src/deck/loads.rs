@@ -1,7 +1,8 @@
 //! What acts in a step: supports, forces and temperatures as the steps before have left them and it changes them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::couplings::Reference;
 use super::place::Places;
 use super::table::{Origin, Table};
 use crate::element::geometry::length;
@@ -30,7 +31,7 @@ pub(super) enum BodyKind {
     Centrifugal([f64; 3], [f64; 3]),
 }
 
-/// A node and a local axis from 0.
+/// A node and a local axis from 0; of a reference node its rotations come behind its axes.
 pub(super) type NodeAxis = (u32, usize);
 
 /// All that acts.
@@ -48,6 +49,8 @@ pub(super) struct Loads {
     pub(super) bodies: Table<usize>,
     pub(super) of_bodies: Vec<BodyLoad>,
     pub(super) temperatures: Table<u32>,
+    /// Nodes that stand for reference points.
+    pub(super) references: BTreeMap<u32, Reference>,
     /// What of it isn't needed, in words.
     pub(super) notes: BTreeSet<String>,
 }

@@ -1,10 +1,10 @@
 //! From what a deck says to the scene that means the same.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::connections::SceneTie;
 use super::content::Content;
-use super::document::{Document, Linear, quoted};
+use super::document::{Document, Linear, Names, quoted};
 use super::elastic::Elastic;
 use super::group_load::{OnGroup, OnGroups};
 use super::groups::Groups;
@@ -33,6 +33,7 @@ pub(super) fn text(
 ) -> Result<String, InputError> {
     let source = places.source;
     let plane = plane(places)?;
+    (content.couplings).check_plane(places, plane == Some(PlaneState::Axisymmetric))?;
     let bodies = content.bodies(places)?;
     let thickness = match plane {
         Some(PlaneState::Strain | PlaneState::Stress) => {
@@ -59,6 +60,16 @@ pub(super) fn text(
         .collect();
     let ties = content.connections.ties(&mut loads.groups);
     let equations = (content.connections).equations(&mut loads.groups, &content.steps.systems)?;
+    let mut taken = Names::default();
+    let pairs: Vec<String> = (sides.iter())
+        .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
+        .collect();
+    let couplings = content.couplings.in_scene(
+        &mut loads.groups,
+        (&content.steps.done, thickness),
+        &content.steps.systems,
+        &mut taken,
+    )?;
     let dim = loads.dim;
     let mut document = Document::default();
     if let Some(title) = &content.title {
@@ -75,7 +86,15 @@ pub(super) fn text(
     for load in &on_groups {
         load.write(0, "", &mut document);
     }
-    let pairs = content.contact(places, (&sides, ties), &mut document, warnings)?;
+    content.contact(
+        places,
+        (&sides, &pairs, ties),
+        &mut taken,
+        (&mut document, warnings),
+    )?;
+    couplings
+        .iter()
+        .for_each(|coupling| coupling.write(&mut document));
     for equation in &equations {
         equation.write(&mut document);
     }
@@ -88,6 +107,9 @@ pub(super) fn text(
                 dim,
                 &mut document,
             )?;
+            for coupling in &couplings {
+                coupling.write_step(number, &mut document);
+            }
         }
     }
     Ok(document.text())
@@ -249,29 +271,21 @@ impl Content {
         Ok(force)
     }
 
-    /// Writes the contacts and ties, and returns the names of the pairs.
+    /// Writes the contacts and ties, of which those of pairs have names.
     fn contact(
         &self,
         places: &Places,
-        (sides, ties): (&[[String; 2]], Vec<SceneTie>),
-        document: &mut Document,
-        warnings: &mut Vec<String>,
-    ) -> Result<Vec<String>, InputError> {
-        let (mut pairs, mut tied) = (Vec::with_capacity(sides.len()), Vec::new());
-        let mut taken = BTreeSet::new();
-        let mut unique = |plain: String| {
-            let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
-            let mut names = std::iter::once(plain.clone()).chain(numbered);
-            let name = names.find(|name| taken.insert(name.clone()));
-            name.unwrap_or_default()
-        };
-        for (pair, [slave, master]) in self.contacts.pairs.iter().zip(sides) {
-            let name = unique(format!("{slave} on {master}").replace('/', " "));
-            pairs.push(name.clone());
+        (sides, names, ties): (&[[String; 2]], &[String], Vec<SceneTie>),
+        taken: &mut Names,
+        (document, warnings): (&mut Document, &mut Vec<String>),
+    ) -> Result<(), InputError> {
+        let mut tied = Vec::new();
+        let pairs = self.contacts.pairs.iter().zip(sides).zip(names);
+        for ((pair, [slave, master]), name) in pairs {
             if self.contacts.is_tied(pair) {
                 self.contacts.law_of(places, pair, warnings)?;
                 tied.push(SceneTie {
-                    name,
+                    name: name.clone(),
                     sides: [slave.clone(), master.clone()],
                     tolerance: None,
                     adjust: pair.adjust,
@@ -286,7 +300,7 @@ impl Content {
                 ));
             }
             document.table("[[contact]]");
-            document.key("name", quoted(&name));
+            document.key("name", quoted(name));
             document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
             if let Some(gap) = pair.gap {
                 document.key("gap", format!("{gap:?}"));
@@ -294,7 +308,7 @@ impl Content {
             law.write(document);
         }
         for tie in &ties {
-            tie.write(&unique(tie.name.clone()), document);
+            tie.write(&taken.unique(&tie.name), document);
         }
         for tie in &tied {
             tie.write(&tie.name, document);
@@ -305,7 +319,7 @@ impl Content {
             document.key("between", quoted("all"));
             law.write(document);
         }
-        Ok(pairs)
+        Ok(())
     }
 
     /// Writes a load step: all that it has in place of the scene's loads.

@@ -1,5 +1,6 @@
 //! Decks as whole models: the scene and the mesh that they mean.
 
+mod couplings;
 mod laws;
 mod refused;
 mod steps;

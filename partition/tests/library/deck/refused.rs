@@ -6,7 +6,7 @@ use crate::says::says;
 const LOAD: &str = "*DLOAD\nUpper, P2, 1.";
 
 #[track_caller]
-fn refused(deck: &str, expected: &str) {
+pub fn refused(deck: &str, expected: &str) {
     match read(deck) {
         Ok(translation) => panic!("{expected}: {}", translation.scene),
         Err(said) => says(&said, expected),
@@ -47,12 +47,8 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 49: *MPC isn't supported yet; instead",
         ),
         (
-            "*RIGID BODY, NSET=Top",
-            "line 49: *RIGID BODY isn't supported yet; instead move",
-        ),
-        (
-            "*COUPLING",
-            "line 49: *COUPLING isn't supported yet; instead",
+            "*KINEMATIC COUPLING, REF NODE=1",
+            "line 49: *KINEMATIC COUPLING isn't read; instead give *COUPLING",
         ),
         (
             "*PRE-TENSION SECTION",
