@@ -21,6 +21,7 @@ mod parameters;
 mod place;
 mod scene;
 mod sections;
+mod springs;
 mod steps;
 mod supports;
 mod table;

@@ -160,3 +160,39 @@ fn a_tied_column_of_a_deck_is_as_long_as_by_hooke() {
         }
     }
 }
+
+#[test]
+fn springs_of_a_deck_hold_a_column_as_by_hooke() {
+    let (mesh, _) = COLUMN.split_once("*BOUNDARY").unwrap();
+    let on_springs = "\
+*ELEMENT, TYPE=SPRING1, ELSET=Feet
+21, 1
+22, 2
+23, 3
+24, 4
+*SPRING, ELSET=Feet
+3
+100.
+*NSET, NSET=Lower
+1, 2, 3, 4, 5, 6, 7, 8
+*BOUNDARY
+Lower, 1, 2
+11, 1, 2
+12, 2
+*STEP
+*STATIC
+*DLOAD
+Upper, P2, 20.
+*END STEP
+";
+    let solution = &solved(&format!("{mesh}{on_springs}"))[0];
+    // Four springs are as stiff as 400 together, the column as 1000 / 2.
+    for (tags, expected) in [
+        (1..5, -20.0 / 400.0),
+        (15..19, -20.0 / 400.0 - 20.0 / 500.0),
+    ] {
+        for tag in tags {
+            close(solution.displacement[&tag][2], expected, 1e-12);
+        }
+    }
+}

@@ -12,6 +12,7 @@ use super::material::Material;
 use super::model_change::{self, Change};
 use super::place::Places;
 use super::sections::Section;
+use super::springs::Springs;
 use super::steps::Steps;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of, Source};
@@ -32,6 +33,7 @@ pub(super) struct Content {
     pub(super) contacts: Contacts,
     pub(super) connections: Connections,
     pub(super) couplings: Couplings,
+    pub(super) springs: Springs,
     pub(super) steps: Steps,
     /// Pairs that come and go.
     pub(super) changes: Vec<Change>,
@@ -130,6 +132,8 @@ impl Content {
             }
             // They have been read before all others.
             "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {}
+            "ELEMENT" => self.springs.elements(places, block)?,
+            "SPRING" => self.springs.property(places, block)?,
             "TIE" | "EQUATION" => self.connections.read(places, block)?,
             "MODEL CHANGE" => {
                 let step = self.steps.is_open().then_some(self.steps.done.len());

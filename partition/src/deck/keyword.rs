@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 44] = [
+const READ: [&str; 45] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -49,6 +49,7 @@ const READ: [&str; 44] = [
     "KINEMATIC",
     "DISTRIBUTING",
     "RIGID BODY",
+    "SPRING",
     "MODEL CHANGE",
     "STEP",
     "END STEP",
@@ -182,9 +183,9 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "shrink the bolt by *TEMPERATURE",
     ),
     (
-        &["SPRING", "DASHPOT", "CONNECTOR SECTION", "GAP"],
+        &["CONNECTOR SECTION", "GAP"],
         NOT_YET,
-        "leave it out, convert the deck, and give [[spring]] in the scene",
+        "give *SPRING of elements of type SPRING1, or a *CONTACT PAIR",
     ),
     (
         &["CYCLIC SYMMETRY MODEL", "SELECT CYCLIC SYMMETRY MODES"],
@@ -248,7 +249,11 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "leave it out",
     ),
     (
-        &["SURFACE INTERACTION DAMPING", "VALUES AT INFINITY"],
+        &[
+            "DASHPOT",
+            "SURFACE INTERACTION DAMPING",
+            "VALUES AT INFINITY",
+        ],
         NOT_STATIC,
         "leave it out",
     ),

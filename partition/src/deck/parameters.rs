@@ -5,7 +5,7 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 31] = [
+const PARAMETERS: [(&str, &[&str]); 32] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("MATERIAL", &["NAME", "RTOL"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
@@ -104,6 +104,10 @@ const PARAMETERS: [(&str, &[&str]); 31] = [
         &["CONSTRAINT NAME", "REF NODE", "SURFACE", "ORIENTATION"],
     ),
     ("KINEMATIC", &[]),
+    (
+        "SPRING",
+        &["ELSET", "NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"],
+    ),
     ("DISTRIBUTING", &["COUPLING", "WEIGHTING METHOD"]),
     (
         "RIGID BODY",

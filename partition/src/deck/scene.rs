@@ -60,6 +60,9 @@ pub(super) fn text(
         .collect();
     let ties = content.connections.ties(&mut loads.groups);
     let equations = (content.connections).equations(&mut loads.groups, &content.steps.systems)?;
+    let springs = content
+        .springs
+        .in_scene(&mut loads.groups, thickness, &content.steps.systems)?;
     let mut taken = Names::default();
     let pairs: Vec<String> = (sides.iter())
         .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
@@ -95,6 +98,9 @@ pub(super) fn text(
     couplings
         .iter()
         .for_each(|coupling| coupling.write(&mut document));
+    springs
+        .iter()
+        .for_each(|spring| spring.write(&mut document));
     for equation in &equations {
         equation.write(&mut document);
     }

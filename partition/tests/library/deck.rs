@@ -3,6 +3,7 @@
 mod couplings;
 mod laws;
 mod refused;
+mod springs;
 mod steps;
 
 use contact_dd_partition::deck::{self, Translation};

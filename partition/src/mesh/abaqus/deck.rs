@@ -234,10 +234,13 @@ impl Deck {
                 self.left_out.insert(offset + tag);
             }
         }
-        self.notes.add(
-            "elements that are no cells of a body are left out",
-            name.to_uppercase(),
-        );
+        // Springs to the ground are told by their keyword.
+        if !name.eq_ignore_ascii_case("SPRING1") {
+            self.notes.add(
+                "elements that are no cells of a body are left out",
+                name.to_uppercase(),
+            );
+        }
         if let Some(set) = block.parameter("ELSET") {
             self.element_sets.extend(set, false, []);
         }

@@ -55,8 +55,8 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 49: *PRE-TENSION SECTION isn't supported yet; instead",
         ),
         (
-            "*SPRING, ELSET=All",
-            "line 49: *SPRING isn't supported yet; instead",
+            "*GAP, ELSET=All",
+            "line 49: *GAP isn't supported yet; instead",
         ),
         (
             "*CYCLIC SYMMETRY MODEL",
