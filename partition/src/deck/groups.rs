@@ -158,6 +158,25 @@ impl<'a, 'b> Groups<'a, 'b> {
         Some(name)
     }
 
+    /// The group of nodes as points, each by itself, also where they are all nodes of faces; `None` where cells have none.
+    pub(super) fn of_points(&mut self, nodes: &[u32], word: &str) -> Option<String> {
+        let members = self.with_cells(nodes);
+        if members.is_empty() {
+            return None;
+        }
+        let name = self.fresh(word, true);
+        let deck = &mut self.places.deck;
+        deck.node_sets.extend(&name, false, members);
+        deck.point_sets.insert(name.clone());
+        Some(name)
+    }
+
+    /// The nodes of a surface that is told by them.
+    pub(super) fn of_node_surface(&self, surface: &str) -> Option<Vec<u32>> {
+        let surface = self.places.deck.node_surfaces.get(surface)?;
+        Some(surface.members.list().to_vec())
+    }
+
     /// The group of cells, which are those of the set `word` or some of them.
     pub(super) fn of_cells(&mut self, cells: &[u32], word: &str) -> String {
         if let Some(name) = self.cells.get(cells) {

@@ -178,7 +178,7 @@ impl Springs {
         let dim = groups.dim();
         let spring = |(bits, nodes): ([u64; 3], Vec<u32>)| {
             Some(SceneSpring {
-                on: groups.of_nodes(&nodes, "spring")?,
+                on: groups.of_points(&nodes, "spring")?,
                 stiffness: bits.map(f64::from_bits),
                 dim,
             })

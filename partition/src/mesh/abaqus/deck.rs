@@ -35,6 +35,8 @@ pub(crate) struct Deck {
     /// The tags of elements that are left out, as they are neither cells nor sides.
     left_out: HashSet<i64>,
     pub(crate) node_sets: Sets<u32>,
+    /// The names of those that are groups of points, also where they have all nodes of faces.
+    pub(crate) point_sets: BTreeSet<String>,
     pub(crate) element_sets: Sets<u32>,
     pub(crate) surfaces: Sets<Face>,
     /// Surfaces that are told by their nodes.

@@ -43,6 +43,27 @@ fn a_reference_node_is_loaded_and_held_at_its_point() {
 }
 
 #[test]
+fn forces_are_shared_by_faces_or_in_equal_parts_by_nodes() {
+    let dim = |surface: &str, kind: &str| {
+        let deck = coupling(kind).replace("SURFACE, NAME=Roof\nUpper, S2", surface);
+        let translation = read(&format!("{CUBES}{MODEL}{deck}{}", step(""))).unwrap();
+        let on = translation.scene.split("point = ").next().unwrap();
+        let on = on
+            .rsplit("on = \"")
+            .next()
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap();
+        translation.mesh.groups[on].dim
+    };
+    let of_nodes = "SURFACE, NAME=Roof, TYPE=NODE\nTop";
+    assert_eq!(dim("SURFACE, NAME=Roof\nUpper, S2", "*DISTRIBUTING"), 2);
+    assert_eq!(dim(of_nodes, "*DISTRIBUTING"), 0);
+    assert_eq!(dim(of_nodes, "*KINEMATIC"), 2);
+}
+
+#[test]
 fn a_rigid_body_is_a_rigid_coupling_of_its_nodes() {
     let point = "name = 'rigid body', point = [0.5, 0.5, 3.0], force = [0.0, 0.0, 2.0], ry = 1e-3";
     let acts = |node: usize, freedom: usize| {
@@ -150,7 +171,7 @@ fn couplings_that_arent_supported_are_refused_with_their_line() {
         ),
         (
             format!("{ROOF}*RIGID BODY, NSET=101, REF NODE=100\n"),
-            "line 54: its nodes are none of a body; expected nodes of solids",
+            "line 54: the nodes of *RIGID BODY are none of a body; expected nodes of solids",
         ),
         (
             coupling("*KINEMATIC") + "*TRANSFORM, NSET=100\n0., 1., 0., -1., 0., 0.\n",

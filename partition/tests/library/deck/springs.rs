@@ -26,6 +26,12 @@ fn springs_to_the_ground_hold_their_nodes_along_an_axis() {
              {{ on = 'spring 2', stiffness = [0.0, 5.0, 41.0] }}]\n{pressure}"
         ),
     );
+    let all = springs(3, "40.").replace("22, 16", "22, 16\n23, 17\n24, 18");
+    let mesh = read(&format!("{CUBES}{MODEL}{all}{}", step(LOAD)))
+        .unwrap()
+        .mesh;
+    let of = &mesh.groups["spring 1"];
+    assert_eq!((of.dim, of.members.len()), (0, 4));
     let deck = format!("{CUBES}{MODEL}{}{}", springs(3, "40."), step(LOAD));
     let warnings = read(&deck).unwrap().mesh.warnings;
     assert!(warnings.is_empty(), "{warnings:?}");
