@@ -222,7 +222,7 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
             "CHANGE SOLID SECTION",
         ],
         "laws are the same in all steps here",
-        "make a deck of each",
+        "give one for all of them, or make a deck with the other from its first step on",
     ),
     (
         &["CONTACT INTERFERENCE"],

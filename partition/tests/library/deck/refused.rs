@@ -71,6 +71,14 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 49: *BEAM SECTION isn't read … instead mesh",
         ),
         (
+            "*CHANGE FRICTION, INTERACTION=Dry\n*FRICTION\n0.1",
+            "line 49: *CHANGE FRICTION isn't read: laws are the same in all steps here; instead give one for all of them",
+        ),
+        (
+            "*CHANGE SURFACE BEHAVIOR, INTERACTION=Dry\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e6",
+            "line 49: *CHANGE SURFACE BEHAVIOR isn't read: laws are the same in all steps here; instead",
+        ),
+        (
             "*MODEL CHANGE",
             "line 49: *MODEL CHANGE stands in no step; expected it behind *STEP",
         ),
