@@ -17,6 +17,7 @@ mod keyword;
 mod loads;
 mod material;
 mod model_change;
+mod pairs;
 mod parameters;
 mod place;
 mod scene;

@@ -165,11 +165,11 @@ class Model:
         self, a: Groups | None = None, b: Groups | None = None, *, between: Groups | None = None,
         within: Number | None = None, name: str | None = None, friction: Number | None = None,
         cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
-        interference: bool | None = None, pairing: str | None = None,
+        adjust: float | None = None, interference: bool | None = None, pairing: str | None = None,
         stiffness: dict[str, Number] | None = None,
     ) -> None:
         """Two sides that may touch, slide and part. Pressures and normals belong to side `a`, of curved sides best
-        the one with the coarser mesh. The gap is measured from the mesh where it isn't given.
+        the one with the coarser mesh. The gap is measured from the mesh where it isn't given, and closed up to `adjust`.
 
         With a `stiffness`, {"normal": …} and with friction perhaps "tangential", the sides overlap by pressure over it.
 
@@ -184,7 +184,7 @@ class Model:
             name = f"{joined(a)} on {joined(b)}"
         keys = given(
             between=between, within=within, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap,
-            interference=interference, pairing=pairing, stiffness=stiffness,
+            adjust=adjust, interference=interference, pairing=pairing, stiffness=stiffness,
         )
         entry = self._add("contact", name=name, sides=[a, b] if between is None else None, **keys)
         self._calls.add(entry, call("contact", a, b, name=called, **keys))

@@ -196,3 +196,39 @@ Upper, P2, 20.
         }
     }
 }
+
+#[test]
+fn gaps_of_a_deck_are_closed_up_to_a_distance() {
+    let (model, _) = COLUMN.split_once("*AMPLITUDE").unwrap();
+    let pressed = "*STEP\n*STATIC\n*DLOAD\nUpper, P2, 20.\n*END STEP\n";
+    // The upper cube stands off the lower one by a gap, which is closed without strain or is still there.
+    for (gap, adjust, closed) in [
+        (0.01, "0.02", true),
+        (0.01, "0.005", false),
+        (-0.01, "0.0", true),
+    ] {
+        let mut deck = model.replace(
+            "INTERACTION=I\n",
+            &format!("INTERACTION=I, ADJUST={adjust}\n"),
+        ) + pressed;
+        for (tag, x, y) in [(11, 0, 0), (12, 1, 0), (13, 1, 1), (14, 0, 1)] {
+            let apart = format!("{tag}, {x}, {y}, {:?}\n", 1.0 + gap);
+            deck = deck.replace(&format!("{tag}, {x}, {y}, 1\n"), &apart);
+        }
+        let solution = &solved(&deck)[0];
+        let middle = -20.0 / 1000.0;
+        let foot = if closed { middle } else { middle - gap };
+        for (tags, expected) in [(5..9, middle), (11..15, foot)] {
+            for tag in tags {
+                close(solution.displacement[&tag][2], expected, 1e-12);
+            }
+        }
+        for tag in 15..19 {
+            close(
+                solution.displacement[&tag][2],
+                foot - (1.0 - gap) * 0.02,
+                1e-12,
+            );
+        }
+    }
+}

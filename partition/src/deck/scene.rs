@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::connections::SceneTie;
 use super::content::Content;
 use super::document::{Document, Linear, Names, quoted};
 use super::elastic::Elastic;
@@ -275,57 +274,6 @@ impl Content {
             }
         }
         Ok(force)
-    }
-
-    /// Writes the contacts and ties, of which those of pairs have names.
-    fn contact(
-        &self,
-        places: &Places,
-        (sides, names, ties): (&[[String; 2]], &[String], Vec<SceneTie>),
-        taken: &mut Names,
-        (document, warnings): (&mut Document, &mut Vec<String>),
-    ) -> Result<(), InputError> {
-        let mut tied = Vec::new();
-        let pairs = self.contacts.pairs.iter().zip(sides).zip(names);
-        for ((pair, [slave, master]), name) in pairs {
-            if self.contacts.is_tied(pair) {
-                self.contacts.law_of(places, pair, warnings)?;
-                tied.push(SceneTie {
-                    name: name.clone(),
-                    sides: [slave.clone(), master.clone()],
-                    tolerance: None,
-                    adjust: pair.adjust,
-                });
-                continue;
-            }
-            let law = self.contacts.law_of(places, pair, warnings)?;
-            if pair.adjust && pair.gap.is_none() {
-                let place = places.source.place(pair.place);
-                warnings.push(format!(
-                    "{place}: ADJUST is left out: no node is moved, and gaps are those of the mesh"
-                ));
-            }
-            document.table("[[contact]]");
-            document.key("name", quoted(name));
-            document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
-            if let Some(gap) = pair.gap {
-                document.key("gap", format!("{gap:?}"));
-            }
-            law.write(document);
-        }
-        for tie in &ties {
-            tie.write(&taken.unique(&tie.name), document);
-        }
-        for tie in &tied {
-            tie.write(&tie.name, document);
-        }
-        if let Some(law) = self.contacts.general(places, warnings)? {
-            document.table("[[contact]]");
-            document.key("name", quoted("contact"));
-            document.key("between", quoted("all"));
-            law.write(document);
-        }
-        Ok(())
     }
 
     /// Writes a load step: all that it has in place of the scene's loads.

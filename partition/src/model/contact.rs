@@ -118,6 +118,12 @@ impl<'a> Contacts<'a> {
         for point in paired.points.iter_mut().filter(|p| p.gap.abs() < none) {
             point.gap = 0.0;
         }
+        if let Some(distance) = keys.adjust {
+            let gaps = (paired.points.iter_mut().map(|point| &mut point.gap))
+                .chain(paired.probes.iter_mut().map(|probe| &mut probe.gap));
+            gaps.filter(|gap| **gap <= distance)
+                .for_each(|gap| *gap = 0.0);
+        }
         if let Some(gap) = &keys.gap {
             warnings.extend(self.give_gap(gap, &mut paired, &side_a, &what)?);
         }
