@@ -20,6 +20,7 @@ mod model_change;
 mod pairs;
 mod parameters;
 mod place;
+mod reference;
 mod scene;
 mod sections;
 mod springs;

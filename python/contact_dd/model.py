@@ -194,15 +194,16 @@ class Model:
         center: Sequence[float] | None = None, axis: Sequence[float] | None = None, radius: float | None = None,
         inside: bool | None = None, motion: Sequence[float] | None = None, name: str | None = None,
         friction: Number | None = None, cohesion: Number | None = None, tresca: Number | None = None,
-        gap: Number | None = None, interference: bool | None = None, stiffness: dict[str, Number] | None = None,
+        gap: Number | None = None, adjust: float | None = None, interference: bool | None = None,
+        stiffness: dict[str, Number] | None = None,
     ) -> None:
         """A side that may touch a rigid obstacle: a wall (`point`, `normal` out of the wall), a circle or sphere
         (`center`, `radius`), in space a cylinder (`point`, `axis`, `radius`); `inside` keeps the body inside it. It may
         move by `motion`, or in steps."""
         shape = given(point=point, normal=normal, center=center, axis=axis, radius=radius, inside=inside)
         keys = given(
-            motion=motion, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference,
-            stiffness=stiffness,
+            motion=motion, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, adjust=adjust,
+            interference=interference, stiffness=stiffness,
         )
         name_of = name or f"{joined(side)} on obstacle"
         entry = self._add("contact", name=name_of, sides=[side], obstacle=shape, **keys)

@@ -316,7 +316,8 @@ fn adjust(places: &Places, block: &Block) -> Result<Option<Adjust>, InputError> 
     match distance >= 0.0 {
         true => Ok(Some(Adjust::Within(distance))),
         false => {
-            let message = format!("ADJUST is {distance}; expected a distance of at least 0");
+            let message =
+                format!("*CONTACT PAIR: ADJUST is {distance}; expected a distance of at least 0");
             Err(source.error(block.place, message))
         }
     }

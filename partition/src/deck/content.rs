@@ -89,20 +89,7 @@ impl Content {
                 self.materials.insert(key.clone(), material);
                 self.open = Some(key);
             }
-            "ELASTIC" | "EXPANSION" | "DENSITY" => {
-                let open = self
-                    .open
-                    .as_ref()
-                    .and_then(|name| self.materials.get_mut(name));
-                let material = open.ok_or_else(|| {
-                    let message = format!(
-                        "*{} belongs to nothing; expected *MATERIAL before it",
-                        block.keyword
-                    );
-                    source.error(block.place, message)
-                })?;
-                material.take(source, block)?;
-            }
+            "ELASTIC" | "EXPANSION" | "DENSITY" => self.law(source, block)?,
             "ORIENTATION" => {
                 let name = source.required(block, "NAME")?.to_uppercase();
                 self.orientations
@@ -143,6 +130,22 @@ impl Content {
             _ => self.contacts.read(places, block)?,
         }
         Ok(())
+    }
+
+    /// A block of the material that is read.
+    fn law(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+        let open = self
+            .open
+            .as_ref()
+            .and_then(|name| self.materials.get_mut(name));
+        let material = open.ok_or_else(|| {
+            let message = format!(
+                "*{} belongs to nothing; expected *MATERIAL before it",
+                block.keyword
+            );
+            source.error(block.place, message)
+        })?;
+        material.take(source, block)
     }
 
     /// Refuses loads that come on a path which one load step for each step doesn't follow, where friction makes it matter.

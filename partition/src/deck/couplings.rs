@@ -4,18 +4,11 @@ mod scene_coupling;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(super) use self::scene_coupling::AtReference;
-use super::loads::{NodeAxis, item};
+use super::loads::item;
 use super::place::Places;
+use super::reference::{FREEDOMS, Reference};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
-use crate::scene::coupling::COMPONENTS;
-
-/// Translations and rotations of a reference node.
-const FREEDOMS: usize = COMPONENTS.len();
-
-/// The degrees of freedom of a reference node in the plane: along x and y, and about z.
-const IN_THE_PLANE: [usize; 3] = [0, 1, 5];
 
 /// Parameters of `*RIGID BODY` that name its nodes, by themselves or by elements.
 const OF_RIGID_BODIES: [(&str, Of); 4] = [
@@ -49,33 +42,11 @@ struct Coupling {
     kind: Option<Kind>,
 }
 
-/// The meaning of a degree of freedom of a node that stands for a reference point.
-#[derive(Clone, Copy)]
-pub(super) struct Reference {
-    /// The reference node.
-    node: u32,
-    /// Its component that is the node's first degree of freedom: 3 of a node for rotations.
-    first: usize,
-    /// The components that are coupled.
-    coupled: [bool; FREEDOMS],
-}
-
 /// All couplings of a deck.
 #[derive(Default)]
 pub(super) struct Couplings {
     all: Vec<Coupling>,
     references: BTreeMap<u32, Reference>,
-}
-
-impl Reference {
-    /// The reference node and its component that is a degree of freedom, from 0 on; `None` where it isn't one in `dim`
-    /// dimensions or isn't coupled.
-    pub(super) fn component(&self, freedom: usize, dim: usize) -> Option<NodeAxis> {
-        let component = self.first + freedom;
-        let is_coupled = self.coupled.get(component) == Some(&true);
-        let is_here = dim == 3 || IN_THE_PLANE.contains(&component);
-        (is_coupled && is_here).then_some((self.node, component))
-    }
 }
 
 impl Couplings {
@@ -190,8 +161,8 @@ impl Couplings {
             None => Ok(()),
             Some(_) => {
                 let message = format!(
-                    "the node {} is a reference node already; expected one for each coupling",
-                    places.deck.node_tags[node as usize]
+                    "*{}: the node {} is a reference node already; expected one for each coupling",
+                    block.keyword, places.deck.node_tags[node as usize]
                 );
                 Err(places.source.error(block.place, message))
             }
@@ -260,7 +231,11 @@ fn node(places: &mut Places, block: &Block, key: &str) -> Result<u32, InputError
     match places.members(block.place, Of::Nodes, item)?[..] {
         [node] => Ok(node),
         ref all => {
-            let message = format!("{key} is {} nodes; expected one", all.len());
+            let message = format!(
+                "*{}: {key} is {} nodes; expected one",
+                block.keyword,
+                all.len()
+            );
             Err(source.error(block.place, message))
         }
     }

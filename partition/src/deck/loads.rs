@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::couplings::Reference;
 use super::place::Places;
+use super::reference::{NodeAxis, Reference};
 use super::table::{Origin, Table};
 use crate::element::geometry::length;
 use crate::error::InputError;
@@ -30,9 +30,6 @@ pub(super) enum BodyKind {
     /// Per mass, away from an axis through a point in a direction.
     Centrifugal([f64; 3], [f64; 3]),
 }
-
-/// A node and a local axis from 0; of a reference node its rotations come behind its axes.
-pub(super) type NodeAxis = (u32, usize);
 
 /// All that acts.
 #[derive(Default)]

@@ -110,7 +110,7 @@ impl Springs {
         }
         let stiffness = source.real(row.place, item(source, row, 0), "a stiffness")?;
         if stiffness < 0.0 {
-            let message = format!("the stiffness of a spring is {stiffness}; expected at least 0");
+            let message = format!("*SPRING: the stiffness is {stiffness}; expected at least 0");
             return Err(source.error(row.place, message));
         }
         self.properties.push(Property {
@@ -163,7 +163,7 @@ impl Springs {
                     (false, _) => Some("is none of a body; expected nodes of solids"),
                 };
                 if let Some(why) = why {
-                    let message = format!("the node {} of a spring {why}", groups.tag(node));
+                    let message = format!("*SPRING: the node {} {why}", groups.tag(node));
                     return Err(groups.error(property.place, &message));
                 }
                 at_nodes.entry(node).or_default()[property.axis] += property.stiffness / thickness;

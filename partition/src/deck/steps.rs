@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::amplitude::Moment;
 use super::axes::{System, numbers};
-use super::couplings::AtReference;
-use super::loads::{Loads, NodeAxis};
+use super::loads::Loads;
 use super::place::Places;
+use super::reference::{AtReference, NodeAxis};
 use super::table::{Amplitudes, Origin, Table};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};

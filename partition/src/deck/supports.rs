@@ -1,7 +1,8 @@
 //! `*BOUNDARY`, and the concentrated forces that are written alike, `*CLOAD`.
 
-use super::loads::{Loads, NodeAxis, item};
+use super::loads::{Loads, item};
 use super::place::Places;
+use super::reference::NodeAxis;
 use super::table::Origin;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, Of};
@@ -71,7 +72,7 @@ impl Loads {
                 .iter()
                 .flat_map(|node| axes.iter().map(move |axis| (node, axis)))
             {
-                match self.component(places, data, (node, axis))? {
+                match self.component(places, (block, data), (node, axis))? {
                     Some(key) => self.supports.set(key, value, &origin),
                     None if word.is_none() && axis >= SPACE => {
                         _ = self.notes.insert(NO_ROTATIONS.into())
@@ -91,7 +92,7 @@ impl Loads {
     fn component(
         &self,
         places: &Places,
-        data: &Data,
+        (block, data): (&Block, &Data),
         (node, axis): NodeAxis,
     ) -> Result<Option<NodeAxis>, InputError> {
         let Some(reference) = self.references.get(&node) else {
@@ -100,8 +101,9 @@ impl Loads {
         let component = reference.component(axis, places.dim());
         if component.is_none() && places.dim() == SPACE {
             let message = format!(
-                "the degree of freedom {} of the reference node {} isn't coupled; expected it in the lines of *DISTRIBUTING, \
-                 or of a ROT NODE 1 to {SPACE}",
+                "*{} on the degree of freedom {} of the reference node {}, which isn't coupled; expected it in the \
+                 lines of *DISTRIBUTING, or of a ROT NODE 1 to {SPACE}",
+                block.keyword,
                 axis + 1,
                 places.deck.node_tags[node as usize]
             );
@@ -128,7 +130,7 @@ impl Loads {
             let force = source.real(data.place, item(source, data, 2), "a force")?;
             let axis = dof as usize - 1;
             for &node in &nodes {
-                match self.component(places, data, (node, axis))? {
+                match self.component(places, (block, data), (node, axis))? {
                     Some(key) => self.forces.add(key, force, &origin),
                     None if force == 0.0 => {}
                     None => {

@@ -245,9 +245,12 @@ impl Keys {
                     .into(),
             );
         }
+        if self.within.is_some() && self.between.is_none() && self.sides.is_some() {
+            return Err("'within' stands beside 'between', which is missing".into());
+        }
         if self.adjust.is_some() && (self.gap.is_some() || self.between.is_some()) {
             return Err(
-                "'adjust' closes gaps of the mesh between two 'sides'; expected no 'gap' and no 'between' beside it"
+                "'adjust' closes gaps of the mesh; expected no 'gap' and no 'between' beside it"
                     .into(),
             );
         }
@@ -282,9 +285,6 @@ impl TryFrom<Keys> for Declaration {
             }
             (None, None) => {
                 return Err("expected its two 'sides', or the bodies 'between' which it is".into());
-            }
-            (None, Some(_)) if keys.within.is_some() => {
-                return Err("'within' stands beside 'between', which is missing".into());
             }
             (None, Some(sides)) => sides,
         };

@@ -229,7 +229,7 @@ fn gaps_are_closed_up_to_a_distance() {
     );
     let error = of("ADJUST=-1.").err().unwrap();
     assert!(
-        error.contains("line 45: ADJUST is -1; expected a distance"),
+        error.contains("line 45: *CONTACT PAIR: ADJUST is -1; expected a distance"),
         "{error}"
     );
     let clearance = deck.replace(

@@ -68,10 +68,10 @@ fn nodes_follow_a_reference_node_as_if_each_were_moved() {
         (17, [1.0, 1.0, 2.0]),
         (18, [0.0, 1.0, 2.0]),
     ] {
-        for k in 0..3 {
+        for (k, shift) in u.iter().enumerate() {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             let arm = |k: usize| at[k] - point[k];
-            let value = u[k] + turn[i] * arm(j) - turn[j] * arm(i);
+            let value = shift + turn[i] * arm(j) - turn[j] * arm(i);
             moved += &format!("{tag}, {0}, {0}, {value:?}\n", k + 1);
         }
     }

@@ -2,22 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::{Coupled, Coupling, Couplings, FREEDOMS, Kind};
+use super::{Coupled, Coupling, Couplings, Kind};
 use crate::deck::axes::System;
 use crate::deck::document::{Document, Names, quoted, vector};
 use crate::deck::groups::Groups;
-use crate::deck::loads::NodeAxis;
 use crate::deck::place::Places;
+use crate::deck::reference::{AtReference, FREEDOMS};
 use crate::deck::steps::LoadStep;
 use crate::error::InputError;
 use crate::scene::coupling::COMPONENTS;
-
-/// What acts on a reference node at the end of a step, and what is prescribed there.
-#[derive(Clone, Default)]
-pub(in crate::deck) struct AtReference {
-    load: [f64; FREEDOMS],
-    held: [Option<f64>; FREEDOMS],
-}
 
 /// A coupling in the words of the scene.
 pub(in crate::deck) struct SceneCoupling {
@@ -85,24 +78,26 @@ impl Couplings {
                     .and_then(|nodes| groups.of_points(&nodes, "coupled"));
                 return Ok(points.unwrap_or_else(|| groups.of_surface(surface)));
             }
-            Coupled::Nodes(nodes) => {
-                match nodes.iter().find(others) {
-                    Some(&other) => format!(
-                        "the reference node {} of another coupling is one of the nodes, which isn't supported; expected nodes of \
+            Coupled::Nodes(nodes) => match nodes.iter().find(others) {
+                Some(&other) => format!(
+                    "the reference node {} of another coupling is one of the nodes, which isn't supported; expected nodes of \
                      bodies",
-                        groups.tag(other)
-                    ),
-                    None => {
-                        let all: Vec<u32> = nodes.iter().copied().chain([coupling.node]).collect();
-                        match groups.of_nodes(&all, "rigid") {
+                    groups.tag(other)
+                ),
+                None => {
+                    let all: Vec<u32> = nodes.iter().copied().chain([coupling.node]).collect();
+                    match groups.of_nodes(&all, "rigid") {
                         Some(on) => return Ok(on),
-                        None => "the nodes of *RIGID BODY are none of a body; expected nodes of solids".into(),
-                    }
+                        None => "its nodes are none of a body; expected nodes of solids".into(),
                     }
                 }
-            }
+            },
         };
-        Err(groups.error(coupling.place, &message))
+        let keyword = match coupling.coupled {
+            Coupled::Surface(_) => "COUPLING",
+            Coupled::Nodes(_) => "RIGID BODY",
+        };
+        Err(groups.error(coupling.place, &format!("*{keyword}: {message}")))
     }
 
     /// Refuses couplings where there can be none, around an axis.
@@ -146,23 +141,6 @@ impl Coupling {
             acting.push(at);
         }
         Ok(acting)
-    }
-}
-
-impl AtReference {
-    /// Those of all reference nodes, from what acts and what is prescribed by node and component.
-    pub(in crate::deck) fn all(
-        loads: Vec<(NodeAxis, f64)>,
-        held: Vec<(NodeAxis, f64)>,
-    ) -> BTreeMap<u32, Self> {
-        let mut all: BTreeMap<u32, Self> = BTreeMap::new();
-        for ((node, k), load) in loads {
-            all.entry(node).or_default().load[k] = load;
-        }
-        for ((node, k), value) in held {
-            all.entry(node).or_default().held[k] = Some(value);
-        }
-        all
     }
 }
 

@@ -150,20 +150,20 @@ fn couplings_that_arent_supported_are_refused_with_their_line() {
         ),
         (
             coupling("*KINEMATIC").replace("REF NODE=100", "REF NODE=Top"),
-            "line 54: REF NODE is 4 nodes; expected one",
+            "line 54: *COUPLING: REF NODE is 4 nodes; expected one",
         ),
         (
             coupling("*KINEMATIC").replace("REF NODE=100", "REF NODE=15"),
-            "line 54: the reference node 15 is one of a body, which isn't supported; expected a node of its own",
+            "line 54: *COUPLING: the reference node 15 is one of a body, which isn't supported; expected a node of its own",
         ),
         (
             coupling("*KINEMATIC") + "*RIGID BODY, NSET=Bottom, REF NODE=100\n",
-            "line 56: the node 100 is a reference node already; expected one for each coupling",
+            "line 56: *RIGID BODY: the node 100 is a reference node already; expected one for each coupling",
         ),
         (
             coupling("*KINEMATIC")
                 + "*NSET, NSET=Both\n11, 100\n*RIGID BODY, NSET=Both, REF NODE=101\n",
-            "line 58: the reference node 100 of another coupling is one of the nodes",
+            "line 58: *RIGID BODY: the reference node 100 of another coupling is one of the nodes",
         ),
         (
             "*RIGID BODY, REF NODE=1\n".into(),
@@ -171,15 +171,15 @@ fn couplings_that_arent_supported_are_refused_with_their_line() {
         ),
         (
             format!("{ROOF}*RIGID BODY, NSET=101, REF NODE=100\n"),
-            "line 54: the nodes of *RIGID BODY are none of a body; expected nodes of solids",
+            "line 54: *RIGID BODY: its nodes are none of a body; expected nodes of solids",
         ),
         (
             coupling("*KINEMATIC") + "*TRANSFORM, NSET=100\n0., 1., 0., -1., 0., 0.\n",
-            "line 54: the reference node 100 with *TRANSFORM isn't read",
+            "line 54: *COUPLING: the reference node 100 with *TRANSFORM isn't read",
         ),
         (
             coupling("*DISTRIBUTING\n1, 3") + &step("*CLOAD\n100, 4, 1."),
-            "line 60: the degree of freedom 4 of the reference node 100 isn't coupled",
+            "line 60: *CLOAD on the degree of freedom 4 of the reference node 100, which isn't coupled",
         ),
         (
             coupling("*KINEMATIC") + &step("") + &step("*BOUNDARY\n100, 1"),

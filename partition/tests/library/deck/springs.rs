@@ -54,7 +54,7 @@ fn springs_that_arent_supported_are_refused_with_their_line() {
         ),
         (
             springs(3, "-1."),
-            "line 54: the stiffness of a spring is -1; expected at least 0",
+            "line 54: *SPRING: the stiffness is -1; expected at least 0",
         ),
         (
             springs(3, "40., , 20.\n50., , 100."),
@@ -73,11 +73,11 @@ fn springs_that_arent_supported_are_refused_with_their_line() {
                 "*NODE\n99, 0., 0., 3.\n{}",
                 springs(3, "40.").replace("15", "99")
             ),
-            "line 54: the node 99 of a spring is none of a body; expected nodes of solids",
+            "line 54: *SPRING: the node 99 is none of a body; expected nodes of solids",
         ),
         (
             springs(3, "40.") + "*TRANSFORM, NSET=Top\n0., 1., 0., -1., 0., 0.\n",
-            "line 52: the node 15 of a spring has *TRANSFORM; expected springs along x, y and z",
+            "line 52: *SPRING: the node 15 has *TRANSFORM; expected springs along x, y and z",
         ),
     ] {
         refused(&format!("{CUBES}{MODEL}{more}{}", step(LOAD)), expected);

@@ -156,7 +156,7 @@ gap = 0.0 => within = 0
 gap = 0.0 => adjust = -1
     line 34: contact[1] 'left crack'.adjust: the distance is -1; expected at least 0
 gap = 0.0 => gap = 0.0\nadjust = 1
-    contact[1] 'left crack': 'adjust' closes gaps of the mesh between two 'sides'; expected no 'gap'
+    contact[1] 'left crack': 'adjust' closes gaps of the mesh; expected no 'gap'
 sides = ["left crack lower", ["left crack upper", "more"]] => between = ["block", "lft block"]
     line 33: contact[1] 'left crack'.between: there is no body 'lft block'; did you mean 'left block'?
 sides = ["left crack lower", ["left crack upper", "more"]] => between = 7
