@@ -8,6 +8,7 @@ mod axes;
 mod connections;
 mod contacts;
 mod content;
+mod couplings;
 mod document;
 mod elastic;
 mod group_load;
@@ -16,10 +17,13 @@ mod keyword;
 mod loads;
 mod material;
 mod model_change;
+mod pairs;
 mod parameters;
 mod place;
+mod reference;
 mod scene;
 mod sections;
+mod springs;
 mod steps;
 mod supports;
 mod table;
@@ -106,6 +110,7 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
     let mut places = Places::new(&source, deck);
     let mut content = Content::default();
     content.read_amplitudes(&source)?;
+    content.read_couplings(&mut places)?;
     for block in &source.blocks {
         content.read(&mut places, block)?;
     }

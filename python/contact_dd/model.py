@@ -165,11 +165,11 @@ class Model:
         self, a: Groups | None = None, b: Groups | None = None, *, between: Groups | None = None,
         within: Number | None = None, name: str | None = None, friction: Number | None = None,
         cohesion: Number | None = None, tresca: Number | None = None, gap: Number | None = None,
-        interference: bool | None = None, pairing: str | None = None,
+        adjust: float | None = None, interference: bool | None = None, pairing: str | None = None,
         stiffness: dict[str, Number] | None = None,
     ) -> None:
         """Two sides that may touch, slide and part. Pressures and normals belong to side `a`, of curved sides best
-        the one with the coarser mesh. The gap is measured from the mesh where it isn't given.
+        the one with the coarser mesh. The gap is measured from the mesh where it isn't given, and closed up to `adjust`.
 
         With a `stiffness`, {"normal": …} and with friction perhaps "tangential", the sides overlap by pressure over it.
 
@@ -184,7 +184,7 @@ class Model:
             name = f"{joined(a)} on {joined(b)}"
         keys = given(
             between=between, within=within, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap,
-            interference=interference, pairing=pairing, stiffness=stiffness,
+            adjust=adjust, interference=interference, pairing=pairing, stiffness=stiffness,
         )
         entry = self._add("contact", name=name, sides=[a, b] if between is None else None, **keys)
         self._calls.add(entry, call("contact", a, b, name=called, **keys))
@@ -194,15 +194,16 @@ class Model:
         center: Sequence[float] | None = None, axis: Sequence[float] | None = None, radius: float | None = None,
         inside: bool | None = None, motion: Sequence[float] | None = None, name: str | None = None,
         friction: Number | None = None, cohesion: Number | None = None, tresca: Number | None = None,
-        gap: Number | None = None, interference: bool | None = None, stiffness: dict[str, Number] | None = None,
+        gap: Number | None = None, adjust: float | None = None, interference: bool | None = None,
+        stiffness: dict[str, Number] | None = None,
     ) -> None:
         """A side that may touch a rigid obstacle: a wall (`point`, `normal` out of the wall), a circle or sphere
         (`center`, `radius`), in space a cylinder (`point`, `axis`, `radius`); `inside` keeps the body inside it. It may
         move by `motion`, or in steps."""
         shape = given(point=point, normal=normal, center=center, axis=axis, radius=radius, inside=inside)
         keys = given(
-            motion=motion, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, interference=interference,
-            stiffness=stiffness,
+            motion=motion, friction=friction, cohesion=cohesion, tresca=tresca, gap=gap, adjust=adjust,
+            interference=interference, stiffness=stiffness,
         )
         name_of = name or f"{joined(side)} on obstacle"
         entry = self._add("contact", name=name_of, sides=[side], obstacle=shape, **keys)

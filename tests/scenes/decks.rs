@@ -1,11 +1,26 @@
 //! Decks of Abaqus and CalculiX, solved as they are.
 
+mod couplings;
+
 use contact_dd_partition::deck;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
 
 use crate::support::close::close;
+use crate::support::solution::Solution;
 use crate::support::solver::solve_steps;
+
+/// The solutions of all steps of a deck.
+#[track_caller]
+fn solved(deck: &str) -> Vec<Solution> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part.inp");
+    std::fs::write(&path, deck).unwrap();
+    let translation = deck::read(&path).unwrap_or_else(|e| panic!("{e}"));
+    let scene = Scene::parse(&translation.scene).unwrap();
+    let model = Model::new(&scene, translation.mesh).unwrap_or_else(|e| panic!("{e}"));
+    solve_steps(&model, 2)
+}
 
 /// A column of two cubes that touch, without Poisson's effect: under a pressure, with its weight, and under forces alone.
 const COLUMN: &str = "\
@@ -77,13 +92,7 @@ Top, 3, -2.5
 
 #[test]
 fn a_column_of_a_deck_is_as_short_as_by_hooke() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("column.inp");
-    std::fs::write(&path, COLUMN).unwrap();
-    let translation = deck::read(&path).unwrap();
-    let scene = Scene::parse(&translation.scene).unwrap();
-    let model = Model::new(&scene, translation.mesh).unwrap();
-    let steps = solve_steps(&model, 2);
+    let steps = solved(COLUMN);
     // -∫ (p + γ (2 - z)) dz / E up to the middle and up to the top.
     let expected = [(10.0, 0.0), (10.0, 30.0), (10.0, 0.0)];
     assert_eq!(steps.len(), expected.len());
@@ -148,6 +157,78 @@ fn a_tied_column_of_a_deck_is_as_long_as_by_hooke() {
         let solution = &solve_steps(&model, 2)[0];
         for tag in 15..=18 {
             close(solution.displacement[&tag][2], 4.0 * 2.0 / 1000.0, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn springs_of_a_deck_hold_a_column_as_by_hooke() {
+    let (mesh, _) = COLUMN.split_once("*BOUNDARY").unwrap();
+    let on_springs = "\
+*ELEMENT, TYPE=SPRING1, ELSET=Feet
+21, 1
+22, 2
+23, 3
+24, 4
+*SPRING, ELSET=Feet
+3
+100.
+*NSET, NSET=Lower
+1, 2, 3, 4, 5, 6, 7, 8
+*BOUNDARY
+Lower, 1, 2
+11, 1, 2
+12, 2
+*STEP
+*STATIC
+*DLOAD
+Upper, P2, 20.
+*END STEP
+";
+    let solution = &solved(&format!("{mesh}{on_springs}"))[0];
+    // Four springs are as stiff as 400 together, the column as 1000 / 2.
+    for (tags, expected) in [
+        (1..5, -20.0 / 400.0),
+        (15..19, -20.0 / 400.0 - 20.0 / 500.0),
+    ] {
+        for tag in tags {
+            close(solution.displacement[&tag][2], expected, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn gaps_of_a_deck_are_closed_up_to_a_distance() {
+    let (model, _) = COLUMN.split_once("*AMPLITUDE").unwrap();
+    let pressed = "*STEP\n*STATIC\n*DLOAD\nUpper, P2, 20.\n*END STEP\n";
+    // The upper cube stands off the lower one by a gap, which is closed without strain or is still there.
+    for (gap, adjust, closed) in [
+        (0.01, "0.02", true),
+        (0.01, "0.005", false),
+        (-0.01, "0.0", true),
+    ] {
+        let mut deck = model.replace(
+            "INTERACTION=I\n",
+            &format!("INTERACTION=I, ADJUST={adjust}\n"),
+        ) + pressed;
+        for (tag, x, y) in [(11, 0, 0), (12, 1, 0), (13, 1, 1), (14, 0, 1)] {
+            let apart = format!("{tag}, {x}, {y}, {:?}\n", 1.0 + gap);
+            deck = deck.replace(&format!("{tag}, {x}, {y}, 1\n"), &apart);
+        }
+        let solution = &solved(&deck)[0];
+        let middle = -20.0 / 1000.0;
+        let foot = if closed { middle } else { middle - gap };
+        for (tags, expected) in [(5..9, middle), (11..15, foot)] {
+            for tag in tags {
+                close(solution.displacement[&tag][2], expected, 1e-12);
+            }
+        }
+        for tag in 15..19 {
+            close(
+                solution.displacement[&tag][2],
+                foot - (1.0 - gap) * 0.02,
+                1e-12,
+            );
         }
     }
 }

@@ -159,7 +159,7 @@ impl Connections {
     /// The ties, with the groups that their surfaces make.
     pub(super) fn ties(&self, groups: &mut Groups) -> Vec<SceneTie> {
         let tie = |tie: &Tie| SceneTie {
-            name: tie.name.replace('/', " "),
+            name: tie.name.clone(),
             sides: [&tie.slave, &tie.master].map(|side| groups.of_surface(side)),
             tolerance: tie.tolerance,
             adjust: tie.adjust,

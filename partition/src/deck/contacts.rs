@@ -46,11 +46,20 @@ pub(super) struct Pair {
     pub(super) master: String,
     interaction: String,
     pub(super) place: LinePlace,
-    /// Whether nodes of the slave should be moved onto the master.
-    pub(super) adjust: bool,
+    /// Which nodes of the slave should be moved onto the master.
+    pub(super) adjust: Option<Adjust>,
     pub(super) gap: Option<f64>,
     /// Whether the pair says that its sides hang together.
     tied: bool,
+}
+
+/// The nodes of a slave that `ADJUST` moves.
+#[derive(Clone, Copy)]
+pub(super) enum Adjust {
+    /// Those that are no farther from the master, and all that overlap it.
+    Within(f64),
+    /// Those of a set.
+    Set,
 }
 
 /// Contact wherever bodies touch.
@@ -195,6 +204,7 @@ impl Contacts {
     fn pairs(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         let interaction = source.required(block, "INTERACTION")?.to_uppercase();
+        let adjust = adjust(places, block)?;
         for data in &block.data {
             let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
             if master.is_empty() || slave == master {
@@ -211,7 +221,7 @@ impl Contacts {
                 master,
                 interaction: interaction.clone(),
                 place: data.place,
-                adjust: block.parameter("ADJUST").is_some(),
+                adjust,
                 gap: None,
                 tied: block.parameter("TIED").is_some(),
             });
@@ -290,6 +300,26 @@ impl Contacts {
             warnings.push(soft.clone());
         }
         Ok(interaction.law)
+    }
+}
+
+/// What `ADJUST` says, a distance or a set of nodes.
+fn adjust(places: &Places, block: &Block) -> Result<Option<Adjust>, InputError> {
+    let source = places.source;
+    let Some(item) = block.parameter("ADJUST") else {
+        return Ok(None);
+    };
+    if item.starts_with(char::is_alphabetic) {
+        return Ok(Some(Adjust::Set));
+    }
+    let distance = source.real(block.place, item, "a distance, or a set of nodes")?;
+    match distance >= 0.0 {
+        true => Ok(Some(Adjust::Within(distance))),
+        false => {
+            let message =
+                format!("*CONTACT PAIR: ADJUST is {distance}; expected a distance of at least 0");
+            Err(source.error(block.place, message))
+        }
     }
 }
 

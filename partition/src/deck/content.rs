@@ -6,11 +6,13 @@ use super::amplitude::Amplitude;
 use super::axes::{Axes, System};
 use super::connections::Connections;
 use super::contacts::Contacts;
+use super::couplings::Couplings;
 use super::loads::item;
 use super::material::Material;
 use super::model_change::{self, Change};
 use super::place::Places;
 use super::sections::Section;
+use super::springs::Springs;
 use super::steps::Steps;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of, Source};
@@ -30,6 +32,8 @@ pub(super) struct Content {
     pub(super) temperatures: BTreeMap<u32, f64>,
     pub(super) contacts: Contacts,
     pub(super) connections: Connections,
+    pub(super) couplings: Couplings,
+    pub(super) springs: Springs,
     pub(super) steps: Steps,
     /// Pairs that come and go.
     pub(super) changes: Vec<Change>,
@@ -46,6 +50,21 @@ impl Content {
             let amplitude = Amplitude::read(source, block)?;
             self.steps.amplitudes.insert(name, amplitude);
         }
+        Ok(())
+    }
+
+    /// Reads all couplings, before anything loads or holds their reference nodes.
+    pub(super) fn read_couplings(&mut self, places: &mut Places) -> Result<(), InputError> {
+        for block in &places.source.blocks {
+            match block.keyword.as_str() {
+                "PART" | "INSTANCE" | "END PART" | "END INSTANCE" => places.enter(block),
+                "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {
+                    self.couplings.read(places, block)?;
+                }
+                _ => {}
+            }
+        }
+        self.steps.loads.references = self.couplings.references(places)?;
         Ok(())
     }
 
@@ -70,20 +89,7 @@ impl Content {
                 self.materials.insert(key.clone(), material);
                 self.open = Some(key);
             }
-            "ELASTIC" | "EXPANSION" | "DENSITY" => {
-                let open = self
-                    .open
-                    .as_ref()
-                    .and_then(|name| self.materials.get_mut(name));
-                let material = open.ok_or_else(|| {
-                    let message = format!(
-                        "*{} belongs to nothing; expected *MATERIAL before it",
-                        block.keyword
-                    );
-                    source.error(block.place, message)
-                })?;
-                material.take(source, block)?;
-            }
+            "ELASTIC" | "EXPANSION" | "DENSITY" => self.law(source, block)?,
             "ORIENTATION" => {
                 let name = source.required(block, "NAME")?.to_uppercase();
                 self.orientations
@@ -111,6 +117,10 @@ impl Content {
             "BOUNDARY" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" => {
                 self.steps.read(places, block)?
             }
+            // They have been read before all others.
+            "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {}
+            "ELEMENT" => self.springs.elements(places, block)?,
+            "SPRING" => self.springs.property(places, block)?,
             "TIE" | "EQUATION" => self.connections.read(places, block)?,
             "MODEL CHANGE" => {
                 let step = self.steps.is_open().then_some(self.steps.done.len());
@@ -120,6 +130,22 @@ impl Content {
             _ => self.contacts.read(places, block)?,
         }
         Ok(())
+    }
+
+    /// A block of the material that is read.
+    fn law(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
+        let open = self
+            .open
+            .as_ref()
+            .and_then(|name| self.materials.get_mut(name));
+        let material = open.ok_or_else(|| {
+            let message = format!(
+                "*{} belongs to nothing; expected *MATERIAL before it",
+                block.keyword
+            );
+            source.error(block.place, message)
+        })?;
+        material.take(source, block)
     }
 
     /// Refuses loads that come on a path which one load step for each step doesn't follow, where friction makes it matter.

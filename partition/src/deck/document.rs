@@ -1,5 +1,7 @@
 //! The text of a `scene.toml`.
 
+use std::collections::BTreeSet;
+
 /// A scene on its way.
 #[derive(Default)]
 pub(super) struct Document(String);
@@ -20,6 +22,21 @@ impl Document {
 
     pub(super) fn text(self) -> String {
         self.0
+    }
+}
+
+/// Names of contacts, ties and couplings, of which no two are the same.
+#[derive(Default)]
+pub(super) struct Names(BTreeSet<String>);
+
+impl Names {
+    /// A name that no other has: a plain one, or with a number.
+    pub(super) fn unique(&mut self, plain: &str) -> String {
+        let plain = plain.replace('/', " ");
+        let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
+        let mut names = std::iter::once(plain.clone()).chain(numbered);
+        let name = names.find(|name| self.0.insert(name.clone()));
+        name.unwrap_or_default()
     }
 }
 

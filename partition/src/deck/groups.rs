@@ -115,6 +115,26 @@ impl<'a, 'b> Groups<'a, 'b> {
         name
     }
 
+    /// Whether a cell has a node.
+    pub(super) fn is_of_body(&self, node: u32) -> bool {
+        self.has_cell[node as usize]
+    }
+
+    /// The number of a node in the deck.
+    pub(super) fn tag(&self, node: u32) -> i64 {
+        self.places.deck.node_tags[node as usize]
+    }
+
+    /// The position of a node.
+    pub(super) fn position(&self, node: u32) -> [f64; 3] {
+        self.places.deck.points[node as usize]
+    }
+
+    /// The dimension of the cells.
+    pub(super) fn dim(&self) -> usize {
+        self.places.dim()
+    }
+
     /// The error of what is wrong at a place of the deck.
     pub(super) fn error(&self, at: LinePlace, message: &str) -> InputError {
         self.places.source.error(at, message)
@@ -136,6 +156,25 @@ impl<'a, 'b> Groups<'a, 'b> {
             .extend(&name, false, members.iter().copied());
         self.nodes.insert(members, name.clone());
         Some(name)
+    }
+
+    /// The group of nodes as points, each by itself, also where they are all nodes of faces; `None` where cells have none.
+    pub(super) fn of_points(&mut self, nodes: &[u32], word: &str) -> Option<String> {
+        let members = self.with_cells(nodes);
+        if members.is_empty() {
+            return None;
+        }
+        let name = self.fresh(word, true);
+        let deck = &mut self.places.deck;
+        deck.node_sets.extend(&name, false, members);
+        deck.point_sets.insert(name.clone());
+        Some(name)
+    }
+
+    /// The nodes of a surface that is told by them.
+    pub(super) fn of_node_surface(&self, surface: &str) -> Option<Vec<u32>> {
+        let surface = self.places.deck.node_surfaces.get(surface)?;
+        Some(surface.members.list().to_vec())
     }
 
     /// The group of cells, which are those of the set `word` or some of them.

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 40] = [
+const READ: [&str; 45] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -45,6 +45,11 @@ const READ: [&str; 40] = [
     "CONTACT PROPERTY ASSIGNMENT",
     "TIE",
     "EQUATION",
+    "COUPLING",
+    "KINEMATIC",
+    "DISTRIBUTING",
+    "RIGID BODY",
+    "SPRING",
     "MODEL CHANGE",
     "STEP",
     "END STEP",
@@ -168,16 +173,9 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "write it as *EQUATION, or hold a plane of symmetry by *BOUNDARY",
     ),
     (
-        &[
-            "RIGID BODY",
-            "COUPLING",
-            "KINEMATIC",
-            "DISTRIBUTING",
-            "KINEMATIC COUPLING",
-            "DISTRIBUTING COUPLING",
-        ],
-        NOT_YET,
-        "move the nodes by *BOUNDARY, or load their faces by *DSLOAD",
+        &["KINEMATIC COUPLING", "DISTRIBUTING COUPLING"],
+        "isn't read",
+        "give *COUPLING with *KINEMATIC or *DISTRIBUTING",
     ),
     (
         &["PRE-TENSION SECTION"],
@@ -185,9 +183,9 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "shrink the bolt by *TEMPERATURE",
     ),
     (
-        &["SPRING", "DASHPOT", "CONNECTOR SECTION", "GAP"],
+        &["CONNECTOR SECTION", "GAP"],
         NOT_YET,
-        "leave it out, convert the deck, and give [[spring]] in the scene",
+        "give *SPRING of elements of type SPRING1, or a *CONTACT PAIR",
     ),
     (
         &["CYCLIC SYMMETRY MODEL", "SELECT CYCLIC SYMMETRY MODES"],
@@ -224,7 +222,7 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
             "CHANGE SOLID SECTION",
         ],
         "laws are the same in all steps here",
-        "make a deck of each",
+        "give one for all of them, or make a deck with the other from its first step on",
     ),
     (
         &["CONTACT INTERFERENCE"],
@@ -251,7 +249,11 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "leave it out",
     ),
     (
-        &["SURFACE INTERACTION DAMPING", "VALUES AT INFINITY"],
+        &[
+            "DASHPOT",
+            "SURFACE INTERACTION DAMPING",
+            "VALUES AT INFINITY",
+        ],
         NOT_STATIC,
         "leave it out",
     ),

@@ -1,8 +1,9 @@
 //! What acts in a step: supports, forces and temperatures as the steps before have left them and it changes them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::place::Places;
+use super::reference::{NodeAxis, Reference};
 use super::table::{Origin, Table};
 use crate::element::geometry::length;
 use crate::error::InputError;
@@ -30,9 +31,6 @@ pub(super) enum BodyKind {
     Centrifugal([f64; 3], [f64; 3]),
 }
 
-/// A node and a local axis from 0.
-pub(super) type NodeAxis = (u32, usize);
-
 /// All that acts.
 #[derive(Default)]
 pub(super) struct Loads {
@@ -48,6 +46,8 @@ pub(super) struct Loads {
     pub(super) bodies: Table<usize>,
     pub(super) of_bodies: Vec<BodyLoad>,
     pub(super) temperatures: Table<u32>,
+    /// Nodes that stand for reference points.
+    pub(super) references: BTreeMap<u32, Reference>,
     /// What of it isn't needed, in words.
     pub(super) notes: BTreeSet<String>,
 }

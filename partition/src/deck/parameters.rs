@@ -5,7 +5,7 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 27] = [
+const PARAMETERS: [(&str, &[&str]); 32] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("MATERIAL", &["NAME", "RTOL"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
@@ -99,6 +99,22 @@ const PARAMETERS: [(&str, &[&str]); 27] = [
         ],
     ),
     ("EQUATION", &[]),
+    (
+        "COUPLING",
+        &["CONSTRAINT NAME", "REF NODE", "SURFACE", "ORIENTATION"],
+    ),
+    ("KINEMATIC", &[]),
+    (
+        "SPRING",
+        &["ELSET", "NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"],
+    ),
+    ("DISTRIBUTING", &["COUPLING", "WEIGHTING METHOD"]),
+    (
+        "RIGID BODY",
+        &[
+            "NSET", "PIN NSET", "TIE NSET", "ELSET", "REF NODE", "ROT NODE",
+        ],
+    ),
     ("CLEARANCE", &["MASTER", "SLAVE", "VALUE"]),
     ("CONTACT", &["OP"]),
     ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),

@@ -1,10 +1,9 @@
 //! From what a deck says to the scene that means the same.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use super::connections::SceneTie;
 use super::content::Content;
-use super::document::{Document, Linear, quoted};
+use super::document::{Document, Linear, Names, quoted};
 use super::elastic::Elastic;
 use super::group_load::{OnGroup, OnGroups};
 use super::groups::Groups;
@@ -33,6 +32,7 @@ pub(super) fn text(
 ) -> Result<String, InputError> {
     let source = places.source;
     let plane = plane(places)?;
+    (content.couplings).check_plane(places, plane == Some(PlaneState::Axisymmetric))?;
     let bodies = content.bodies(places)?;
     let thickness = match plane {
         Some(PlaneState::Strain | PlaneState::Stress) => {
@@ -59,6 +59,19 @@ pub(super) fn text(
         .collect();
     let ties = content.connections.ties(&mut loads.groups);
     let equations = (content.connections).equations(&mut loads.groups, &content.steps.systems)?;
+    let springs = content
+        .springs
+        .in_scene(&mut loads.groups, thickness, &content.steps.systems)?;
+    let mut taken = Names::default();
+    let pairs: Vec<String> = (sides.iter())
+        .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
+        .collect();
+    let couplings = content.couplings.in_scene(
+        &mut loads.groups,
+        (&content.steps.done, thickness),
+        &content.steps.systems,
+        &mut taken,
+    )?;
     let dim = loads.dim;
     let mut document = Document::default();
     if let Some(title) = &content.title {
@@ -75,7 +88,18 @@ pub(super) fn text(
     for load in &on_groups {
         load.write(0, "", &mut document);
     }
-    let pairs = content.contact(places, (&sides, ties), &mut document, warnings)?;
+    content.contact(
+        places,
+        (&sides, &pairs, ties),
+        &mut taken,
+        (&mut document, warnings),
+    )?;
+    couplings
+        .iter()
+        .for_each(|coupling| coupling.write(&mut document));
+    springs
+        .iter()
+        .for_each(|spring| spring.write(&mut document));
     for equation in &equations {
         equation.write(&mut document);
     }
@@ -88,6 +112,9 @@ pub(super) fn text(
                 dim,
                 &mut document,
             )?;
+            for coupling in &couplings {
+                coupling.write_step(number, &mut document);
+            }
         }
     }
     Ok(document.text())
@@ -247,65 +274,6 @@ impl Content {
             }
         }
         Ok(force)
-    }
-
-    /// Writes the contacts and ties, and returns the names of the pairs.
-    fn contact(
-        &self,
-        places: &Places,
-        (sides, ties): (&[[String; 2]], Vec<SceneTie>),
-        document: &mut Document,
-        warnings: &mut Vec<String>,
-    ) -> Result<Vec<String>, InputError> {
-        let (mut pairs, mut tied) = (Vec::with_capacity(sides.len()), Vec::new());
-        let mut taken = BTreeSet::new();
-        let mut unique = |plain: String| {
-            let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
-            let mut names = std::iter::once(plain.clone()).chain(numbered);
-            let name = names.find(|name| taken.insert(name.clone()));
-            name.unwrap_or_default()
-        };
-        for (pair, [slave, master]) in self.contacts.pairs.iter().zip(sides) {
-            let name = unique(format!("{slave} on {master}").replace('/', " "));
-            pairs.push(name.clone());
-            if self.contacts.is_tied(pair) {
-                self.contacts.law_of(places, pair, warnings)?;
-                tied.push(SceneTie {
-                    name,
-                    sides: [slave.clone(), master.clone()],
-                    tolerance: None,
-                    adjust: pair.adjust,
-                });
-                continue;
-            }
-            let law = self.contacts.law_of(places, pair, warnings)?;
-            if pair.adjust && pair.gap.is_none() {
-                let place = places.source.place(pair.place);
-                warnings.push(format!(
-                    "{place}: ADJUST is left out: no node is moved, and gaps are those of the mesh"
-                ));
-            }
-            document.table("[[contact]]");
-            document.key("name", quoted(&name));
-            document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
-            if let Some(gap) = pair.gap {
-                document.key("gap", format!("{gap:?}"));
-            }
-            law.write(document);
-        }
-        for tie in &ties {
-            tie.write(&unique(tie.name.clone()), document);
-        }
-        for tie in &tied {
-            tie.write(&tie.name, document);
-        }
-        if let Some(law) = self.contacts.general(places, warnings)? {
-            document.table("[[contact]]");
-            document.key("name", quoted("contact"));
-            document.key("between", quoted("all"));
-            law.write(document);
-        }
-        Ok(pairs)
     }
 
     /// Writes a load step: all that it has in place of the scene's loads.

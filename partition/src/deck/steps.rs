@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use super::amplitude::Moment;
 use super::axes::{System, numbers};
-use super::loads::{Loads, NodeAxis};
+use super::loads::Loads;
 use super::place::Places;
+use super::reference::{AtReference, NodeAxis};
 use super::table::{Amplitudes, Origin, Table};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
@@ -24,6 +25,8 @@ pub(super) struct LoadStep {
     pub(super) tractions: BTreeMap<(String, usize), f64>,
     pub(super) bodies: BTreeMap<usize, f64>,
     pub(super) temperatures: BTreeMap<u32, f64>,
+    /// What acts on reference nodes.
+    pub(super) references: BTreeMap<u32, AtReference>,
 }
 
 /// The steps of a deck, and what the step that is read adds to them.
@@ -223,12 +226,20 @@ impl Steps {
             .or_else(|| loads.bodies.bend(amplitudes, start, end))
             .or_else(|| loads.temperatures.bend(amplitudes, start, end));
         self.bend = self.bend.or(bend);
+        let [(held_references, held), (loaded_references, forces)] =
+            [&loads.supports, &loads.forces].map(|table| {
+                let values = table.at(amplitudes, end).into_iter();
+                let (of_references, of_bodies): (Vec<_>, Vec<_>) =
+                    values.partition(|((node, _), _)| loads.references.contains_key(node));
+                (of_references, BTreeMap::from_iter(of_bodies))
+            });
         self.done.push(LoadStep {
             name: open.name,
             place: open.place,
             time: end.total,
-            supports: local.supports(&loads.supports, &loads.supports.at(amplitudes, end))?,
-            forces: local.forces(&loads.forces.at(amplitudes, end)),
+            references: AtReference::all(loaded_references, held_references),
+            supports: local.supports(&loads.supports, &held)?,
+            forces: local.forces(&forces),
             faces: loads.faces.at(amplitudes, end),
             surfaces: loads.surfaces.at(amplitudes, end),
             tractions: loads.tractions.at(amplitudes, end),

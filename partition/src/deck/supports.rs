@@ -2,21 +2,22 @@
 
 use super::loads::{Loads, item};
 use super::place::Places;
+use super::reference::NodeAxis;
 use super::table::Origin;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, Of};
 use crate::name;
 
-/// Words for supports, and the axes that they hold.
+/// Words for supports, and the axes along and about which they hold.
 const WORDS: [(&str, &[usize]); 8] = [
-    ("ENCASTRE", &[0, 1, 2]),
+    ("ENCASTRE", &[0, 1, 2, 3, 4, 5]),
     ("PINNED", &[0, 1, 2]),
-    ("XSYMM", &[0]),
-    ("YSYMM", &[1]),
-    ("ZSYMM", &[2]),
-    ("XASYMM", &[1, 2]),
-    ("YASYMM", &[0, 2]),
-    ("ZASYMM", &[0, 1]),
+    ("XSYMM", &[0, 4, 5]),
+    ("YSYMM", &[1, 3, 5]),
+    ("ZSYMM", &[2, 3, 4]),
+    ("XASYMM", &[1, 2, 3]),
+    ("YASYMM", &[0, 2, 4]),
+    ("ZASYMM", &[0, 1, 5]),
 ];
 
 /// Parameters of `*BOUNDARY` that say something else than displacements of nodes.
@@ -30,9 +31,12 @@ const REFUSED: [&str; 7] = [
     "REGION TYPE",
 ];
 
-/// Degrees of freedom that are displacements, and the last that is a rotation.
-const DISPLACEMENTS: i64 = 3;
+/// Number of the degrees of freedom that are displacements, and the last that is a rotation.
+const SPACE: usize = 3;
 const ROTATIONS: i64 = 6;
+
+/// What isn't needed of a support.
+const NO_ROTATIONS: &str = "*BOUNDARY (degrees of freedom 4 to 6, which nodes of solids haven't)";
 
 impl Loads {
     /// `*BOUNDARY`: a node or set, the first and the last degree of freedom, and a displacement.
@@ -59,48 +63,53 @@ impl Loads {
             let nodes = places.members(data.place, Of::Nodes, item(source, data, 0))?;
             let second = item(source, data, 1).to_uppercase();
             let value = source.real(data.place, item(source, data, 3), "a displacement")?;
-            let axes: Vec<usize> = match WORDS.iter().find(|(word, _)| *word == second) {
+            let word = WORDS.iter().find(|(word, _)| *word == second);
+            let axes: Vec<usize> = match word {
                 Some((_, axes)) => axes.to_vec(),
-                None => self.axes(places, data, block)?,
+                None => axes(places, data, block)?,
             };
-            for axis in axes.into_iter().filter(|&axis| axis < places.dim()) {
-                nodes
-                    .iter()
-                    .for_each(|&node| self.supports.set((node, axis), value, &origin));
+            for (&node, &axis) in nodes
+                .iter()
+                .flat_map(|node| axes.iter().map(move |axis| (node, axis)))
+            {
+                match self.component(places, (block, data), (node, axis))? {
+                    Some(key) => self.supports.set(key, value, &origin),
+                    None if word.is_none() && axis >= SPACE => {
+                        _ = self.notes.insert(NO_ROTATIONS.into())
+                    }
+                    None => {}
+                }
             }
         }
         Ok(())
     }
 
-    /// The axes from the first degree of freedom of a line to its last.
-    fn axes(
-        &mut self,
+    /// The component that a degree of freedom of a node is, from 0 on; `None` where it has none: of a node of solids a
+    /// rotation, in the plane what leads out of it.
+    ///
+    /// # Errors
+    /// A reference node that isn't coupled by it.
+    fn component(
+        &self,
         places: &Places,
-        data: &Data,
-        block: &Block,
-    ) -> Result<Vec<usize>, InputError> {
-        let source = places.source;
-        let first = source.tag(data.place, item(source, data, 1), "a degree of freedom")?;
-        let last = match item(source, data, 2) {
-            "" => first,
-            last => source.tag(data.place, last, "a degree of freedom")?,
+        (block, data): (&Block, &Data),
+        (node, axis): NodeAxis,
+    ) -> Result<Option<NodeAxis>, InputError> {
+        let Some(reference) = self.references.get(&node) else {
+            return Ok((axis < places.dim()).then_some((node, axis)));
         };
-        if first > last || last > ROTATIONS {
+        let component = reference.component(axis, places.dim());
+        if component.is_none() && places.dim() == SPACE {
             let message = format!(
-                "*{} of the degrees of freedom {first} to {last}; expected displacements, 1 to {DISPLACEMENTS}",
-                block.keyword
+                "*{} on the degree of freedom {} of the reference node {}, which isn't coupled; expected it in the \
+                 lines of *DISTRIBUTING, or of a ROT NODE 1 to {SPACE}",
+                block.keyword,
+                axis + 1,
+                places.deck.node_tags[node as usize]
             );
-            return Err(source.error(data.place, message));
+            return Err(places.source.error(data.place, message));
         }
-        if last > DISPLACEMENTS {
-            let what = format!("*{}", block.keyword);
-            self.notes.insert(format!(
-                "{what} (degrees of freedom 4 to 6, which nodes of solids haven't)"
-            ));
-        }
-        Ok((first..=last.min(DISPLACEMENTS))
-            .map(|dof| dof as usize - 1)
-            .collect())
+        Ok(component)
     }
 
     /// `*CLOAD`: a node or set, a degree of freedom, and the force on each node.
@@ -120,17 +129,40 @@ impl Loads {
             let dof = source.tag(data.place, item(source, data, 1), "a degree of freedom")?;
             let force = source.real(data.place, item(source, data, 2), "a force")?;
             let axis = dof as usize - 1;
-            if axis >= places.dim() && force != 0.0 {
-                let message = format!(
-                    "*CLOAD on the degree of freedom {dof}; expected forces along 1 to {}: nodes of solids take no moments",
-                    places.dim()
-                );
-                return Err(source.error(data.place, message));
+            for &node in &nodes {
+                match self.component(places, (block, data), (node, axis))? {
+                    Some(key) => self.forces.add(key, force, &origin),
+                    None if force == 0.0 => {}
+                    None => {
+                        let message = format!(
+                            "*CLOAD on the degree of freedom {dof}; expected forces along 1 to {}: nodes of solids take no \
+                             moments, but the reference node of a *COUPLING does",
+                            places.dim()
+                        );
+                        return Err(source.error(data.place, message));
+                    }
+                }
             }
-            nodes
-                .iter()
-                .for_each(|&node| self.forces.add((node, axis), force, &origin));
         }
         Ok(())
     }
+}
+
+/// The axes from the first degree of freedom of a line to its last.
+fn axes(places: &Places, data: &Data, block: &Block) -> Result<Vec<usize>, InputError> {
+    let source = places.source;
+    let first = source.tag(data.place, item(source, data, 1), "a degree of freedom")?;
+    let last = match item(source, data, 2) {
+        "" => first,
+        last => source.tag(data.place, last, "a degree of freedom")?,
+    };
+    if first > last || last > ROTATIONS {
+        let message = format!(
+            "*{} of the degrees of freedom {first} to {last}; expected displacements, 1 to {SPACE}, or of reference nodes also \
+             rotations, to {ROTATIONS}",
+            block.keyword
+        );
+        return Err(source.error(data.place, message));
+    }
+    Ok((first..=last).map(|dof| dof as usize - 1).collect())
 }

@@ -49,6 +49,16 @@ struct Paired {
     warnings: Vec<String>,
 }
 
+impl Paired {
+    /// Closes gaps up to a distance, and all overlaps; none without a distance.
+    fn close(&mut self, distance: Option<f64>) {
+        let gaps = (self.points.iter_mut().map(|point| &mut point.gap))
+            .chain(self.probes.iter_mut().map(|probe| &mut probe.gap));
+        gaps.filter(|gap| distance.is_some_and(|distance| **gap <= distance))
+            .for_each(|gap| *gap = 0.0);
+    }
+}
+
 /// Data that contacts are made from.
 pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
@@ -118,6 +128,7 @@ impl<'a> Contacts<'a> {
         for point in paired.points.iter_mut().filter(|p| p.gap.abs() < none) {
             point.gap = 0.0;
         }
+        paired.close(keys.adjust);
         if let Some(gap) = &keys.gap {
             warnings.extend(self.give_gap(gap, &mut paired, &side_a, &what)?);
         }

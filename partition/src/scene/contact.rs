@@ -67,6 +67,8 @@ pub struct Contact {
     pub motion: Option<ConstantVector>,
     /// The gap in place of the geometric one (m).
     pub gap: Option<Number>,
+    /// The distance up to which gaps, and all overlaps, are taken as closed (m); `None` where they are as measured.
+    pub adjust: Option<f64>,
     /// Whether negative gaps are intended.
     pub interference: bool,
     /// Law of friction; `None` without.
@@ -149,6 +151,7 @@ impl Between {
             motion: None,
             pairing: self.pairing,
             gap: self.gap.clone(),
+            adjust: None,
             interference: self.interference,
             friction: self.friction.clone(),
             stiffness: self.stiffness.clone(),
@@ -199,7 +202,7 @@ impl Chosen {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, sides or between, within, pairing, gap, interference, obstacle, motion, friction, \
+    expecting = "a table of name, sides or between, within, pairing, gap, adjust, interference, obstacle, motion, friction, \
                  cohesion, tresca and stiffness"
 )]
 struct Keys {
@@ -211,6 +214,8 @@ struct Keys {
     within: Option<f64>,
     pairing: Option<Pairing>,
     gap: Option<Number>,
+    #[serde(default, deserialize_with = "adjustment")]
+    adjust: Option<f64>,
     #[serde(default)]
     interference: bool,
     obstacle: Option<Obstacle>,
@@ -237,6 +242,15 @@ impl Keys {
         if self.motion.is_some() && self.obstacle.is_none() {
             return Err(
                 "'motion' is of an 'obstacle', which is missing; a body moves by [[displacement]]"
+                    .into(),
+            );
+        }
+        if self.within.is_some() && self.between.is_none() && self.sides.is_some() {
+            return Err("'within' stands beside 'between', which is missing".into());
+        }
+        if self.adjust.is_some() && (self.gap.is_some() || self.between.is_some()) {
+            return Err(
+                "'adjust' closes gaps of the mesh; expected no 'gap' and no 'between' beside it"
                     .into(),
             );
         }
@@ -272,9 +286,6 @@ impl TryFrom<Keys> for Declaration {
             (None, None) => {
                 return Err("expected its two 'sides', or the bodies 'between' which it is".into());
             }
-            (None, Some(_)) if keys.within.is_some() => {
-                return Err("'within' stands beside 'between', which is missing".into());
-            }
             (None, Some(sides)) => sides,
         };
         let count = sides.len();
@@ -303,6 +314,7 @@ impl TryFrom<Keys> for Declaration {
             motion: keys.motion,
             pairing: keys.pairing,
             gap: keys.gap,
+            adjust: keys.adjust,
             interference: keys.interference,
             friction,
             stiffness: keys.stiffness,
@@ -320,6 +332,11 @@ pub(super) fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result
             name::shown(&name)
         ))),
     }
+}
+
+fn adjustment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let is_one = |value| value >= 0.0;
+    Constant::checked(deserializer, is_one, "the distance", "at least 0").map(Some)
 }
 
 pub(super) fn distance<'de, D: Deserializer<'de>>(

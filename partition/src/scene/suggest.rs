@@ -68,7 +68,7 @@ const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
         "a [[contact]] has two 'sides'",
     ),
     (
-        "clearance offset initial_gap adjust",
+        "clearance offset initial_gap",
         Some("gap"),
         "a gap in place of the meshes' is the key 'gap' of a [[contact]]",
     ),

@@ -29,6 +29,7 @@ impl Tie {
             partner: Partner::Side(side_b),
             pairing: self.pairing,
             gap: None,
+            adjust: None,
             interference: true,
             friction: None,
             motion: None,

@@ -1,10 +1,13 @@
 //! Decks as whole models: the scene and the mesh that they mean.
 
+mod couplings;
 mod laws;
 mod refused;
+mod springs;
 mod steps;
 
 use contact_dd_partition::deck::{self, Translation};
+use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
 use contact_dd_partition::scene::number::Number;
 use tempfile::TempDir;
@@ -208,6 +211,57 @@ fn linear_pressure_over_overclosure_is_a_stiffness() {
             "{error}"
         );
     }
+}
+
+#[test]
+fn gaps_are_closed_up_to_a_distance() {
+    let deck = format!("{CUBES}{MODEL}{}", step("*DLOAD\nUpper, P2, 1."));
+    let of =
+        |key: &str| read(&deck.replace("INTERACTION=Dry,", &format!("INTERACTION=Dry, {key},")));
+    let translation = of("ADJUST=0.01").unwrap();
+    let scene = Scene::parse(&translation.scene).unwrap();
+    assert_eq!(scene.contact[0].contact().unwrap().adjust, Some(0.01));
+    assert!(translation.mesh.warnings.is_empty());
+    let warnings = of("ADJUST=Top").unwrap().mesh.warnings;
+    assert!(
+        warnings[0].contains("line 46: ADJUST is left out"),
+        "{warnings:?}"
+    );
+    let error = of("ADJUST=-1.").err().unwrap();
+    assert!(
+        error.contains("line 45: *CONTACT PAIR: ADJUST is -1; expected a distance"),
+        "{error}"
+    );
+    let clearance = deck.replace(
+        "*BOUNDARY",
+        "*CLEARANCE, SLAVE=High, MASTER=Low, VALUE=0.02\n*BOUNDARY",
+    );
+    let both = clearance.replace("INTERACTION=Dry,", "INTERACTION=Dry, ADJUST=0.01,");
+    let scenes = [clearance, both].map(|deck| read(&deck).unwrap().scene);
+    assert!(
+        scenes[0].contains("gap = 0.02") && scenes[0] == scenes[1],
+        "{scenes:?}"
+    );
+}
+
+#[test]
+fn gaps_that_are_wider_than_the_distance_stay() {
+    let deck = format!("{CUBES}{MODEL}{}", step("*DLOAD\nUpper, P2, 1."));
+    let deck = deck.replace("INTERACTION=Dry,", "INTERACTION=Dry, ADJUST=0.02,");
+    let [left, right] = ["11, 0, 0, 1\n", "12, 1, 0, 1\n"];
+    let deck = deck
+        .replace(left, "11, 0, 0, 1.01\n")
+        .replace("14, 0, 1, 1\n", "14, 0, 1, 0.99\n");
+    let deck = deck
+        .replace(right, "12, 1, 0, 1.03\n")
+        .replace("13, 1, 1, 1\n", "13, 1, 1, 1.03\n");
+    let translation = read(&deck).unwrap();
+    let scene = Scene::parse(&translation.scene).unwrap();
+    let model = Model::new(&scene, translation.mesh).unwrap();
+    let (closed, open): (Vec<_>, Vec<_>) =
+        (model.contacts[0].points.iter().map(|point| point.gap)).partition(|&gap| gap == 0.0);
+    assert_eq!((closed.len(), open.len()), (2, 2), "{open:?}");
+    assert!(open.iter().all(|&gap| gap > 0.02), "{open:?}");
 }
 
 #[test]

@@ -35,6 +35,8 @@ pub(crate) struct Deck {
     /// The tags of elements that are left out, as they are neither cells nor sides.
     left_out: HashSet<i64>,
     pub(crate) node_sets: Sets<u32>,
+    /// The names of those that are groups of points, also where they have all nodes of faces.
+    pub(crate) point_sets: BTreeSet<String>,
     pub(crate) element_sets: Sets<u32>,
     pub(crate) surfaces: Sets<Face>,
     /// Surfaces that are told by their nodes.
@@ -234,10 +236,13 @@ impl Deck {
                 self.left_out.insert(offset + tag);
             }
         }
-        self.notes.add(
-            "elements that are no cells of a body are left out",
-            name.to_uppercase(),
-        );
+        // Springs to the ground are told by their keyword.
+        if !name.eq_ignore_ascii_case("SPRING1") {
+            self.notes.add(
+                "elements that are no cells of a body are left out",
+                name.to_uppercase(),
+            );
+        }
         if let Some(set) = block.parameter("ELSET") {
             self.element_sets.extend(set, false, []);
         }

@@ -223,7 +223,9 @@ impl Grouping<'_> {
                 continue;
             }
             let (side, covered) = self.boundary.between(self.mesh, &nodes);
-            let is_whole = !side.is_empty() && covered.len() == nodes.len();
+            let is_whole = !side.is_empty()
+                && covered.len() == nodes.len()
+                && !deck.point_sets.contains(&set.name);
             match is_whole && !groups.contains_key(&(name.clone(), dim - 1)) {
                 true => groups.insert((name, dim - 1), self.placed(side)),
                 false => groups.insert((name, 0), nodes.into_iter().collect()),

@@ -6,7 +6,7 @@ use crate::says::says;
 const LOAD: &str = "*DLOAD\nUpper, P2, 1.";
 
 #[track_caller]
-fn refused(deck: &str, expected: &str) {
+pub fn refused(deck: &str, expected: &str) {
     match read(deck) {
         Ok(translation) => panic!("{expected}: {}", translation.scene),
         Err(said) => says(&said, expected),
@@ -47,20 +47,16 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 49: *MPC isn't supported yet; instead",
         ),
         (
-            "*RIGID BODY, NSET=Top",
-            "line 49: *RIGID BODY isn't supported yet; instead move",
-        ),
-        (
-            "*COUPLING",
-            "line 49: *COUPLING isn't supported yet; instead",
+            "*KINEMATIC COUPLING, REF NODE=1",
+            "line 49: *KINEMATIC COUPLING isn't read; instead give *COUPLING",
         ),
         (
             "*PRE-TENSION SECTION",
             "line 49: *PRE-TENSION SECTION isn't supported yet; instead",
         ),
         (
-            "*SPRING, ELSET=All",
-            "line 49: *SPRING isn't supported yet; instead",
+            "*GAP, ELSET=All",
+            "line 49: *GAP isn't supported yet; instead",
         ),
         (
             "*CYCLIC SYMMETRY MODEL",
@@ -73,6 +69,14 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         (
             "*BEAM SECTION, ELSET=All",
             "line 49: *BEAM SECTION isn't read … instead mesh",
+        ),
+        (
+            "*CHANGE FRICTION, INTERACTION=Dry\n*FRICTION\n0.1",
+            "line 49: *CHANGE FRICTION isn't read: laws are the same in all steps here; instead give one for all of them",
+        ),
+        (
+            "*CHANGE SURFACE BEHAVIOR, INTERACTION=Dry\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e6",
+            "line 49: *CHANGE SURFACE BEHAVIOR isn't read: laws are the same in all steps here; instead",
         ),
         (
             "*MODEL CHANGE",

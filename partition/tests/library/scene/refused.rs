@@ -153,6 +153,10 @@ gap = 0.0 => within = 1
     contact[1] 'left crack': 'within' stands beside 'between', which is missing
 gap = 0.0 => within = 0
     line 34: contact[1] 'left crack'.within: the distance is 0; expected more than 0
+gap = 0.0 => adjust = -1
+    line 34: contact[1] 'left crack'.adjust: the distance is -1; expected at least 0
+gap = 0.0 => gap = 0.0\nadjust = 1
+    contact[1] 'left crack': 'adjust' closes gaps of the mesh; expected no 'gap'
 sides = ["left crack lower", ["left crack upper", "more"]] => between = ["block", "lft block"]
     line 33: contact[1] 'left crack'.between: there is no body 'lft block'; did you mean 'left block'?
 sides = ["left crack lower", ["left crack upper", "more"]] => between = 7

@@ -1,0 +1,189 @@
+//! Couplings of a deck on their way to the scene.
+
+use std::collections::BTreeMap;
+
+use super::{Coupled, Coupling, Couplings, Kind};
+use crate::deck::axes::System;
+use crate::deck::document::{Document, Names, quoted, vector};
+use crate::deck::groups::Groups;
+use crate::deck::place::Places;
+use crate::deck::reference::{AtReference, FREEDOMS};
+use crate::deck::steps::LoadStep;
+use crate::error::InputError;
+use crate::scene::coupling::COMPONENTS;
+
+/// A coupling in the words of the scene.
+pub(in crate::deck) struct SceneCoupling {
+    name: String,
+    on: String,
+    point: [f64; 3],
+    is_rigid: bool,
+    dim: usize,
+    /// By step.
+    acting: Vec<AtReference>,
+}
+
+impl Couplings {
+    /// The couplings with the groups of their nodes and what the `steps` say of their points, under names that are
+    /// none of `names`.
+    ///
+    /// # Errors
+    /// A reference node that is one of a body or turned by one of `systems`, nodes of no body, supports that come or go.
+    pub(in crate::deck) fn in_scene(
+        &self,
+        groups: &mut Groups,
+        (steps, thickness): (&[LoadStep], f64),
+        systems: &BTreeMap<u32, System>,
+        names: &mut Names,
+    ) -> Result<Vec<SceneCoupling>, InputError> {
+        let coupling = |coupling: &Coupling| {
+            let on = self.group(groups, coupling, systems)?;
+            let acting = coupling.acting(groups, steps, thickness)?;
+            Ok(SceneCoupling {
+                name: names.unique(&coupling.name),
+                on,
+                point: groups.position(coupling.node),
+                is_rigid: coupling.kind == Some(Kind::Rigid),
+                dim: groups.dim(),
+                acting,
+            })
+        };
+        self.all.iter().map(coupling).collect()
+    }
+
+    /// The group of a coupling's nodes.
+    fn group(
+        &self,
+        groups: &mut Groups,
+        coupling: &Coupling,
+        systems: &BTreeMap<u32, System>,
+    ) -> Result<String, InputError> {
+        let tag = groups.tag(coupling.node);
+        let others = |node: &&u32| **node != coupling.node && self.references.contains_key(node);
+        let message = match &coupling.coupled {
+            _ if systems.contains_key(&coupling.node) => {
+                format!(
+                    "the reference node {tag} with *TRANSFORM isn't read; expected x, y and z there"
+                )
+            }
+            Coupled::Surface(_) if groups.is_of_body(coupling.node) => format!(
+                "the reference node {tag} is one of a body, which isn't supported; expected a node of its own, perhaps at the \
+                 same place"
+            ),
+            Coupled::Surface(surface) => {
+                // Nodes have equal shares where no faces say others.
+                let points = groups
+                    .of_node_surface(surface)
+                    .filter(|_| coupling.kind == Some(Kind::Distributing))
+                    .and_then(|nodes| groups.of_points(&nodes, "coupled"));
+                return Ok(points.unwrap_or_else(|| groups.of_surface(surface)));
+            }
+            Coupled::Nodes(nodes) => match nodes.iter().find(others) {
+                Some(&other) => format!(
+                    "the reference node {} of another coupling is one of the nodes, which isn't supported; expected nodes of \
+                     bodies",
+                    groups.tag(other)
+                ),
+                None => {
+                    let all: Vec<u32> = nodes.iter().copied().chain([coupling.node]).collect();
+                    match groups.of_nodes(&all, "rigid") {
+                        Some(on) => return Ok(on),
+                        None => "its nodes are none of a body; expected nodes of solids".into(),
+                    }
+                }
+            },
+        };
+        let keyword = match coupling.coupled {
+            Coupled::Surface(_) => "COUPLING",
+            Coupled::Nodes(_) => "RIGID BODY",
+        };
+        Err(groups.error(coupling.place, &format!("*{keyword}: {message}")))
+    }
+
+    /// Refuses couplings where there can be none, around an axis.
+    pub(in crate::deck) fn check_plane(
+        &self,
+        places: &Places,
+        axisymmetric: bool,
+    ) -> Result<(), InputError> {
+        match self.all.first().filter(|_| axisymmetric) {
+            None => Ok(()),
+            Some(coupling) => Err(places.source.error(
+                coupling.place,
+                "couplings around an axis aren't supported; instead move the nodes by *BOUNDARY, or load their faces by \
+                 *DSLOAD",
+            )),
+        }
+    }
+}
+
+impl Coupling {
+    /// What acts on its reference node in every step, per thickness of plane sections.
+    fn acting(
+        &self,
+        groups: &Groups,
+        steps: &[LoadStep],
+        thickness: f64,
+    ) -> Result<Vec<AtReference>, InputError> {
+        let mut acting: Vec<AtReference> = Vec::new();
+        for step in steps {
+            let mut at = step.references.get(&self.node).cloned().unwrap_or_default();
+            at.load = at.load.map(|load| load / thickness);
+            let held = |at: &AtReference| at.held.map(|value| value.is_some());
+            if acting.first().is_some_and(|first| held(first) != held(&at)) {
+                let message = format!(
+                    "supports of the reference node {} come or go in this step, which isn't supported yet; expected the same \
+                     degrees of freedom in every step",
+                    groups.tag(self.node)
+                );
+                return Err(groups.error(step.place, &message));
+            }
+            acting.push(at);
+        }
+        Ok(acting)
+    }
+}
+
+impl SceneCoupling {
+    /// Writes the coupling, with what acts on its point in the first step.
+    pub(in crate::deck) fn write(&self, document: &mut Document) {
+        document.table("[[coupling]]");
+        document.key("name", quoted(&self.name));
+        document.key("on", quoted(&self.on));
+        document.key("point", vector(&self.point, self.dim));
+        if !self.is_rigid {
+            document.key("kind", quoted("distributing"));
+        }
+        self.acts(0, document);
+    }
+
+    /// Writes what acts on its point in a step.
+    pub(in crate::deck) fn write_step(&self, step: usize, document: &mut Document) {
+        let acts = |at: &AtReference| at.load != [0.0; FREEDOMS] || at.held != [None; FREEDOMS];
+        if self.acting.iter().any(acts) {
+            document.table(&format!("[step.coupling.{}]", quoted(&self.name)));
+            self.acts(step, document);
+        }
+    }
+
+    fn acts(&self, step: usize, document: &mut Document) {
+        let at = &self.acting[step];
+        let part = |from: usize| std::array::from_fn(|k| at.load[from + k] + 0.0);
+        let in_some = |range: std::ops::Range<usize>| {
+            (self.acting.iter()).any(|at| at.load[range.clone()].iter().any(|&load| load != 0.0))
+        };
+        if in_some(0..3) {
+            document.key("force", vector(&part(0), self.dim));
+        }
+        if in_some(3..6) {
+            match self.dim {
+                2 => document.key("moment", format!("{:?}", at.load[5] + 0.0)),
+                _ => document.key("moment", vector(&part(3), 3)),
+            }
+        }
+        let held = COMPONENTS.iter().zip(at.held);
+        for (key, value) in held.filter_map(|(key, value)| Some((key, value?))) {
+            document.key(key, format!("{:?}", value + 0.0));
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Nodes that stand for reference points, and what acts on them.
+
+use std::collections::BTreeMap;
+
+use crate::scene::coupling::COMPONENTS;
+
+/// A node and a local axis from 0; of a reference node its rotations come behind its axes.
+pub(super) type NodeAxis = (u32, usize);
+
+/// Translations and rotations of a reference node.
+pub(super) const FREEDOMS: usize = COMPONENTS.len();
+
+/// The degrees of freedom of a reference node in the plane: along x and y, and about z.
+const IN_THE_PLANE: [usize; 3] = [0, 1, 5];
+
+/// The meaning of a degree of freedom of a node that stands for a reference point.
+#[derive(Clone, Copy)]
+pub(super) struct Reference {
+    /// The reference node.
+    pub(super) node: u32,
+    /// Its component that is the node's first degree of freedom: 3 of a node for rotations.
+    pub(super) first: usize,
+    /// The components that are coupled.
+    pub(super) coupled: [bool; FREEDOMS],
+}
+
+/// What acts on a reference node at the end of a step, and what is prescribed there.
+#[derive(Clone, Default)]
+pub(super) struct AtReference {
+    pub(super) load: [f64; FREEDOMS],
+    pub(super) held: [Option<f64>; FREEDOMS],
+}
+
+impl Reference {
+    /// The reference node and its component that is a degree of freedom, from 0 on; `None` where it isn't one in `dim`
+    /// dimensions or isn't coupled.
+    pub(super) fn component(&self, freedom: usize, dim: usize) -> Option<NodeAxis> {
+        let component = self.first + freedom;
+        let is_coupled = self.coupled.get(component) == Some(&true);
+        let is_here = dim == 3 || IN_THE_PLANE.contains(&component);
+        (is_coupled && is_here).then_some((self.node, component))
+    }
+}
+
+impl AtReference {
+    /// Those of all reference nodes, from what acts and what is prescribed by node and component.
+    pub(super) fn all(
+        loads: Vec<(NodeAxis, f64)>,
+        held: Vec<(NodeAxis, f64)>,
+    ) -> BTreeMap<u32, Self> {
+        let mut all: BTreeMap<u32, Self> = BTreeMap::new();
+        for ((node, k), load) in loads {
+            all.entry(node).or_default().load[k] = load;
+        }
+        for ((node, k), value) in held {
+            all.entry(node).or_default().held[k] = Some(value);
+        }
+        all
+    }
+}
