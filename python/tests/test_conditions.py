@@ -66,6 +66,35 @@ def test_initial_stress_is_no_load(scene, tmp_path):
             assert len(support.axes) == sum(np.isclose([x, y], 0))
 
 
+def test_a_load_on_a_reference_point_is_there_and_its_coupling_presses_nothing(scene, tmp_path):
+    model = Model.from_scene(scene("stack3d"))
+    del model.scene["pressure"]
+    model.coupling("loaded", [0.2, 0.0, 4.0], kind="rigid", force=[0, 0, -1e6])
+    result = model.run(folder=tmp_path, progress=False)
+    solid = Solid(result)
+    assert np.allclose(result.points[solid.conditions.nodes], [[0.2, 0, 4]])
+    assert np.allclose(solid.conditions.forces, [[0, 0, -1e6]])
+    assert set(solid.pressed) == {"lower joint", "upper joint"}
+    figure = result.plot()
+    axes = figure.subfigs[0].axes[0]
+    place = result.points[solid.conditions.nodes[0]] @ solid.raster().frame[:2].T
+    assert axes.get_ylim()[0] < place[1] < axes.get_ylim()[1]
+    plt.close("all")
+
+
+def test_springs_are_supports_of_their_own(scene, tmp_path):
+    model = Model.from_scene(scene("stack"))
+    del model.scene["displacement"]
+    model.spring("ground", stiffness=[0, 1e9])
+    model.fix("loaded", x=0.0)
+    conditions = of_plane(model.run(folder=tmp_path, progress=False))
+    springs = [support for support in conditions.supports if support.is_spring]
+    assert len(springs) > 3
+    assert {tuple(map(tuple, np.abs(support.axes))) for support in springs} == {((0.0, 1.0),)}
+    words = {entry.get_label() for entry in symbols.entries(conditions, 2)}
+    assert words == {"spring", "held along its axis", "load", "body force"}
+
+
 def test_pictures_have_few_symbols_and_none_without_the_problem(scene, tmp_path):
     result = Model.from_scene(scene("stack")).run(folder=tmp_path, progress=False)
     figure = overview(Plane(result), 1.0)

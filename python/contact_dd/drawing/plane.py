@@ -3,6 +3,7 @@
 import numpy as np
 
 from contact_dd.drawing import shapes
+from contact_dd.drawing.carried import pressing
 from contact_dd.drawing.units import units_of
 from contact_dd.errors import InputError
 
@@ -21,7 +22,7 @@ class Plane:
         self.displacement, self.stress = result.displacement[:, :2], result.stress
         self.since, self.deformation = result.since, result.deformation[:, :2]
         self.cells, self.cell_stress = result.cells, result.cell_data["Stress"]
-        self.contacts = result.contacts_there
+        self.contacts = pressing(result)
         for kind, _, _ in self.cells:
             if kind not in shapes.CELLS:
                 raise InputError(f"{result.path}: VTK cell type {kind} can't be drawn; plane cells can")

@@ -6,7 +6,7 @@ from matplotlib.tri import Triangulation
 
 from contact_dd.drawing import symbols
 from contact_dd.drawing.canvas import deformation_of, round_below
-from contact_dd.drawing.carried import carried
+from contact_dd.drawing.carried import carried, pressing
 from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.conditions import conditions_of
 from contact_dd.drawing.plane import von_mises
@@ -48,7 +48,7 @@ class Solid:
         self.scale = scale or (round_below(VISIBLE * size / largest) if largest > 0 else 1.0)
         self.points = result.points + self.scale * result.deformation
         self.pressed = {
-            name: table for name, table in carried(result.contacts).items() if table["pressure"].max(initial=0) > 0
+            name: table for name, table in carried(pressing(result)).items() if table["pressure"].max(initial=0) > 0
         }
         # Colours are interpolated between the nodes of the surface, and lines are those of the undeformed bodies.
         self.shown = self.points[np.unique(np.concatenate(self.faces))]
@@ -95,6 +95,12 @@ class Solid:
         seen = self.conditions.seen(is_before)
         paper = symbols.Paper(raster.points[:, :2], self.normals, raster.frame[:2], max(raster.size[:2]))
         symbols.draw(axes, paper, seen)
+        # Reference points may be far from the bodies.
+        loaded = paper.places[seen.nodes]
+        around = 0.06 * raster.size[1]
+        for limits, change, k in ((axes.get_xlim(), axes.set_xlim, 0), (axes.get_ylim(), axes.set_ylim, 1)):
+            least, most = loaded[:, k].min(initial=np.inf), loaded[:, k].max(initial=-np.inf)
+            change(min(limits[0], least - around), max(limits[1], most + around))
         if key := symbols.entries(seen, 3):
             axes.legend(handles=key, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, frameon=False, fontsize=8,
                         columnspacing=1.2)
