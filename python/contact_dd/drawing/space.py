@@ -94,14 +94,14 @@ class Solid:
         is_before = raster.points[:, 2] + SEEN * max(raster.size) >= raster.depth.reshape(-1)[pixel]
         seen = self.conditions.seen(is_before)
         paper = symbols.Paper(raster.points[:, :2], self.normals, raster.frame[:2], max(raster.size[:2]))
-        symbols.draw(axes, paper, seen)
+        drawn = symbols.draw(axes, paper, seen)
         # Reference points may be far from the bodies.
         loaded = paper.places[seen.nodes]
         around = 0.06 * raster.size[1]
         for limits, change, k in ((axes.get_xlim(), axes.set_xlim, 0), (axes.get_ylim(), axes.set_ylim, 1)):
             least, most = loaded[:, k].min(initial=np.inf), loaded[:, k].max(initial=-np.inf)
             change(min(limits[0], least - around), max(limits[1], most + around))
-        if key := symbols.entries(seen, 3):
+        if key := symbols.entries(drawn, 3):
             axes.legend(handles=key, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, frameon=False, fontsize=8,
                         columnspacing=1.2)
 

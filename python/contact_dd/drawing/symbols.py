@@ -1,6 +1,6 @@
 """Symbols of supports and loads: of many nodes those of a few that are spread over them, of one size on paper."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.collections import PathCollection
@@ -9,8 +9,9 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
-# Most symbols of a kind, and the least distance between two of them over the size of what is shown.
-MOST, APART = 20, 0.045
+# Most symbols of a kind, and the least distance between two of them over the size of what is shown, in the plane and in
+# space, where supports hide stresses.
+MOST, APART, APART_IN_SPACE = 20, 0.045, 0.1
 # Colours: of supports, of what is prescribed (loads and motions), and between lines.
 HELD, GIVEN, PAPER = "#222222", "#a3159b", "#ffffff"
 # Height of triangles, and lengths of arrows (points).
@@ -31,12 +32,17 @@ class Paper:
     frame: np.ndarray
     size: float
 
-    def spread(self, rows):
-        """Of these nodes at most MOST, far enough from each other, corners last."""
+    def is_in_space(self):
+        return self.frame.shape[1] == 3
+
+    def spread(self, rows, apart=APART, taken=()):
+        """Of these nodes at most MOST, far enough from each other and from those that are taken, corners last."""
         rows = np.asarray(rows, dtype=int)
+        for other in taken:
+            rows = rows[np.linalg.norm(self.places[rows] - self.places[other], axis=1) >= apart * self.size]
         is_corner = np.linalg.norm(self.normals[rows], axis=1) < CORNER
         rows = rows[np.argsort(is_corner, kind="stable")]
-        apart = APART * self.size
+        apart = apart * self.size
         while True:
             chosen, left = [], rows
             while len(left) and len(chosen) <= MOST:
@@ -95,25 +101,33 @@ def put(axes, paths, places, face, edge, width, zorder):
 
 
 def draw_supports(axes, paper, supports):
-    """Triangles at supported nodes: fixed where all directions are held, else one on rollers along each one that is."""
+    """Triangles at supported nodes: fixed where all directions are held, else one on rollers along each one that is.
+    Returns the supports that are drawn."""
     groups = {}
     for support in supports:
         groups.setdefault((len(support.axes), support.is_moved, support.is_spring), []).append(support)
-    for (_, is_moved, is_spring), group in sorted(groups.items(), key=lambda item: item[0]):
+    # In space faces come first, of whose edges some are seen without symbols of their own, in the plane corners.
+    apart = APART_IN_SPACE if paper.is_in_space() else APART
+    taken, drawn = [], []
+    for (_, is_moved, _), group in sorted(groups.items(), reverse=not paper.is_in_space(), key=lambda item: item[0]):
         by_node = {support.node: support for support in group}
         paths, faces, places = [], [], []
-        for row in paper.spread(sorted(by_node)):
-            for shape, face in glyphs(paper, by_node[row], is_spring):
+        chosen = paper.spread(sorted(by_node), apart, taken)
+        taken += chosen.tolist()
+        drawn += [by_node[row] for row in chosen.tolist()]
+        for row in chosen:
+            for shape, face in glyphs(paper, by_node[row]):
                 paths.append(shape)
                 faces.append(face)
                 places.append(paper.places[row])
         put(axes, paths, places, faces, GIVEN if is_moved else HELD, 0.9, 6)
+    return drawn
 
 
-def glyphs(paper, support, is_spring):
+def glyphs(paper, support):
     """The symbols of a support, each with its colour inside."""
     normal = paper.normals[support.node]
-    if is_spring:
+    if support.is_spring:
         axes, under, filled = support.axes, None, "none"
     elif len(support.axes) == paper.frame.shape[1]:
         outward = normal if np.linalg.norm(normal) > 0.1 else -np.eye(len(normal))[-1]
@@ -169,11 +183,12 @@ def draw_bodies(axes, paper, centres, forces):
 
 
 def draw(axes, paper, conditions):
-    """All symbols of what holds and loads bodies."""
-    draw_supports(axes, paper, conditions.supports)
+    """Symbols of what holds and loads bodies. Returns the supports that have one, and the loads."""
+    drawn = draw_supports(axes, paper, conditions.supports)
     draw_loads(axes, paper, conditions.nodes, conditions.forces)
     forces = np.array([force for _, force in conditions.bodies]).reshape(-1, paper.frame.shape[1])
     draw_bodies(axes, paper, conditions.centres()[:, : paper.frame.shape[1]] @ paper.frame.T, forces)
+    return replace(conditions, supports=drawn)
 
 
 def entries(conditions, dimension):
