@@ -1,6 +1,6 @@
 //! Messages between ranks. The only importer of `mpi`.
 //!
-//! Ranks agree on errors at the end of every phase: nobody leaves between matching calls, so no
+//! Ranks agree on errors at the end of every phase: no rank leaves between matching calls, so no
 //! rank waits for one that is gone.
 
 pub mod clock;

@@ -38,12 +38,12 @@ pub struct BlockSolution {
     pub pushes: Vec<(u32, [f64; 3])>,
 }
 
-/// What friction leaves at the tangential conditions of the contact groups of this rank, by their number.
+/// Slips and frictional work at the tangential conditions of the contact groups of this rank, by their number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slips {
     /// Tangential jumps since the bodies were unloaded (m).
     pub jumps: BTreeMap<usize, Vec<f64>>,
-    /// What is dissipated in the load step: force times slip (J, per metre of thickness).
+    /// Dissipated work in the load step: force times slip (J, per metre of thickness).
     pub work: BTreeMap<usize, Vec<f64>>,
 }
 
@@ -77,7 +77,7 @@ pub struct DiscreteSolution {
 }
 
 impl DiscreteSolution {
-    /// What friction leaves where the tangential jumps before the increment were `before` (m).
+    /// Slips and frictional work where the tangential jumps before the increment were `before` (m).
     pub fn slips(&self, context: &Context<'_>, before: &BTreeMap<usize, Vec<f64>>) -> Slips {
         let mut slips = Slips::default();
         for (&g, solution) in &self.groups {

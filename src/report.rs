@@ -1,4 +1,4 @@
-//! What a run says of itself: the log on the way, and the report.
+//! Output of a run: the log on the way, and the report.
 
 pub mod log;
 pub mod totals;
@@ -208,7 +208,7 @@ fn unknown_stress(catalog: &Catalog) -> Vec<String> {
 fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     let mut skipped = Vec::new();
     if !comm.has_mpi() {
-        skipped.push("MPI: a single rank has nobody to send messages to".into());
+        skipped.push("MPI: not started, as there is one rank".into());
     }
     if totals.plan.contact_groups() == 0 {
         skipped.push("sweeps: no contact, the interface problem is linear".into());

@@ -1,7 +1,7 @@
 //! Decks of Abaqus and CalculiX as whole models: each is translated into the text of a scene and its mesh, behind which
 //! nothing knows of decks.
 //!
-//! What isn't linear, static and of small strains, and what isn't known, is refused by keyword and line.
+//! Decks that aren't linear, static and of small strains, and unknown keywords, are refused by keyword and line.
 
 mod amplitude;
 mod axes;
@@ -89,7 +89,7 @@ pub fn is_one(path: &Path) -> bool {
 /// Reads a deck.
 ///
 /// # Errors
-/// What is wrong with the deck or can't be computed, with file and line.
+/// The part of the deck that is wrong or can't be computed, with file and line.
 pub fn read(path: &Path) -> Result<Translation, InputError> {
     translate(path).map_err(|error| error.in_file(path))
 }

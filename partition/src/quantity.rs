@@ -84,11 +84,11 @@ pub struct Parameter {
 pub enum ParameterKind {
     /// The factor of a load, 1 as the load is.
     Load,
-    /// What the stiffness of these materials is in proportion to: Young's modulus, or a factor.
+    /// Measure of the stiffness of these materials: Young's modulus, or a factor.
     Stiffness,
-    /// What is added to the gap of a contact (m).
+    /// Addition to the gap of a contact (m).
     Gap,
-    /// What is added to the displacements that a condition prescribes along an axis: the numbers of both (m).
+    /// Addition to the displacements that a condition prescribes along an axis: the numbers of both (m).
     Displacement,
     /// Coefficient of friction of a contact.
     Friction,

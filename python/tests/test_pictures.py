@@ -11,6 +11,7 @@ from contact_dd.drawing import page as pages
 from contact_dd.drawing import space
 from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.raster import Camera, Raster, edges_of
+from contact_dd.drawing.surface import HEXAHEDRON
 from contact_dd.drawing.units import units_of
 
 RADIUS, AROUND, HEIGHTS = 3.0, 24, np.linspace(0, 4, 5)
@@ -136,7 +137,7 @@ def test_edges_of_bodies_are_sharp_and_those_of_cells_are_not():
     row = {tuple(corner): k for k, corner in enumerate(corners)}
     faces = []
     for x in (0, 1):
-        for face in space.HEXAHEDRON:
+        for face in HEXAHEDRON:
             cube = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
             places = [(cube[k][0] + x, *cube[k][1:]) for k in face]
             if {place[0] for place in places} != {1}:

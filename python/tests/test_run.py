@@ -200,6 +200,7 @@ def test_tables_of_contacts_in_space_have_no_arc_length(scene, tmp_path):
 def test_a_page_in_space_has_pictures_of_the_bodies(scene, tmp_path):
     from contact_dd.drawing import space
     from contact_dd.drawing.page import page
+    from contact_dd.drawing.surface import area
 
     result = Model.from_scene(scene("stack3d")).run(folder=tmp_path, progress=False)
     text = page(result)
@@ -210,9 +211,9 @@ def test_a_page_in_space_has_pictures_of_the_bodies(scene, tmp_path):
     assert list(solid.pictures()) == ["displacement", "von_mises", "pressure"]
     # The surface is closed and looks outward, and sides a are the faces of contacts: 3 m by 3 m and 2 m by 2 m.
     polygons = [result.points[face] for face in solid.faces]
-    assert np.isclose(sum(space.area(polygon) @ polygon.mean(axis=0) for polygon in polygons) / 3, 29)
+    assert np.isclose(sum(area(polygon) @ polygon.mean(axis=0) for polygon in polygons) / 3, 29)
     sides = {name: solid.side(table) for name, table in result.contacts.items()}
-    sizes = [sum(np.linalg.norm(space.area(result.points[face])) for face in faces) for faces, _ in sides.values()]
+    sizes = [sum(np.linalg.norm(area(result.points[face])) for face in faces) for faces, _ in sides.values()]
     assert np.allclose(sizes, [9, 4])
     for name, (_, pressures) in sides.items():
         table = result.contacts[name]
@@ -220,7 +221,7 @@ def test_a_page_in_space_has_pictures_of_the_bodies(scene, tmp_path):
     # Of a crack, 3.354 m by 3 m, up to its tips.
     cracked = Model.from_scene(scene("cube-crack")).run(folder=tmp_path, progress=False)
     faces, _ = space.Solid(cracked).side(cracked.contacts["left crack"])
-    assert np.isclose(sum(np.linalg.norm(space.area(cracked.points[face])) for face in faces), 3 * 45**0.5 / 2)
+    assert np.isclose(sum(np.linalg.norm(area(cracked.points[face])) for face in faces), 3 * 45**0.5 / 2)
     bare = Model.from_scene(scene("stack3d")).run(folder=tmp_path, options=["--no-stress"], progress=False)
     assert list(space.Solid(bare).pictures()) == ["displacement", "pressure"]
     assert "base64" in page(bare)

@@ -29,7 +29,7 @@ pub struct GroupBetween {
     dependent: DependentConstraints,
     /// The unknowns that closed limits replace.
     replaced: Vec<Replaced>,
-    /// What these share with closed rows that follow from them.
+    /// Shares of the forces of closed rows that depend linearly on these.
     sharing: ForceSharing,
 }
 

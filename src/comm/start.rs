@@ -18,7 +18,7 @@ use crate::error::Failure;
 
 /// All ranks, and MPI where there are several; it ends when this is dropped.
 pub struct World {
-    /// `None` for a single rank, which has nobody to talk to.
+    /// `None` for a single rank, which sends no messages.
     universe: Option<Universe>,
     hosts: usize,
 }

@@ -2,7 +2,7 @@
 
 use super::dependent::{DependentConstraints, Terms};
 
-/// What elimination leaves of a coefficient of order one that should be zero.
+/// Size up to which a coefficient of order one that elimination should make zero is round-off.
 const ROUND_OFF: f64 = 1e-10;
 
 /// The closed rows as equations, each solved for an open normal jump of its own.
@@ -61,7 +61,7 @@ impl ActiveEqualities {
         equalities
     }
 
-    /// What is left of `normal` on the open normal jumps once the equalities are taken off, and how much of
+    /// Remainder of `normal` on the open normal jumps once the equalities are taken off, and how much of
     /// every closed row that took.
     fn remainder(&self, normal: &[(usize, f64)], open: &[bool]) -> (Terms, Terms) {
         let mut left: Terms = normal.iter().copied().filter(|&(i, _)| open[i]).collect();

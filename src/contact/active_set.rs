@@ -98,9 +98,9 @@ pub struct Trial {
     pub jumps: Vec<f64>,
     /// λ = c − H t − Dᵀ μ, then μ; exactly 0 where open.
     pub forces: Vec<f64>,
-    /// What closed linearly dependent constraints make of the open normal jumps.
+    /// Equalities between open normal jumps by the closed linearly dependent constraints.
     pub(super) equalities: ActiveEqualities,
-    /// What is left of c at open normal jumps, relative to its terms.
+    /// Residual of c at open normal jumps, relative to its terms.
     unbalanced: f64,
 }
 

@@ -65,7 +65,7 @@ struct Blocking {
     change: Change,
 }
 
-/// What changes there.
+/// Change of the active set in an exchange.
 enum Change {
     /// This normal limit opens.
     Opens(usize),

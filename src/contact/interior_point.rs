@@ -28,7 +28,7 @@ pub struct InGaps<'a> {
     pub h: MatRef<'a, f64>,
     /// q.
     pub q: &'a [f64],
-    /// What measures the diagonal of H.
+    /// Scales of the diagonal of H.
     pub scale: &'a [f64],
     /// D.
     pub rows: &'a DependentConstraints,

@@ -14,7 +14,7 @@ const ROUND_OFF: f64 = 1e-10;
 /// Share of its largest coefficient below which a condition is nearly parallel to others.
 const PARALLEL: f64 = 0.1;
 
-/// What a displacement is made of once the jumps are unknowns.
+/// Unknowns that a displacement is a sum of once the jumps are unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {
     /// A component of a node along an axis of its frame.
@@ -140,7 +140,7 @@ pub type IsTied<'a> = &'a dyn Fn(usize) -> bool;
 pub enum OwnJump {
     /// An unknown of the contact problem, by its number among these.
     Unknown(usize),
-    /// That of a tie, by its number among those.
+    /// Jump of a tie, by its number among ties.
     Tied(usize),
 }
 

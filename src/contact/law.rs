@@ -95,7 +95,7 @@ pub struct PointLaw {
     pub tangents: [Option<usize>; 2],
     /// Slip along the second tangent where supports prescribe it (m).
     pub prescribed: f64,
-    /// What bounds its tangential force.
+    /// Bound of its tangential force.
     pub bound: ForceBound,
     /// r (N/m).
     pub stiffness: f64,

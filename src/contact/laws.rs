@@ -45,10 +45,10 @@ pub struct Iterate {
     pub forces: Vec<f64>,
 }
 
-/// What the laws say of an iterate.
+/// Residual of the contact laws at an iterate.
 #[derive(Clone, Debug)]
 pub struct LawResidual {
-    /// What all limits should do there.
+    /// Statuses that all limits should have there.
     pub statuses: Statuses,
     /// The limits whose status is wrong, where those before are known.
     pub wrong: Vec<usize>,
@@ -208,7 +208,7 @@ impl<'a> ContactLaws<'a> {
         }
     }
 
-    /// What the laws say of an iterate; limits keep the statuses `before` within a share `stays` of the scales of forces
+    /// Residual of the contact laws at an iterate; limits keep the statuses `before` within a share `stays` of the scales of forces
     /// that stand beside them.
     pub fn residual(
         &self,
@@ -282,7 +282,7 @@ impl<'a> ContactLaws<'a> {
             .collect()
     }
 
-    /// What every limit misses of its law, as a force (N/m).
+    /// Violation of its law by every limit, as a force (N/m).
     pub fn missed(&self, at: &Iterate, statuses: &Statuses) -> Vec<f64> {
         let normal = |i: usize| match statuses.closed[i] {
             true => -self.stiffness[i] * self.beyond(i, at),

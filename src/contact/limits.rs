@@ -20,7 +20,7 @@ struct PrescribedSlip {
     /// The condition, and the normal one of its point.
     condition: usize,
     normal: usize,
-    /// What bounds its force.
+    /// Bound of its force.
     bound: ForceBound,
     /// The slip in the load step (m), and that along the other tangent of the point if it is prescribed, too.
     slip: f64,

@@ -29,7 +29,7 @@ const MAX_REFINEMENTS: usize = 40;
 pub struct OpenFactor {
     /// The open normal jumps, ascending.
     pub open: Vec<usize>,
-    /// What the closed linearly dependent constraints make of them.
+    /// Equalities between them by the closed linearly dependent constraints.
     pub equalities: ActiveEqualities,
     /// The open normal jumps that no equality eliminates, ascending; empty where there is no equality.
     independent: Vec<usize>,
@@ -192,7 +192,7 @@ fn eliminated(
     (h_nn, diagonal)
 }
 
-/// What an entry of H's diagonal is measured by.
+/// Scale of an entry of H's diagonal.
 pub fn scale_of(entry: f64, diagonal: f64) -> f64 {
     if entry > SINGULAR_DIAGONAL * diagonal {
         entry

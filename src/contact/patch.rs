@@ -15,7 +15,7 @@ use super::open_factor::{factorize, scale_of};
 /// The share of jumps in a patch above which condensing doesn't pay.
 pub const LARGE: f64 = 0.7;
 
-/// What is condensed onto a patch.
+/// Contact problem that is condensed onto a patch.
 #[derive(Debug)]
 pub struct CondensedPatch {
     /// Its jumps, ascending.

@@ -29,7 +29,7 @@ impl Status {
         }
     }
 
-    /// That of a tangential limit that slips by so much.
+    /// Status of a tangential limit that slips by `slip`.
     pub(super) fn of_slip(slip: f64) -> Self {
         match slip {
             ahead if ahead > 0.0 => Self::Forward,
@@ -60,7 +60,7 @@ pub enum FixedStatus {
     Open,
     /// Its jump changes by what it lacks of its bound.
     Closed {
-        /// That (m).
+        /// Missing part of the bound (m).
         lacks: f64,
     },
     /// Its force changes with the bound of its point, and turns with the slip.
@@ -88,7 +88,7 @@ impl FixedStatus {
         matches!(self, Self::Closed { .. })
     }
 
-    /// What it lacks of its bound where it is closed (m).
+    /// Missing part of its bound where it is closed (m).
     pub fn lacks(&self) -> f64 {
         match *self {
             Self::Closed { lacks } => lacks,

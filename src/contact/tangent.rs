@@ -36,9 +36,9 @@ impl ForceBound {
 pub struct TangentialCondition {
     /// Its number among the conditions.
     pub number: usize,
-    /// That of the normal one.
+    /// Number of the normal condition.
     pub normal: usize,
-    /// What bounds its force.
+    /// Bound of its force.
     pub bound: ForceBound,
 }
 
@@ -49,13 +49,13 @@ pub struct TangentialLimit {
     pub limit: usize,
     /// The limit on the normal jump of its point, where there is one that carries force.
     pub normal: Option<usize>,
-    /// What bounds its force.
+    /// Bound of its force.
     pub bound: ForceBound,
-    /// What its point has along the other tangent.
+    /// Slip of its point along the other tangent.
     pub beside: Beside,
 }
 
-/// What a point has along the other one of its tangents.
+/// Slip of a point along the other one of its tangents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Beside {
     /// No slip: the plane has but one tangent, or supports let nothing move along the other.

@@ -26,7 +26,7 @@ pub struct NearField {
     roots: Roots,
 }
 
-/// What the near fields are made of.
+/// Constants of the near fields.
 #[derive(Clone, Debug)]
 enum Roots {
     /// The shear modulus (Pa) and Kolosov's constant.

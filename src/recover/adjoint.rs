@@ -13,7 +13,7 @@
 //! ```
 //!
 //! makes its derivative w·(df − dK u) + ν·dg + η·dv − τ'·dφ for all parameters at once. M = μ e and, in space, Q = κ (I − e eᵀ).
-//! What slips isn't symmetric: M stands in the conditions here, where it stands in the forces there.
+//! Slipping points are not symmetric: M stands in the conditions here, where it stands in the forces there.
 
 mod derivatives;
 mod functional;
@@ -140,7 +140,7 @@ fn derivatives_of(
     (Vec::new(), true)
 }
 
-/// What the report says of a quantity.
+/// Value and derivatives of a quantity for the report.
 fn value(
     quantity: &Quantity,
     functional: &Functional,

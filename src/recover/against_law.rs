@@ -8,7 +8,7 @@ use crate::vector::largest;
 
 /// Points that are named at most; more are counted.
 const MOST: usize = 20;
-/// What is missed of a law, relative to the largest contact force, that is round-off.
+/// Violation of a law that counts as round-off, relative to the largest contact force.
 const ROUND_OFF: f64 = 1e-9;
 
 /// The contact points that miss their law most, or where none does whose status cycles, in words; on the root. Collective.
@@ -55,7 +55,7 @@ fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec
     all.into_iter().map(|(point, _)| point).collect()
 }
 
-/// What every point of a group misses of its laws, as a force (N/m): λ − max(0, λ − r gap), and along the tangents
+/// Violations of the laws by the points of a group, as forces (N/m): λ − max(0, λ − r gap), and along the tangents
 /// λ_t − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
 fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
     let (gaps, forces) = (&solution.gaps, &solution.forces);

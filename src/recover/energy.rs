@@ -6,7 +6,7 @@ use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 
-/// What the next increment needs of the blocks of this rank, by their number, and on the root the balance of this one
+/// Energies of the blocks of this rank for the next increment, by their number, and on the root the balance of this one
 /// after `before`; nothing without friction. Collective.
 pub fn energies(
     fixed: &FixedActiveSet<'_>,

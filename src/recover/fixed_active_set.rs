@@ -35,10 +35,10 @@ use crate::tree::solution::ActiveSetSolution;
 /// How well slip forces follow what presses, at best.
 const FOLLOWED: f64 = 1e-4;
 
-/// What a rank holds of the problem of the fixed active set.
+/// The part of the problem of the fixed active set that a rank holds.
 #[derive(Clone, Copy)]
 pub struct FixedActiveSet<'a> {
-    /// What the run works on.
+    /// The problem and the ranks of the run.
     pub context: Context<'a>,
     /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,
@@ -48,7 +48,7 @@ pub struct FixedActiveSet<'a> {
     pub closing_motions: f64,
     /// Motions that are free whatever the contacts do; springs at pins hold them.
     pub free: Motions<'a>,
-    /// What the root holds besides.
+    /// Parts that the root alone holds.
     pub root: Option<FixedActiveSetRoot<'a>>,
     /// The fronts above all contact, where they are eliminated for every active set anew.
     pub fronts: Option<ActiveSetOfStep<'a>>,
@@ -59,7 +59,7 @@ pub struct FixedActiveSet<'a> {
 /// The fronts of the active set that was found last, and the limits of every contact group of this rank.
 pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a BTreeMap<usize, Limits>);
 
-/// What the root holds besides.
+/// Parts that the root alone holds.
 #[derive(Clone, Copy)]
 pub struct FixedActiveSetRoot<'a> {
     /// Numbering of Γ and the interface problem, where there is one.
@@ -81,7 +81,7 @@ impl FixedActiveSetRoot<'_> {
     }
 }
 
-/// What a load does, on this rank.
+/// Change of the solution by a load, on this rank.
 #[derive(Clone, Debug, Default)]
 pub struct Change {
     /// Change of the unknowns of every block.
@@ -132,7 +132,7 @@ impl<'a> FixedActiveSet<'a> {
         }
     }
 
-    /// What balances at the nodes of block b of this rank; `None` for another rank's.
+    /// Balance of forces at the nodes of block b of this rank; `None` for another rank's.
     pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
         Some(Balance::new(
             self.context.blocks.get(&b)?,
@@ -175,7 +175,7 @@ impl<'a> FixedActiveSet<'a> {
         none.collect()
     }
 
-    /// What the jumps of ties lack, where their conditions have these statuses.
+    /// Missing jumps of ties, where their conditions have these statuses.
     fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
         let of_group = |(&g, tied): (&usize, &Vec<(usize, f64)>)| {
             let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
@@ -327,7 +327,7 @@ fn follow(
     problem.solve(fronts, forces, (tolerance, None), FOLLOWED)
 }
 
-/// What the owner of a cluster tells the root.
+/// Question of the owner of a cluster to the root.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct ClusterQuestion {
     /// Its limits, where it is in contact.
@@ -341,7 +341,7 @@ struct ClusterQuestion {
 type ClusterAnswer = (Reals, Reals);
 
 impl FixedActiveSetRoot<'_> {
-    /// What each cluster is answered.
+    /// Answers to all clusters.
     fn solve(&self, plan: &Plan, gathered: Vec<ClusterQuestion>) -> Vec<ClusterAnswer> {
         let Some((numbering, problem)) = self.interface else {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! What the conditions of a contact group do in the linear problem of a fixed active set, and what its solution changes.
+//! Contact constraints of a group in the linear problem of a fixed active set, and the change of its solution.
 //!
 //! A point that slips in a plane has λ_t = b e. With the slip s, whatever r > 0 and ξ = λ_t + r s, Newton's method has
 //!

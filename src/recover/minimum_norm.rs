@@ -35,14 +35,14 @@ pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolu
     solution.share(&fixed.context, &fixed.step.loads);
 }
 
-/// What settling released modes came to.
+/// Outcome of the minimum-norm solution for released modes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MinimumNorm {
     /// Whether there were more than those that are free whatever the contacts do; on all ranks.
     pub has_released_modes: bool,
     /// Conditions that opened by it; on the root.
     pub opened: usize,
-    /// What a user should know; on the root.
+    /// Warnings to the user; on the root.
     pub warnings: Vec<String>,
 }
 

@@ -11,7 +11,7 @@ use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::projection::{BodyProducts, MotionProducts};
 use crate::vector::axpy;
 
-/// What blocks know of a field on a node that several of them have.
+/// Kind of a field on nodes that several blocks share: the share of it that each of them has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     /// Every one knows all of it, as of a displacement.
@@ -119,7 +119,7 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// What every body does in the motions that it takes part in, by their numbers.
+    /// Displacements of every body in the motions that it takes part in, by their numbers.
     fn shares(&self) -> Vec<Vec<(usize, &'a [f64])>> {
         let mut shares = vec![Vec::new(); self.frames.len()];
         for (number, motion) in self.list.iter().enumerate() {

@@ -70,7 +70,7 @@ pub fn probe(
     }
 }
 
-/// What jumps at probes say of the contacts, where the largest displacement is `size` (m).
+/// Penetration of the contacts by the jumps at probes, where the largest displacement is `size` (m).
 fn sum_up(
     probes: &[Probe<SubdomainNode>],
     jumps: &[f64],

@@ -7,7 +7,7 @@ use crate::fem::springs::spring_forces;
 use crate::recover::BlockSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
-/// What every condition that prescribes displacements exerts on the bodies; on the root it is that
+/// Reactions on the bodies of every condition that prescribes displacements; on the root they are those
 /// of the whole solution. Collective.
 pub fn reactions(
     fixed: &FixedActiveSet<'_>,

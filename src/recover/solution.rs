@@ -21,7 +21,7 @@ use crate::recover::{DiscreteSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::body_analysis::with_closing_motions;
 
-/// What is known once U is.
+/// Solution that follows from U.
 #[derive(Debug)]
 pub struct Solution {
     /// Displacement without the bodies' closing motions, contact forces and closed points.
@@ -34,11 +34,11 @@ pub struct Solution {
     pub certificate: Certificate,
     /// The condition number; on the root, where it can be made.
     pub condition: Option<f64>,
-    /// What became of released modes.
+    /// Outcome of released modes.
     pub minimum_norm: MinimumNorm,
     /// The motions along which friction at its bounds lets bodies slide under the same forces, in words; on the root.
     pub friction_limit: Vec<String>,
-    /// What supports carry; on the root.
+    /// Reactions of supports; on the root.
     pub reactions: Vec<Reaction>,
     /// Stress intensity of crack tips, where there are stresses; on the root.
     pub stress_intensities: Vec<StressIntensity>,

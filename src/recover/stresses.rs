@@ -31,7 +31,7 @@ pub struct Stress {
     pub largest_strain: LargestStrain,
 }
 
-/// What blocks know in parts of a node on Γ in one material.
+/// A nodal quantity on Γ in one material of which each block has a part.
 trait Part: Clone + Serialize + DeserializeOwned {
     /// Adds another part.
     fn add(&mut self, other: &Self);

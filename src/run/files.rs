@@ -70,7 +70,7 @@ impl RunFiles {
         };
         let created = comm.agree(comm.is_root().then(create).transpose())?;
         let (result, report) = created.unzip();
-        // A single rank needs nobody beside it.
+        // A single rank needs no others.
         let shared = result.as_ref().filter(|_| comm.size() > 1);
         let mut places = shared.and_then(ResultFile::places);
         comm.broadcast(&mut places);

@@ -115,7 +115,7 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
     pub report: Option<PathBuf>,
 
-    /// What is printed [default: text]
+    /// Format of the output [default: text]
     #[arg(long, value_name = "FORMAT", value_enum, help_heading = "Output")]
     pub log: Option<LogFormat>,
 

@@ -1,4 +1,4 @@
-//! What sweeps leave: U, why they ended, and how they got there.
+//! The outcome of the sweeps: U, the reason for stopping, and the history of convergence.
 
 use crate::certificate::Certificate;
 use crate::contact::friction::Status;

@@ -17,7 +17,8 @@ the same gates is among the tests.
 *Energy* is ‖σ_h − σ‖ over ‖σ‖ in the norm of C⁻¹, with σ_h evaluated independently of the solver from the
 displacements of the result file. *Backward error* is the certificate's equilibrium (at most 1e-14). All
 figures are relative but for numbers of cells and nodes. *Order* is log₂ of the ratio of the errors on the
-last two meshes. Contact pressure is the force of a node over its tributary area.
+last two meshes. Contact pressure is the force of a node over its tributary area. `scripts/sketches` draws the sketches, of
+built-in scenes from their results.
 
 ";
 
@@ -55,13 +56,27 @@ const PICTURES: [(&str, &str); 8] = [
     ("Ball on a plate", "sphere"),
 ];
 
-/// The picture of a case, where a built-in scene is like it.
-fn picture(title: &str) -> String {
+/// The sketch of a case, drawn by `scripts/sketches`, and the picture of a built-in scene that is like it.
+fn pictures(title: &str) -> String {
+    let sketch = format!(
+        "![Bodies, supports, loads and contact](figures/validation/{}.svg)\n\n",
+        anchor_of(title)
+    );
     let found = PICTURES.iter().find(|(of, _)| *of == title);
-    found.map_or(String::new(), |(_, scene)| {
+    found.map_or(sketch.clone(), |(_, scene)| {
         let folder = format!("../partition/src/example/{scene}");
-        format!("[![The built-in scene {scene}]({folder}/{scene}.png)]({folder}/README.md)\n\n")
+        format!(
+            "{sketch}[![The built-in scene {scene}]({folder}/{scene}.png)]({folder}/README.md)\n\n"
+        )
     })
+}
+
+/// The anchor of a heading.
+fn anchor_of(title: &str) -> String {
+    let kept = (title.chars())
+        .filter(|c| c.is_alphanumeric() || "-_ ".contains(*c))
+        .flat_map(char::to_lowercase);
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
 /// The whole document, of the lines on all cases and their chapters.
@@ -107,10 +122,7 @@ pub fn line(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
         0 => format!("kept with all {} kinds of cells", ran.len()),
         n => format!("{n} not kept"),
     };
-    let anchor = (case.title.chars())
-        .filter(|c| c.is_alphanumeric() || "-_ ".contains(*c))
-        .flat_map(char::to_lowercase);
-    let anchor: String = anchor.map(|c| if c == ' ' { '-' } else { c }).collect();
+    let anchor = anchor_of(case.title);
     format!(
         "| [{}](#{anchor}) | {}, {} | {} | {kept} |\n",
         case.title,
@@ -125,7 +137,7 @@ pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String 
     let mut text = format!(
         "## {}\n\n{}{}\n",
         case.title,
-        picture(case.title),
+        pictures(case.title),
         case.text
     );
     let finest: Vec<&Measured> = ran.iter().filter_map(|meshes| meshes.last()).collect();

@@ -34,7 +34,7 @@ impl ContactLaw {
 #[derive(Default)]
 struct Interaction {
     law: ContactLaw,
-    /// What is taken as hard contact though it isn't, in words.
+    /// Softness that is taken as hard contact, in words.
     soft: Option<String>,
     /// Whether the sides hang together.
     is_tied: bool,
@@ -342,7 +342,7 @@ fn linear(places: &Places, block: &Block) -> Result<f64, InputError> {
     }
 }
 
-/// What of a `*SURFACE BEHAVIOR` is softer than it is taken for, in words.
+/// Softness of a `*SURFACE BEHAVIOR` that is taken as hard, in words.
 fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
     let source = places.source;
     let law = block

@@ -1,4 +1,4 @@
-//! What a deck says beside its mesh, block by block.
+//! Content of a deck beside its mesh, block by block.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of, Source};
 use crate::name;
 
-/// What a deck says beside its mesh.
+/// Content of a deck beside its mesh.
 #[derive(Default)]
 pub(super) struct Content {
     pub(super) title: Option<String>,

@@ -1,4 +1,4 @@
-//! What each keyword of a deck means here: read, not needed for the answer, or refused, with what to do instead.
+//! Meanings of the keywords of a deck: read, not needed for the answer, or refused, with what to do instead.
 
 use std::collections::HashMap;
 
@@ -299,7 +299,7 @@ pub(super) fn spell(blocks: &mut [Block]) {
     }
 }
 
-/// What is to be done with a block.
+/// Treatment of a block.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     Read,

@@ -1,4 +1,4 @@
-//! What acts in a step: supports, forces and temperatures as the steps before have left them and it changes them.
+//! Supports, forces and temperatures of a step, as the steps before have left them and it changes them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use crate::name;
 /// A load on the volume of elements, of magnitude 1.
 #[derive(Clone, PartialEq)]
 pub(super) struct BodyLoad {
-    /// What the deck calls the elements and the kind, in capitals: another load of both replaces it in a later step.
+    /// Names of the elements and of the kind in the deck, in capitals: another load of both replaces it in a later step.
     target: String,
     pub(super) label: String,
     pub(super) elements: Vec<u32>,
@@ -48,7 +48,7 @@ pub(super) struct Loads {
     pub(super) temperatures: Table<u32>,
     /// Nodes that stand for reference points.
     pub(super) references: BTreeMap<u32, Reference>,
-    /// What of it isn't needed, in words.
+    /// Parts of it that aren't needed, in words.
     pub(super) notes: BTreeSet<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What the names and numbers of a block mean: nodes and elements of the whole deck.
+//! Nodes and elements of the whole deck that the names and numbers of a block stand for.
 
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 use crate::name;
 
-/// What acts at the end of a step.
+/// Loads and supports at the end of a step.
 pub(super) struct LoadStep {
     pub(super) name: Option<String>,
     pub(super) place: LinePlace,

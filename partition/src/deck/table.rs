@@ -1,4 +1,4 @@
-//! What acts of one kind, by place: as steps add to it, replace it and let it go on.
+//! Loads of one kind, by place: as steps add to them, replace them and let them go on.
 
 use std::collections::BTreeMap;
 

@@ -40,7 +40,7 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
 /// Reads the mesh of a deck, with the files that it includes.
 ///
 /// # Errors
-/// What is wrong with the deck, with file and line.
+/// The fault of the deck, with file and line.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
     let source = Source::read(path)?;
     let Whole {

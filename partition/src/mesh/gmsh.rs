@@ -35,7 +35,7 @@ const HEAD: u64 = 1 << 20;
 /// Reads a mesh.
 ///
 /// # Errors
-/// What is wrong with the file and where: the line of an ASCII file, section and byte of a binary
+/// The fault of the file and its place: the line of an ASCII file, section and byte of a binary
 /// one, tags of nodes and elements.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
     read_unnamed(path).map_err(|error| error.in_file(path))

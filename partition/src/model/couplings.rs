@@ -199,7 +199,7 @@ impl CouplingOnMesh<'_> {
         Ok(nodes.into_iter().map(share).collect())
     }
 
-    /// What acts in every load step: that of the step, else that of the scene.
+    /// Loads of every load step: those of the step, else those of the scene.
     fn steps(&self) -> Vec<Acting> {
         let own = &self.coupling.loads;
         let acting = |step: Option<&LoadStep>| {

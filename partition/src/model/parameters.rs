@@ -132,7 +132,7 @@ fn stiffnesses(scene: &Scene, bodies: &Bodies) -> Vec<Parameter> {
     materials.filter_map(parameter).collect()
 }
 
-/// What is added to the displacements that conditions prescribe, axis by axis, unless others follow from them.
+/// Additions to the displacements that conditions prescribe, axis by axis, unless others follow from them.
 fn displacements(scene: &Scene, loads: &steps::Loads) -> Vec<Parameter> {
     let loadings = scene.loadings();
     let Some(first) = loadings.first() else {

@@ -16,7 +16,7 @@ use crate::scene::suggest::hint_and_known;
 /// Distance of two nodes at one place, relative to the extent of the mesh.
 const SAME: f64 = 1e-9;
 
-/// What quantities are looked for in.
+/// Scene and mesh in which quantities are looked for.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub scene: &'a Scene,

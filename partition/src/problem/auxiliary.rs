@@ -1,6 +1,6 @@
 //! Auxiliary nodes of contact points, which no cell has and no file lists.
 //!
-//! What a point faces and moves with the load steps is a node that is held where it goes. A compliant point has a node on a
+//! A moving obstacle of a point is a node that is held where it goes by load steps. A compliant point has a node on a
 //! spring: with its displacement s it is a rigid one, n·(⟦u⟧ − s) ≤ g, and its force is that of the spring, λ = k n·s. They
 //! follow the other nodes of the subdomain of the point's first entry.
 
@@ -23,7 +23,7 @@ const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// An auxiliary node of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Auxiliary {
-    /// What it faces, which moves.
+    /// The moving obstacle that it faces.
     Moving,
     /// The end of its spring, last among its entries.
     Sprung,

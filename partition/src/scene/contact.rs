@@ -75,7 +75,7 @@ pub struct Contact {
     pub friction: Option<Friction>,
     /// The stiffness of what lies between the sides; `None` where they don't overlap.
     pub stiffness: Option<ContactStiffness>,
-    /// What is tied, where it is a tie; `None` of sides that may part.
+    /// Reach of a tie; `None` of sides that may part.
     pub tie: Option<TieReach>,
 }
 

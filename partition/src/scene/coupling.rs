@@ -21,7 +21,7 @@ pub struct Coupling {
     pub point: ConstantVector,
     /// How they follow.
     pub kind: CouplingKind,
-    /// What acts on the point, and what is prescribed there.
+    /// Loads and prescribed motions of the point.
     pub loads: CouplingLoads,
 }
 
@@ -36,7 +36,7 @@ pub enum CouplingKind {
     Distributing,
 }
 
-/// What acts on a reference point, and what is prescribed there; in a step in place of what the scene says.
+/// Loads and prescribed motions of a reference point; in a step in place of those of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,

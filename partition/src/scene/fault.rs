@@ -304,7 +304,7 @@ impl Scene {
     }
 }
 
-/// What a scene, or a step, prescribes on groups of its mesh.
+/// Conditions and loads of a scene, or a step, on groups of its mesh.
 struct OnGroups<'a> {
     displacement: &'a [Displacement],
     traction: &'a [Traction],

@@ -1,4 +1,4 @@
-//! What moves with the load steps: obstacles, the values of equations, and the reference points of couplings.
+//! Motions by load steps: of obstacles, the values of equations, and the reference points of couplings.
 
 use std::collections::BTreeMap;
 

@@ -12,11 +12,11 @@ use crate::quantity::QuantityKind;
 pub struct Quantity {
     /// Name.
     pub name: String,
-    /// What it is.
+    /// Kind of the quantity.
     pub of: Target,
 }
 
-/// What a quantity is one of.
+/// Kinds of quantities.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// The displacement of a node.
@@ -33,7 +33,7 @@ pub enum Target {
         /// The component.
         component: StressComponent,
     },
-    /// What all conditions on a group exert on the bodies.
+    /// Reaction on the bodies of all conditions on a group.
     Reaction {
         /// Name of the group.
         on: String,

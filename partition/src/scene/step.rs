@@ -40,7 +40,7 @@ pub struct LoadStep {
     /// Values in place of those of the equations of these names (m).
     #[serde(deserialize_with = "values")]
     pub equation: BTreeMap<String, f64>,
-    /// What acts on the reference points of the couplings of these names, and is prescribed there, where it is given here in
+    /// Loads and prescribed motions of the reference points of the couplings of these names, where they are given here in
     /// place of what the scene says.
     pub coupling: BTreeMap<String, CouplingLoads>,
     /// In place of all tractions of the scene.

@@ -15,7 +15,7 @@ pub struct Tie {
     pub sides: [Names; 2],
     /// The discretization of the sides; `None` to let their nodes decide.
     pub pairing: Option<Pairing>,
-    /// What is tied of them.
+    /// Nodes of the sides that are tied.
     pub reach: TieReach,
 }
 

@@ -59,7 +59,7 @@ def scale_bar(axes, width, units):
     length = round_below(0.25 * width)
     (shown,), unit = in_units(np.array([length]), units.length)
     bar = AnchoredSizeBar(
-        axes.transData, length, f"{shown:g} {unit}", loc="upper left", pad=0.2, sep=4,
+        axes.transData, length, f"{shown:g} {unit}", loc="upper left", pad=1.0, sep=4,
         frameon=False, size_vertical=0.006 * width, bbox_to_anchor=(0, 0),
         bbox_transform=axes.transAxes,
     )

@@ -1,6 +1,16 @@
 """Contacts as the side sees them whose nodes have the conditions."""
 
 
+# Kinds of conditions whose forces are no pressures.
+WITHOUT_PRESSURE = ("equation", "coupling")
+
+
+def pressing(result):
+    """The contacts and ties that are there, by their names, without equations and couplings."""
+    kinds = {one["name"]: one.get("kind") for one in result.report["contacts"]}
+    return {name: table for name, table in result.contacts_there.items() if kinds.get(name) not in WITHOUT_PRESSURE}
+
+
 def carried(tables):
     """The tables of contacts, by their names, each with the nodes that have its conditions as those of side a."""
     return {name: turned(table) for name, table in tables.items()}

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from contact_dd.drawing.carried import WITHOUT_PRESSURE
 from contact_dd.drawing.html import escape, section, short
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import si
@@ -104,8 +105,9 @@ def place(result, node, units):
 
 def pressures(report, result, units):
     """What contacts carry."""
-    found = [contact for contact in report["contacts"] if contact["largest_pressure"]]
-    if not report["contacts"]:
+    contacts = [contact for contact in report["contacts"] if contact.get("kind") not in WITHOUT_PRESSURE]
+    found = [contact for contact in contacts if contact["largest_pressure"]]
+    if not contacts:
         return ""
     if not found:
         return "All contacts are open."
@@ -122,7 +124,7 @@ def pressures(report, result, units):
     )
     if report.get("friction"):
         words += f", of which {report['friction']['slipping']} slip"
-    idle = [contact["name"] for contact in report["contacts"] if contact["closed"] == 0]
+    idle = [contact["name"] for contact in contacts if contact["closed"] == 0]
     if idle:
         words += f"; {', '.join(idle[:3])}{' and others' * (len(idle) > 3)} {'is' if len(idle) == 1 else 'are'} open"
     return words + "."

@@ -9,7 +9,9 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
+from contact_dd.drawing import symbols
 from contact_dd.drawing.canvas import deformation_of, lines, scale_bar
+from contact_dd.drawing.conditions import conditions_of
 from contact_dd.drawing.contact import pressed_sides
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import in_units
@@ -32,8 +34,9 @@ AROUND = 1.8
 # The longest ordinate of a pressure over the size of a panel.
 LONGEST = 0.09
 
-# Around panels (inches).
-LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.25, 0.2, 0.85, 0.75, 0.5
+# Around panels (inches); below them the scale, and a line for every few entries of the legend.
+LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.35, 0.3, 0.85, 0.5, 0.62
+IN_LINE, OF_LINE = 3, 0.19
 
 # What presses is hatched on white: a coating of red would turn the stress under it brown.
 BAND = {"fc": (1, 1, 1, 0.5), "ec": RED, "hatch": "//////", "lw": 0}
@@ -57,8 +60,12 @@ def overview(result, scale):
     (shown,), unit = in_units(np.array([highest]), result.units.stress)
     values = values * (shown / highest)
 
-    figure, all_axes, of_colours = layout(panels)
     has_moved = np.abs(moved - result.points).max() > 0.004 * result.size
+    largest = max((side.pressure.max() for side in sides), default=0.0)
+    conditions = conditions_of(result.result, np.unique(result.outline[result.outline >= 0]))
+    seen, normals = seen_in(conditions, moved, panels), result.normals()
+    key = entries(sides, largest, has_moved, result.units.stress) + symbols.entries(seen, 2)
+    figure, all_axes, of_colours = layout(panels, BELOW + OF_LINE * -(-len(key) // IN_LINE))
     for axes, (low, high) in zip(all_axes, panels):
         colours = axes.tripcolor(mesh, values, shading="gouraud", cmap="viridis", vmin=0, vmax=shown)
         if has_moved:
@@ -67,10 +74,11 @@ def overview(result, scale):
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         scale_bar(axes, high[0] - low[0], result.units)
+        paper = symbols.Paper(moved, normals, np.eye(2), max(high - low))
+        symbols.draw(axes, paper, seen_in(conditions, moved, [(low, high)]))
     if part:
         frame = Rectangle(part[0], *(part[1] - part[0]), fill=False, ec="k", lw=1.0)
         all_axes[0].add_patch(frame)
-    largest = max((side.pressure.max() for side in sides), default=0.0)
     if largest > 0:
         pressures(all_axes[-1], sides, longest / largest)
         stick_and_slip(all_axes[-1], sides)
@@ -82,8 +90,21 @@ def overview(result, scale):
     step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
     title = f"{what}, {deformation_of(result)} × {scale:g}{step}"
     figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
-    key(figure, sides, largest, has_moved, result.units.stress)
+    figure.legend(handles=key, loc="lower center", ncol=IN_LINE, frameon=False, fontsize=9, columnspacing=1.4)
     return figure
+
+
+def within(places, panel):
+    """Which places are within a panel."""
+    low, high = panel
+    return np.all((places >= low) & (places <= high), axis=1)
+
+
+def seen_in(conditions, moved, panels):
+    """Those of the supports and loads that are within one of the panels."""
+    nodes = [within(moved, panel) for panel in panels]
+    bodies = [within(conditions.centres()[:, :2], panel) for panel in panels]
+    return conditions.seen(np.any(nodes, axis=0), np.any(bodies, axis=0))
 
 
 def whole(result, moved, sides):
@@ -139,17 +160,17 @@ def bound(mesh, values, panel):
     return max(2 * found if np.ptp(value) < 1e-3 * found else found, 1e-300)
 
 
-def layout(panels):
+def layout(panels, below):
     """Axes side by side, as wide as the shapes of the panels ask for, and those of the colours."""
     ratios = [(high - low)[0] / (high - low)[1] for low, high in panels]
     height = float(np.clip((6.4 if len(panels) == 1 else 7.6) / sum(ratios), 2.4, 5.2))
     widths = [height * ratio for ratio in ratios]
     total = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
-    tall = BELOW + height + ABOVE
+    tall = below + height + ABOVE
     figure = plt.figure(figsize=(total, tall))
 
     def place(x, width):
-        return figure.add_axes((x / total, BELOW / tall, width / total, height / tall))
+        return figure.add_axes((x / total, below / tall, width / total, height / tall))
 
     axes, x = [], LEFT
     for k, width in enumerate(widths):
@@ -228,18 +249,19 @@ def band(*corners):
     return Path(closed.reshape(-1, 2), np.tile(codes, len(quads)))
 
 
-def key(figure, sides, largest, has_moved, unit):
-    entries = []
+def entries(sides, largest, has_moved, unit):
+    """What the legend says of pressures, friction and deformation."""
+    found = []
     if has_moved:
-        entries.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))
+        found.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))
     if largest > 0:
         (shown,), unit = in_units(np.array([largest]), unit)
-        entries.append(Patch(**{**BAND, "lw": 1}, label=f"contact pressure, at most {shown:.3g} {unit}"))
+        found.append(Patch(**{**BAND, "lw": 1}, label=f"contact pressure, at most {shown:.3g} {unit}"))
     for status, (color, word) in FRICTION.items():
         if any(side.has_friction and (side.status == status).any() for side in sides):
             halo = [withStroke(linewidth=4.2, foreground="k")]
-            entries.append(Line2D([], [], color=color, lw=2.8, path_effects=halo, label=word))
+            found.append(Line2D([], [], color=color, lw=2.8, path_effects=halo, label=word))
     if any((side.pressure <= 0).any() for side in sides):
         halo = [withStroke(linewidth=2.6, foreground="k")]
-        entries.append(Line2D([], [], color="w", lw=1.2, path_effects=halo, label="open contact"))
-    figure.legend(handles=entries, loc="lower center", ncol=3, frameon=False, fontsize=9, columnspacing=1.4)
+        found.append(Line2D([], [], color="w", lw=1.2, path_effects=halo, label="open contact"))
+    return found

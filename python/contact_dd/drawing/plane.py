@@ -3,6 +3,7 @@
 import numpy as np
 
 from contact_dd.drawing import shapes
+from contact_dd.drawing.carried import pressing
 from contact_dd.drawing.units import units_of
 from contact_dd.errors import InputError
 
@@ -15,13 +16,13 @@ class Plane:
             raise InputError(f"{result.path}: there are no stresses; expected a run without --no-stress")
         if not result.cells:
             raise InputError(f"{result.path}: there are no cells to draw")
-        self.units = units_of(result)
+        self.result, self.units = result, units_of(result)
         self.step, self.steps = result.step, result.steps
         self.points, self.tags = result.points[:, :2], result.nodes
         self.displacement, self.stress = result.displacement[:, :2], result.stress
         self.since, self.deformation = result.since, result.deformation[:, :2]
         self.cells, self.cell_stress = result.cells, result.cell_data["Stress"]
-        self.contacts = result.contacts_there
+        self.contacts = pressing(result)
         for kind, _, _ in self.cells:
             if kind not in shapes.CELLS:
                 raise InputError(f"{result.path}: VTK cell type {kind} can't be drawn; plane cells can")
@@ -83,6 +84,18 @@ class Plane:
     def at_points(self, values):
         """What nodes have, at the points of the triangles, by the cells' shape functions."""
         return np.einsum("pk,pk...->p...", self.weights, values[self.nodes])
+
+    def normals(self):
+        """The mean of the outward normals of the facets around each node on the surface, 0 elsewhere."""
+        normals, count = np.zeros((len(self.points), 2)), np.zeros(len(self.points))
+        along = self.points[self.outline[:, 2]] - self.points[self.outline[:, 0]]
+        # Cells lie to the left of their facets.
+        outward = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1)[:, None]
+        one = np.searchsorted(self.tags, self.tags)
+        for nodes in self.outline.T:
+            np.add.at(normals, one[nodes[nodes >= 0]], outward[nodes >= 0])
+            np.add.at(count, one[nodes[nodes >= 0]], 1)
+        return normals / np.maximum(count, 1)[:, None]
 
     def deformed(self, scale):
         return self.points + scale * self.deformation

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from contact_dd.drawing.carried import carried
+from contact_dd.drawing.carried import carried, pressing
 from contact_dd.drawing.sides import sides_of
 from contact_dd.drawing.space import Solid
 
@@ -30,7 +30,7 @@ def rim_pressures(result):
     """By the names of contacts the largest pressure at the rim of side a; 0 where it has none."""
     if result.is_in_space:
         solid = Solid(result)
-        tables = {name: table for name, table in carried(result.contacts_there).items() if len(table)}
+        tables = {name: table for name, table in carried(pressing(result)).items() if len(table)}
         return {name: at_nodes(table, rim_of(result, solid.side(table)[0])) for name, table in tables.items()}
     found = {}
     for name, side in sides_of(result).items():

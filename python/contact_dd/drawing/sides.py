@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact_dd.drawing import shapes
-from contact_dd.drawing.carried import carried
+from contact_dd.drawing.carried import carried, pressing
 
 DIRECTION = (
     "from left to right, steep sides upwards, closed ones counter-clockwise from the right"
@@ -26,7 +26,7 @@ class Side:
 
 def sides_of(result):
     """The sides of all contacts that have conditions; none in space, where they are surfaces."""
-    tables = {name: table for name, table in carried(result.contacts_there).items() if len(table)}
+    tables = {name: table for name, table in carried(pressing(result)).items() if len(table)}
     if not tables or result.is_in_space:
         return {}
     edges = boundary_edges(result, np.concatenate([table["node_a"] for table in tables.values()]))

@@ -4,25 +4,16 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.tri import Triangulation
 
+from contact_dd.drawing import symbols
 from contact_dd.drawing.canvas import deformation_of, round_below
-from contact_dd.drawing.carried import carried
+from contact_dd.drawing.carried import carried, pressing
 from contact_dd.drawing.chart import chart_of
+from contact_dd.drawing.conditions import conditions_of
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.raster import Camera, Raster, edges_of
+from contact_dd.drawing.surface import mean_normals, on_surface, surface, unit_normal
 from contact_dd.drawing.units import in_units, units_of
 from contact_dd.errors import InputError
-
-# Faces of VTK's cells around their corners, with the nodes on edges where there are some.
-TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-HEXAHEDRON = [(0, 3, 2, 1), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7), (4, 5, 6, 7)]
-EDGES = {
-    4: {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9},
-    8: {
-        (0, 1): 8, (1, 2): 9, (2, 3): 10, (0, 3): 11, (4, 5): 12, (5, 6): 13, (6, 7): 14, (4, 7): 15,
-        (0, 4): 16, (1, 5): 17, (2, 6): 18, (3, 7): 19,
-    },
-}
-CELLS = {10: (4, False), 12: (8, False), 24: (4, True), 25: (8, True), 29: (8, True)}
 
 # The largest displacement over the size, as `auto` draws it.
 VISIBLE = 0.03
@@ -32,6 +23,8 @@ VIEW = {"elev": 20, "azim": -125}
 SAME_WAY = 0.7
 # More faces are drawn without the edges of their cells.
 MANY_FACES = 4000
+# How far behind the surface, over the size, a node counts as seen.
+SEEN = 0.01
 # Of a picture (pixels).
 WIDTH = 640
 # Strengths of lines: edges of bodies and outlines, of cells, of bodies behind pressures.
@@ -42,29 +35,6 @@ OF_MAPS = (5.2, 3.8, 6.4)
 MOST_MAPS = 4
 # Width of a part that presses, relative to what is shown of it.
 AROUND = 1.3
-
-
-def outline(kind, face):
-    """The nodes around a face, those on its edges among them."""
-    corners, is_quadratic = CELLS[kind]
-    nodes = []
-    for a, b in zip(face, face[1:] + face[:1]):
-        nodes.append(a)
-        if is_quadratic:
-            nodes.append(EDGES[corners][min(a, b), max(a, b)])
-    return nodes
-
-
-def surface(cells, tags):
-    """The nodes around every face of one cell only."""
-    faces, keys = [], []
-    for kind, _, nodes in cells:
-        for face in TETRAHEDRON if CELLS[kind][0] == 4 else HEXAHEDRON:
-            faces.extend(nodes[:, outline(kind, face)])
-            corners = np.sort(tags[nodes[:, face]], axis=1)
-            keys.append(corners[:, :3])
-    _, first, count = np.unique(np.concatenate(keys), axis=0, return_index=True, return_counts=True)
-    return [faces[k] for k in first[count == 1]]
 
 
 class Solid:
@@ -78,11 +48,13 @@ class Solid:
         self.scale = scale or (round_below(VISIBLE * size / largest) if largest > 0 else 1.0)
         self.points = result.points + self.scale * result.deformation
         self.pressed = {
-            name: table for name, table in carried(result.contacts).items() if table["pressure"].max(initial=0) > 0
+            name: table for name, table in carried(pressing(result)).items() if table["pressure"].max(initial=0) > 0
         }
         # Colours are interpolated between the nodes of the surface, and lines are those of the undeformed bodies.
         self.shown = self.points[np.unique(np.concatenate(self.faces))]
         self.edges, self.inner = edges_of(self.faces, result.points)
+        self.normals = mean_normals(result, self.faces)
+        self.conditions = conditions_of(result, on_surface(result, self.faces))
 
     def has_stress(self):
         return len(self.result.stress) > 0
@@ -113,7 +85,25 @@ class Solid:
         raster.line(self.edges, OF_BODIES, thickness=2)
         raster.outline(OF_BODIES)
         self.show(axes, raster, colours, label)
+        self.supports_and_loads(axes, raster)
         return highest
+
+    def supports_and_loads(self, axes, raster):
+        """Their symbols on what is seen of the surface, and a legend of them."""
+        pixel = raster.pixels(raster.points)
+        is_before = raster.points[:, 2] + SEEN * max(raster.size) >= raster.depth.reshape(-1)[pixel]
+        seen = self.conditions.seen(is_before)
+        paper = symbols.Paper(raster.points[:, :2], self.normals, raster.frame[:2], max(raster.size[:2]))
+        drawn = symbols.draw(axes, paper, seen)
+        # Reference points may be far from the bodies.
+        loaded = paper.places[seen.nodes]
+        around = 0.06 * raster.size[1]
+        for limits, change, k in ((axes.get_xlim(), axes.set_xlim, 0), (axes.get_ylim(), axes.set_ylim, 1)):
+            least, most = loaded[:, k].min(initial=np.inf), loaded[:, k].max(initial=-np.inf)
+            change(min(limits[0], least - around), max(limits[1], most + around))
+        if key := symbols.entries(drawn, 3):
+            axes.legend(handles=key, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, frameon=False, fontsize=8,
+                        columnspacing=1.2)
 
     def title(self, axes, words):
         axes.set_title(f"{words}\n{deformation_of(self.result)} × {self.scale:g}", fontsize=9)
@@ -194,17 +184,6 @@ class Solid:
         return drawn
 
 
-def unit_normal(polygon):
-    normal = area(polygon)
-    return normal / np.linalg.norm(normal)
-
-
-def area(polygon):
-    """The area of a polygon times its normal."""
-    arms = polygon[1:] - polygon[0]
-    return np.cross(arms[:-1], arms[1:]).sum(axis=0) / 2
-
-
 def bar_and_triad(axes, raster, units):
     """A bar of a round length, and where x, y and z point to, below a picture."""
     left, right, below, above = raster.extent
@@ -222,7 +201,7 @@ def bar_and_triad(axes, raster, units):
             axes.annotate("", end, corner, arrowprops={"arrowstyle": "-|>", "lw": 1, "shrinkA": 0, "shrinkB": 0})
         axes.annotate(name, end + 0.035 * min(width, height) * direction, fontsize=8, ha="center", va="center")
     axes.set_xlim(left - 0.01 * width, right + 0.01 * width)
-    axes.set_ylim(below - 0.2 * height, above)
+    axes.set_ylim(below - 0.2 * height, above + 0.06 * height)
 
 
 def panels(result):

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from contact_dd.drawing import shapes
-from contact_dd.drawing.carried import carried
+from contact_dd.drawing.carried import carried, pressing
 from contact_dd.drawing.finite import check_finite
 from contact_dd.drawing.html import escape
 from contact_dd.drawing.space import VIEW, Solid
@@ -140,7 +140,7 @@ def step(result, kept, size, has_sides, numbers):
     if has_sides:
         tags, points = np.unique(result.nodes, return_inverse=True)
         pressure = np.zeros(len(tags))
-        for table in carried(result.contacts_there).values():
+        for table in carried(pressing(result)).values():
             np.maximum.at(pressure, np.searchsorted(tags, table["node_a"]), table["pressure"])
         values["contact pressure"] = (pressure[points[kept]], units.stress)
     steps = result.report.get("steps")

@@ -148,7 +148,7 @@ impl Sensitivity<'_> {
         }
     }
 
-    /// What a mean stress itself has of a stiffness, with displacements as they are; on the root.
+    /// Explicit derivative of a mean stress with respect to a stiffness, at fixed displacements; on the root.
     fn beside(&self, parameter: &Parameter) -> f64 {
         let catalog = self.solved.fixed.context.catalog;
         let quantity = &catalog.quantities[self.functional.number];

@@ -61,8 +61,8 @@ impl SlippingPoints {
         Self(all)
     }
 
-    /// What the transposed problem wants of these points where `left` is what is left at conditions, b_s − B_s w of what slips:
-    /// a jump at normal conditions (m), and forces at tangents, over their stiffness (m).
+    /// Right-hand side of the transposed problem at these points, where `left` is the residual of conditions, b_s − B_s w of what
+    /// slips: a jump at normal conditions (m), and forces at tangents, over their stiffness (m).
     pub fn wanted(&self, left: &[f64]) -> Vec<f64> {
         let mut wanted = vec![0.0; left.len()];
         for point in &self.0 {

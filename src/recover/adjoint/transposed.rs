@@ -1,6 +1,6 @@
 //! The transposed problem of a quantity, by the factors at hand.
 //!
-//! What is symmetric in it is solved as a change of the solution is. What slips makes conditions z at its points depend on the slips
+//! Its symmetric part is solved as a change of the solution is. At slipping points the conditions z depend on the slips
 //! of w: z = G w(z), which generalized conjugate residuals solve (Eisenstat, Elman and Schultz, SIAM J. Numer. Anal. 20, 1983). Their
 //! directions serve all quantities, as (I − G) is the same for all.
 
@@ -49,7 +49,7 @@ pub struct TransposedProblem<'a> {
 pub struct Transposed {
     /// w, ν and the forces at what slips, and what is left of the jumps that conditions ask for.
     pub discrete: DiscreteSolution,
-    /// What is left of a on the nodes of every block of this rank: a − K w − Bᵀν.
+    /// Residuals on the nodes of every block of this rank: a − K w − Bᵀν.
     pub residuals: BTreeMap<usize, Vec<f64>>,
     /// a, r and b, and what the conditions of slipping points ask for.
     loads: Loads,
@@ -195,7 +195,7 @@ impl<'a> TransposedProblem<'a> {
         }
     }
 
-    /// What is left of `loads` on the nodes of every block of this rank.
+    /// Residuals of `loads` on the nodes of every block of this rank.
     fn left(&self, loads: &Loads, state: &DiscreteSolution) -> BTreeMap<usize, Vec<f64>> {
         let context = &self.solved.fixed.context;
         let of_block = |(&b, of_block): (&usize, &BlockSolution)| {
@@ -261,7 +261,7 @@ impl<'a> TransposedProblem<'a> {
         state.share(&fixed.context, loads);
     }
 
-    /// What is wanted of the conditions of what slips.
+    /// Right-hand sides at the conditions of slipping points.
     pub(super) fn wanted(&self, state: &DiscreteSolution) -> OnConditions {
         let groups = state.groups.iter();
         let groups = groups.map(|(&g, of_group)| {
@@ -291,7 +291,7 @@ impl<'a> TransposedProblem<'a> {
     }
 }
 
-/// What is left of loads where nothing moves: f − Bᵀλ.
+/// Residual of loads without displacement: f − Bᵀλ.
 fn without_displacement(block: &Block, loads: &BlockLoads, pushes: &[(u32, [f64; 3])]) -> Vec<f64> {
     let mut left = loads.nodal_forces(block);
     for (node, push) in pushes {

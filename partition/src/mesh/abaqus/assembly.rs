@@ -38,7 +38,7 @@ const TOLD: usize = 20;
 /// A deck whose parts are instances of one whole.
 pub(crate) struct Whole {
     pub(crate) deck: Deck,
-    /// What to warn of.
+    /// Warnings.
     pub(crate) warnings: Vec<String>,
     /// Keywords that say nothing of the mesh.
     pub(crate) left_out: Vec<String>,
@@ -48,7 +48,7 @@ impl Whole {
     /// Reads the mesh of a deck.
     ///
     /// # Errors
-    /// What is wrong with it, with file and line.
+    /// The fault of the deck, with file and line.
     pub(crate) fn read(source: &Source) -> Result<Self, InputError> {
         Assembly::read(source)
     }
@@ -58,7 +58,7 @@ impl Whole {
 #[derive(Default)]
 struct Assembly<'a> {
     whole: Deck,
-    /// What belongs to no part and no instance.
+    /// Nodes and elements that belong to no part and no instance.
     own: Scope<'a>,
     parts: BTreeMap<String, Deck>,
     /// The part or instance whose blocks are read.

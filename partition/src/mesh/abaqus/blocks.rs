@@ -67,7 +67,7 @@ impl Block {
 pub(crate) struct Source {
     files: Vec<(PathBuf, String)>,
     pub(crate) blocks: Vec<Block>,
-    /// What isn't read of the text itself.
+    /// Notes on parts of the text itself that aren't read.
     pub(crate) notes: Notes,
     inclusions: usize,
     /// Bytes that were read before.
@@ -105,7 +105,7 @@ impl Source {
         InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)
     }
 
-    /// What stands between the commas of a line of data, but nothing behind the last one.
+    /// Items between the commas of a line of data, but none behind the last one.
     pub(crate) fn items(&self, data: &Data) -> impl Iterator<Item = &str> {
         let text = self.files[data.place.file].1[data.text.clone()].trim();
         let text = text.strip_suffix(',').unwrap_or(text);

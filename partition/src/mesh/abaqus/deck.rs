@@ -41,7 +41,7 @@ pub(crate) struct Deck {
     pub(crate) surfaces: Sets<Face>,
     /// Surfaces that are told by their nodes.
     pub(crate) node_surfaces: Sets<u32>,
-    /// What is added to the tags of an instance, by its name in capitals, and under an empty one to those of
+    /// Offsets of the tags of an instance, by its name in capitals, and under an empty one of those of
     /// the assembly itself.
     pub(crate) instances: BTreeMap<String, Offsets>,
     /// The highest tags.
@@ -254,7 +254,7 @@ impl Deck {
         self.left_out.contains(&tag)
     }
 
-    /// What is added to tags that belong to no instance: instances have tags of their own.
+    /// Offsets of tags that belong to no instance: instances have tags of their own.
     fn own_offsets(&mut self) -> Offsets {
         if self.instances.is_empty() {
             return Offsets::default();
@@ -308,7 +308,7 @@ impl Deck {
 /// Checks the name of a set.
 ///
 /// # Errors
-/// What it mustn't hold, with the line.
+/// A name that isn't allowed, with the line.
 pub(crate) fn check_name(source: &Source, at: LinePlace, name: &str) -> Result<(), InputError> {
     name::check_text(name)
         .map_err(|reason| source.error(at, format!("'{}' {reason}", name::shown(name))))

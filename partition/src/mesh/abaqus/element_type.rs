@@ -25,7 +25,7 @@ const LINES: [(&[&str], ElementKind); 2] = [(&["T2D2", "T3D2"], Line2), (&["T2D3
 /// Types in [`TYPES`] that cells are of.
 const OF_CELLS: usize = 8;
 
-/// What may follow the name of a type: reduced integration, incompatible modes, the modified and the hybrid
+/// Letters that may follow the name of a type: reduced integration, incompatible modes, the modified and the hybrid
 /// formulation, temperature.
 const FORMULATIONS: [char; 6] = ['R', 'I', 'M', 'H', 'S', 'T'];
 

@@ -167,7 +167,7 @@ struct Grouping<'a> {
     cell: &'a [Option<u32>],
     boundary: Boundary,
     facets: Facets,
-    /// What of the sets and surfaces is left out.
+    /// Notes on sets and surfaces that are left out.
     notes: Notes,
 }
 
@@ -327,7 +327,7 @@ fn shown<T: Copy + Ord>(sets: &Sets<T>) -> impl Iterator<Item = &Set<T>> {
     sets.iter().filter(|set| !set.internal)
 }
 
-/// What the sets of a deck are called, by their names in capitals: without the instance, where no other has
+/// Plain names of the sets of a deck, by their names in capitals: without the instance, where no other has
 /// that name.
 fn plain_names(deck: &Deck) -> BTreeMap<String, String> {
     let sets = (shown(&deck.element_sets).map(|set| &set.name))

@@ -92,7 +92,7 @@ impl Deck {
         Ok(())
     }
 
-    /// What is there of the numbers from the first to the last.
+    /// Members among the numbers from the first to the last.
     fn generated(
         &self,
         source: &Source,

@@ -1,4 +1,4 @@
-//! What a deck holds and isn't read, although other programs would read it or pass over it: to warn of.
+//! Parts of a deck that aren't read, although other programs would read them or pass over them: to warn of.
 
 use std::collections::BTreeMap;
 

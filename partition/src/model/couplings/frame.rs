@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::{difference, length};
 
-/// What the nodes of a frame prescribe or bear in a load step.
+/// Prescribed displacements and forces of the nodes of a frame in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model) struct FrameLoads {
     /// Displacements along axes: node of the frame, axis, value (m).
@@ -98,7 +98,7 @@ impl Frame {
     }
 }
 
-/// What acts on a reference point in a load step, and what is prescribed there.
+/// Loads and prescribed motions of a reference point in a load step.
 pub(super) struct Acting {
     /// Force (N).
     pub force: [f64; 3],
@@ -152,7 +152,7 @@ impl Frame {
         self.rotations().filter_map(of_rotation).collect()
     }
 
-    /// What acts on its corners, and holds them.
+    /// Forces and prescribed displacements of its corners.
     pub fn loads(&self, acting: &Acting) -> FrameLoads {
         let mut loads = FrameLoads::default();
         loads.forces[0] = acting.force;

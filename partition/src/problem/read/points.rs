@@ -76,7 +76,7 @@ fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
     rows.map(of_row).collect()
 }
 
-/// What every point faces moves by in all load steps; none where it never moves.
+/// Motion of the obstacle of every point in all load steps; none where it never moves.
 fn read_motion(contents: &Contents) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
     let rows = contents.count('R');
     if !contents.has("/contact/motion") {

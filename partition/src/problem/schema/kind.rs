@@ -1,4 +1,4 @@
-//! What the values of a dataset are.
+//! Kinds of values of a dataset.
 
 /// Content of a dataset, and the law that each of its values keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
