@@ -26,6 +26,7 @@ use crate::condense::substitute::Factors;
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, Loads};
 use crate::step::StepProblem;
+use crate::step::working_set::ClosestApproaches;
 
 pub use group_solution::GroupSolution;
 
@@ -96,9 +97,8 @@ impl DiscreteSolution {
         slips
     }
 
-    /// Notes on the root which contact points are closed, and the least gap of each (m), beside what was noted before.
-    /// Collective.
-    pub fn least_gaps(&self, context: &Context<'_>, (closed, gaps): &mut (Vec<bool>, Vec<f64>)) {
+    /// Adds this solution to the closest approaches of the contact points; on the root. Collective.
+    pub fn add_approaches(&self, context: &Context<'_>, to: &mut ClosestApproaches) {
         let plan = context.plan;
         context.comm.gather(
             &plan.group_owners(),
@@ -111,8 +111,8 @@ impl DiscreteSolution {
             |g, of_points| {
                 let places = &plan.tree.nodes[plan.groups[g].node].points;
                 for (&j, (is_closed, gap)) in places.iter().zip(of_points) {
-                    closed[j as usize] |= is_closed;
-                    gaps[j as usize] = gaps[j as usize].min(gap);
+                    to.closed[j as usize] |= is_closed;
+                    to.gaps[j as usize] = to.gaps[j as usize].min(gap);
                 }
             },
         );

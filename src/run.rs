@@ -5,10 +5,10 @@
 mod files;
 mod increment;
 mod operators;
+mod prediction;
 mod restart;
 mod stage;
 mod step_totals;
-mod working_set;
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -23,8 +23,7 @@ use self::files::{RunFiles, absent_rows};
 use self::increment::{Increment, Increments};
 use self::operators::Operators;
 use self::restart::{Finished, finished_steps, keep};
-use self::stage::{Handover, Stages, Successor, reason_to_hand_over};
-use self::working_set::{WorkingSet, gaps_left, open_rows};
+use self::stage::{Handover, Stages, reason_to_hand_over};
 use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, phase};
 use crate::context::{Context, LoadPoint};
@@ -42,7 +41,8 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
-use crate::step::transfer::{StageEnd, StageTransfer};
+use crate::step::transfer::StageEnd;
+use crate::step::working_set::{WorkingSet, pays};
 
 /// End of a run that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,10 +140,9 @@ impl Stages<'_> {
         progress: &mut Progress,
     ) -> Result<(), Failure> {
         let whole = (self.file.catalog()).stage(steps, &progress.finished.transfer.since);
-        if progress.finished.working_set.is_none()
-            && working_set::pays(&whole.catalog, self.settings)
-        {
-            progress.finished.working_set = self.predict_working_set(&whole, progress)?;
+        if progress.finished.working_set.is_none() && pays(&whole.catalog, self.settings) {
+            progress.finished.working_set =
+                self.predict_working_set(&whole, &mut progress.seconds)?;
         }
         let mut handover = None;
         loop {
@@ -163,84 +162,6 @@ impl Stages<'_> {
                 Err(failure) => return Err(failure),
             }
         }
-    }
-
-    /// The working set of a stage with friction: the points that close without it, and those nearest to that; `None` where
-    /// that isn't solved, or where they are most. Collective.
-    ///
-    /// # Errors
-    /// A signal stopped the run.
-    fn predict_working_set(
-        &self,
-        whole: &Stage<'_>,
-        progress: &mut Progress,
-    ) -> Result<Option<WorkingSet>, Failure> {
-        self.log.phase("predicting which contacts close", None);
-        match self.close_without_friction(&whole.frictionless(), progress) {
-            Ok(found) => {
-                let set = found.and_then(|(closed, gaps)| {
-                    WorkingSet::predicted(&whole.catalog, &closed, &gaps)
-                });
-                Ok(set)
-            }
-            Err(failure) if failure.kind == FailureKind::IllPosed => Ok(None),
-            Err(failure) => Err(failure),
-        }
-    }
-
-    /// Which points of a stage without friction are closed after some of its load steps, and the least gap of each (m); `None`
-    /// where a step isn't solved. Collective.
-    ///
-    /// # Errors
-    /// As a whole run.
-    fn close_without_friction(
-        &self,
-        stage: &Stage<'_>,
-        progress: &mut Progress,
-    ) -> Result<Option<(Vec<bool>, Vec<f64>)>, Failure> {
-        let settings = &Settings {
-            no_stress: true,
-            ..self.settings.clone()
-        };
-        let choices = self.choices(&stage.catalog, None)?;
-        let parts = self.parts(stage, &choices, false)?;
-        let context = self.context(stage, &parts);
-        let analyses = analyse_steps(&context, stage.steps.clone(), &[])?;
-        let mut state = StepState::default();
-        let loads = state.loads(&context, LoadPoint::end_of(stage.steps.start), &analyses[0]);
-        let operators = &Operators::new(
-            context,
-            self.log,
-            &loads,
-            &analyses[0],
-            &mut progress.seconds,
-        )?;
-        let mut close = (
-            vec![false; stage.points.len()],
-            vec![f64::INFINITY; stage.points.len()],
-        );
-        let mut earlier: &[Vec<f64>] = &[];
-        for (k, analysis) in stage.steps.clone().zip(&analyses) {
-            stop_if_asked(&context, settings, progress.finished.count)?;
-            let increments = Increments {
-                context,
-                settings,
-                log: self.log,
-                operators,
-                is_relieved: false,
-                linear_solves: &progress.linear_solves,
-            };
-            let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds)?;
-            if !increments.is_converged(&solved) {
-                return Ok(None);
-            }
-            solved.solution.discrete.least_gaps(&context, &mut close);
-            earlier = &analysis.closing_motions;
-            state = solved.into_state(settings.method);
-        }
-        self.comm.broadcast(&mut close);
-        progress.linear_solves.take();
-        Ok(Some(close))
     }
 
     /// Solves the load steps of a `stage` that are left, from where another solver handed over, if one did; returns where
@@ -298,10 +219,7 @@ impl Stages<'_> {
             absent: &absent.unwrap_or_default(),
             robust: robust.as_ref(),
         };
-        let took_over = match handover.as_ref().map(|handover| &handover.to) {
-            Some(Successor::Solver { why, .. }) => Some(why.clone()),
-            _ => None,
-        };
+        let took_over = handover.as_ref().and_then(Handover::why);
         let start = progress.finished.start(&context, handover, stage);
         let handover = self.solve_steps(&steps, (start, took_over), progress)?;
         progress.smallest_pivot = progress.smallest_pivot.min(operators.smallest_pivot());
@@ -342,45 +260,30 @@ impl Stages<'_> {
             };
             let (analysis, earlier) = (&analyses[k - first], &analyses[..k - first]);
             let earlier = (earlier.last()).map_or(steps.before, |last| &last.closing_motions);
-            let waits = steps.has_points_outside(&progress.finished);
+            let set = progress.finished.working_set.as_ref();
+            let waits = set.is_some_and(|set| !set.outside.is_empty());
             let start = (robust.is_some() || waits).then(|| state.clone());
             let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds);
             let why = reason_to_hand_over(increments.ended(&solved));
             if let Some((start, why)) = start.as_ref().zip(why) {
                 progress.finished.count = k;
-                let handover = match robust {
+                return Ok(Some(match robust {
                     Some(robust) => Handover::to_solver(context.plan, robust, start.clone(), &why),
-                    None => {
-                        let all = WorkingSet::all(self.file.catalog());
-                        steps.with_set(all, k, start, &mut progress.finished)
-                    }
-                };
-                return Ok(Some(handover));
+                    None => steps.with_set(WorkingSet::all(steps.whole), (k, start), progress),
+                }));
             }
             let mut solved = solved.map_err(|failure| {
                 state::finished(context.in_step(failure, k), &context, settings, k)
             })?;
             let mut rows = steps.absent.to_vec();
-            if let (Some(set), Some(start)) = (&progress.finished.working_set, &start) {
-                let catalog = self.file.catalog();
-                let jumps = set.jumps_outside(&context, catalog, &solved.solution.displacement);
-                let gaps = gaps_left(catalog, &jumps);
-                let overlap: Vec<usize> = (0..gaps.len()).filter(|&j| gaps[j] < 0.0).collect();
-                if !overlap.is_empty() {
-                    progress.finished.count = k;
-                    let grown = set.grown(catalog, &overlap, &gaps);
-                    return Ok(Some(steps.with_set(
-                        grown,
-                        k,
-                        start,
-                        &mut progress.finished,
-                    )));
+            if let (Some(start), Some(set)) = (&start, &mut progress.finished.working_set) {
+                match set.after_step(&context, steps.whole, &solved.solution.displacement) {
+                    Ok(open) => rows.extend(open),
+                    Err(larger) => {
+                        progress.finished.count = k;
+                        return Ok(Some(steps.with_set(larger, (k, start), progress)));
+                    }
                 }
-                rows.extend(open_rows(catalog, &jumps));
-                progress.finished.working_set = Some(WorkingSet {
-                    outside: jumps,
-                    ..set.clone()
-                });
             }
             if let Some((outcome, why)) = solved.outcome.as_mut().zip(took_over.take()) {
                 outcome.take_over(why);
@@ -427,38 +330,16 @@ struct StageSteps<'a> {
 }
 
 impl StageSteps<'_> {
-    /// Whether contact points are left out until they close.
-    fn has_points_outside(&self, finished: &Finished) -> bool {
-        let set = finished.working_set.as_ref();
-        set.is_some_and(|set| !set.outside.is_empty())
-    }
-
-    /// The handover of load step k, before which the state is `start`, to another working `set`, which takes the place of the
-    /// one before. Collective.
+    /// The handover of load step k, before which the state is `start`, to another working set. Collective.
     fn with_set(
         &self,
         set: WorkingSet,
-        k: usize,
-        start: &StepState,
-        finished: &mut Finished,
+        from: (usize, &StepState),
+        progress: &mut Progress,
     ) -> Handover {
-        let outside = (finished.working_set.take()).map(|before| before.outside);
-        let transfer = (k > self.stage.steps.start).then(|| {
-            let outside = outside.unwrap_or_default();
-            StageTransfer::between_sets(
-                &self.context,
-                self.stage,
-                &start.slips,
-                &outside,
-                self.whole,
-            )
-        });
-        finished.working_set = Some(set);
-        Handover::new(
-            self.context.plan,
-            start.clone(),
-            Successor::Points(transfer),
-        )
+        let before = progress.finished.working_set.replace(set);
+        let outside = before.map(|before| before.outside).unwrap_or_default();
+        Handover::to_points(&self.context, (self.stage, self.whole), from, &outside)
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod halving;
 pub mod state;
 pub mod transfer;
+pub mod working_set;
 
 use std::collections::BTreeMap;
 

@@ -27,10 +27,10 @@ use crate::error::Failure;
 use crate::output::vtkhdf::{ResultFile, kept as file};
 use crate::report::totals::StepTotals;
 use crate::run::stage::{Handover, Successor};
-use crate::run::working_set::WorkingSet;
 use crate::settings::Settings;
 use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;
+use crate::step::working_set::WorkingSet;
 
 /// State that a run keeps beside the results of its finished load steps.
 #[derive(Default, Serialize, Deserialize)]

@@ -89,8 +89,29 @@ impl Handover {
         Self::new(plan, state, Successor::Solver { choice, why })
     }
 
+    /// The handover of load step k of a `stage` to other contact points, from the state before it, when those that were left
+    /// out had these jumps. Collective.
+    pub fn to_points(
+        context: &Context<'_>,
+        (stage, whole): (&Stage<'_>, &Catalog),
+        (k, start): (usize, &StepState),
+        outside: &BTreeMap<usize, [f64; 3]>,
+    ) -> Self {
+        let transfer = (k > stage.steps.start)
+            .then(|| StageTransfer::between_sets(context, stage, &start.slips, outside, whole));
+        Self::new(context.plan, start.clone(), Successor::Points(transfer))
+    }
+
+    /// The solver that took over and the reason, where one did.
+    pub fn why(&self) -> Option<String> {
+        match &self.to {
+            Successor::Solver { why, .. } => Some(why.clone()),
+            Successor::Points(_) => None,
+        }
+    }
+
     /// The handover from the `state` before a load step.
-    pub fn new(plan: &Plan, state: StepState, to: Successor) -> Self {
+    fn new(plan: &Plan, state: StepState, to: Successor) -> Self {
         Self {
             // Of other unknowns the state on Γ says nothing.
             state: StepState {

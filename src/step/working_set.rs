@@ -33,6 +33,25 @@ pub struct WorkingSet {
     pub outside: BTreeMap<usize, [f64; 3]>,
 }
 
+/// The closest approaches of contact points in several load steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ClosestApproaches {
+    /// Whether a point was closed.
+    pub closed: Vec<bool>,
+    /// The least gap of every point (m).
+    pub gaps: Vec<f64>,
+}
+
+impl ClosestApproaches {
+    /// Those of so many points before the first load step.
+    pub fn new(count: usize) -> Self {
+        Self {
+            closed: vec![false; count],
+            gaps: vec![f64::INFINITY; count],
+        }
+    }
+}
+
 /// Whether a problem may have a working set: friction at many points, most of which are apart at first.
 pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
     let wishes = settings.wishes();
@@ -67,9 +86,10 @@ fn can_wait(point: &ContactPoint<SubdomainNode>) -> bool {
 }
 
 impl WorkingSet {
-    /// The set with which to begin: of all points that `closed` in some load step without friction, and as many more of the
-    /// least of the `gaps` that were left; `None` where that are most. Both by places in the catalog.
-    pub fn predicted(catalog: &Catalog, closed: &[bool], gaps: &[f64]) -> Option<Self> {
+    /// The set with which to begin: of all points that closed in some load step without friction, and as many more of the
+    /// least gaps; `None` where those are most.
+    pub fn predicted(catalog: &Catalog, approaches: &ClosestApproaches) -> Option<Self> {
+        let ClosestApproaches { closed, gaps } = approaches;
         let always = |j: &usize| closed[*j] || !can_wait(&catalog.points[*j]);
         let set = Self::default().with(catalog, (0..closed.len()).filter(always), gaps);
         set.is_worth(catalog).then_some(set)
@@ -91,7 +111,7 @@ impl WorkingSet {
     /// The set after points `join`, and as many more of the least of all `gaps`, which may close as these do; all of them
     /// where it isn't worth to leave out the rest.
     #[must_use]
-    pub fn grown(&self, catalog: &Catalog, join: &[usize], gaps: &[f64]) -> Self {
+    fn grown(&self, catalog: &Catalog, join: &[usize], gaps: &[f64]) -> Self {
         let grown = self.with(catalog, join.iter().copied(), gaps);
         match grown.is_worth(catalog) {
             true => grown,
@@ -121,8 +141,30 @@ impl WorkingSet {
         }
     }
 
+    /// The rows of the points outside under the displacement at the end of a load step, or the larger set with which it is to
+    /// be solved again, as some overlap. Collective.
+    ///
+    /// # Errors
+    /// The larger set.
+    pub fn after_step(
+        &mut self,
+        context: &Context<'_>,
+        whole: &Catalog,
+        displacement: &BTreeMap<usize, Vec<f64>>,
+    ) -> Result<Vec<ContactRow>, Self> {
+        let jumps = self.jumps_outside(context, whole, displacement);
+        let gaps = gaps_left(whole, &jumps);
+        let overlap: Vec<usize> = (0..gaps.len()).filter(|&j| gaps[j] < 0.0).collect();
+        if !overlap.is_empty() {
+            return Err(self.grown(whole, &overlap, &gaps));
+        }
+        let rows = open_rows(whole, &jumps);
+        self.outside = jumps;
+        Ok(rows)
+    }
+
     /// The jumps ⟦u⟧ of the points outside under a displacement (m), on all ranks. Collective.
-    pub fn jumps_outside(
+    fn jumps_outside(
         &self,
         context: &Context<'_>,
         whole: &Catalog,
@@ -137,7 +179,7 @@ impl WorkingSet {
 }
 
 /// The gaps that jumps leave at points outside of a working set, of other points none (m).
-pub fn gaps_left(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<f64> {
+fn gaps_left(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<f64> {
     let mut gaps = vec![f64::INFINITY; catalog.points.len()];
     for (&j, jump) in jumps {
         let point = &catalog.points[j];
@@ -147,7 +189,7 @@ pub fn gaps_left(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<f6
 }
 
 /// The rows of the points outside of a working set, open, with these jumps.
-pub fn open_rows(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<ContactRow> {
+fn open_rows(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<ContactRow> {
     let row = |(&j, jump): (&usize, &[f64; 3])| {
         let point = &catalog.points[j];
         let mut slip = [0.0; 3];
