@@ -291,13 +291,7 @@ impl Stages<'_> {
             log.phase("writing", None);
             progress.finish_step(&context, &solved, analysis, &rows)?;
             if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
-                let end = StageEnd {
-                    displacement: &solved.solution.displacement,
-                    slips: &solved.slips.jumps,
-                    closing_motions: &analysis.closing_motions,
-                };
-                let (transfer, whole) = (&progress.finished.transfer, self.file.catalog());
-                progress.finished.transfer = transfer.after(&context, stage, end, whole, next);
+                steps.pass_on((&solved, analysis), next, progress);
             }
             state = solved.into_state(settings.method);
             if k + 1 < context.catalog.steps.len() {
@@ -330,6 +324,23 @@ struct StageSteps<'a> {
 }
 
 impl StageSteps<'_> {
+    /// Passes what the last load step of the stage leaves on to the `next` stage. Collective.
+    fn pass_on(
+        &self,
+        (solved, analysis): (&Increment, &RigidBodyAnalysis),
+        next: &Range<usize>,
+        progress: &mut Progress,
+    ) {
+        let end = StageEnd {
+            displacement: &solved.solution.displacement,
+            slips: &solved.slips.jumps,
+            closing_motions: &analysis.closing_motions,
+        };
+        let transfer = &progress.finished.transfer;
+        progress.finished.transfer =
+            transfer.after(&self.context, self.stage, end, self.whole, next);
+    }
+
     /// The handover of load step k, before which the state is `start`, to another working set. Collective.
     fn with_set(
         &self,

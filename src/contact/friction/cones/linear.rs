@@ -152,7 +152,7 @@ impl FrictionCones<'_> {
 
     /// The equations of all unknown jumps and forces.
     fn system(&self, equations: &[Option<Equation>]) -> System {
-        let (contact, m) = (&self.contact, self.contact.c.len());
+        let m = self.contact.c.len();
         let unknowns: Vec<usize> = (0..equations.len())
             .filter(|&i| equations[i].is_some())
             .collect();
@@ -162,6 +162,43 @@ impl FrictionCones<'_> {
         }
         let n = unknowns.len();
         let mut a = Mat::<f64>::zeros(n, n);
+        self.fill(&mut a, equations, &unknowns, &column);
+        let scale: Vec<f64> = (unknowns.iter())
+            .map(|&i| match i < m {
+                true => self.laws.stiffness[i].sqrt(),
+                false => 1.0 / self.laws.stiffness[i].sqrt(),
+            })
+            .collect();
+        let of_equation: Vec<f64> = equations.iter().flatten().map(|e| e.scale).collect();
+        for (l, of_unknown) in scale.iter().enumerate() {
+            for (k, of_equation) in of_equation.iter().enumerate() {
+                a[(k, l)] /= of_equation * of_unknown;
+            }
+        }
+        // The forces of jumps fall with these.
+        let springs = (equations
+            .iter()
+            .zip(0..)
+            .filter_map(|(e, i)| Some((e.as_ref()?, i))))
+        .map(|(e, i): (_, usize)| if i < m { -e.spring } else { e.spring })
+        .collect();
+        System {
+            a,
+            unknowns,
+            scale,
+            springs,
+        }
+    }
+
+    /// Adds the equations to the matrix, whose columns are those of the `unknowns`; `column` is the place of each among them.
+    fn fill(
+        &self,
+        a: &mut Mat<f64>,
+        equations: &[Option<Equation>],
+        unknowns: &[usize],
+        column: &[Option<usize>],
+    ) {
+        let (contact, m) = (&self.contact, self.contact.c.len());
         // Column by column, as they lie in memory: the largest part of all that is written here.
         let jumps: Vec<(usize, usize, f64)> = (equations.iter().flatten().enumerate())
             .flat_map(|(k, equation)| equation.forces.iter().map(move |&(i, c)| (k, i, c)))
@@ -198,31 +235,6 @@ impl FrictionCones<'_> {
                     }
                 }
             }
-        }
-        let scale: Vec<f64> = (unknowns.iter())
-            .map(|&i| match i < m {
-                true => self.laws.stiffness[i].sqrt(),
-                false => 1.0 / self.laws.stiffness[i].sqrt(),
-            })
-            .collect();
-        let of_equation: Vec<f64> = equations.iter().flatten().map(|e| e.scale).collect();
-        for (l, of_unknown) in scale.iter().enumerate() {
-            for (k, of_equation) in of_equation.iter().enumerate() {
-                a[(k, l)] /= of_equation * of_unknown;
-            }
-        }
-        // The forces of jumps fall with these.
-        let springs = (equations
-            .iter()
-            .zip(0..)
-            .filter_map(|(e, i)| Some((e.as_ref()?, i))))
-        .map(|(e, i): (_, usize)| if i < m { -e.spring } else { e.spring })
-        .collect();
-        System {
-            a,
-            unknowns,
-            scale,
-            springs,
         }
     }
 }
