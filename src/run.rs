@@ -3,27 +3,30 @@
 //! for each stage: read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
 mod files;
+mod handover;
 mod increment;
 mod operators;
 mod prediction;
 mod restart;
 mod stage;
+mod stage_steps;
 mod step_totals;
 
 use std::cell::Cell;
 use std::ops::Range;
 use std::time::Instant;
 
-use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
 use faer::Par;
 
 use self::files::{RunFiles, absent_rows};
+use self::handover::{Handover, reason_to_hand_over};
 use self::increment::{Increment, Increments};
 use self::operators::Operators;
 use self::restart::{Finished, finished_steps, keep};
-use self::stage::{Handover, Stages, reason_to_hand_over};
+use self::stage::Stages;
+use self::stage_steps::StageSteps;
 use crate::comm::ranks::RankSeconds;
 use crate::comm::{Comm, phase};
 use crate::context::{Context, LoadPoint};
@@ -32,7 +35,6 @@ use crate::fem::contact_state::ContactRow;
 use crate::output::lock::OutputLock;
 use crate::output::report::Status;
 use crate::plan::Plan;
-use crate::plan::choice::Choice;
 use crate::read::check_problem;
 use crate::report::collect;
 use crate::report::log::RunLog;
@@ -41,8 +43,7 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::settings::Settings;
 use crate::settings::command_line::CommandLine;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
-use crate::step::transfer::StageEnd;
-use crate::step::working_set::{WorkingSet, pays};
+use crate::step::working_set::{Outside, WorkingSet, pays};
 
 /// End of a run that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -266,10 +267,11 @@ impl Stages<'_> {
             let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds);
             let why = reason_to_hand_over(increments.ended(&solved));
             if let Some((start, why)) = start.as_ref().zip(why) {
-                progress.finished.count = k;
+                let finished = &mut progress.finished;
+                finished.count = k;
                 return Ok(Some(match robust {
                     Some(robust) => Handover::to_solver(context.plan, robust, start.clone(), &why),
-                    None => steps.with_set(WorkingSet::all(steps.whole), (k, start), progress),
+                    None => steps.with_set(WorkingSet::all(steps.whole), (k, start), finished),
                 }));
             }
             let mut solved = solved.map_err(|failure| {
@@ -278,10 +280,11 @@ impl Stages<'_> {
             let mut rows = steps.absent.to_vec();
             if let (Some(start), Some(set)) = (&start, &mut progress.finished.working_set) {
                 match set.after_step(&context, steps.whole, &solved.solution.displacement) {
-                    Ok(open) => rows.extend(open),
-                    Err(larger) => {
-                        progress.finished.count = k;
-                        return Ok(Some(steps.with_set(larger, (k, start), progress)));
+                    Outside::Open(open) => rows.extend(open),
+                    Outside::Overlaps(larger) => {
+                        let finished = &mut progress.finished;
+                        finished.count = k;
+                        return Ok(Some(steps.with_set(larger, (k, start), finished)));
                     }
                 }
             }
@@ -291,7 +294,7 @@ impl Stages<'_> {
             log.phase("writing", None);
             progress.finish_step(&context, &solved, analysis, &rows)?;
             if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
-                steps.pass_on((&solved, analysis), next, progress);
+                steps.pass_on((&solved, analysis), next, &mut progress.finished);
             }
             state = solved.into_state(settings.method);
             if k + 1 < context.catalog.steps.len() {
@@ -301,56 +304,6 @@ impl Stages<'_> {
         }
         progress.finished.count = stage.steps.end;
         Ok(None)
-    }
-}
-
-/// The data that the load steps of a stage share.
-struct StageSteps<'a> {
-    stage: &'a Stage<'a>,
-    /// The whole problem.
-    whole: &'a Catalog,
-    /// The load steps of the next stage.
-    next: Option<&'a Range<usize>>,
-    context: Context<'a>,
-    /// The rigid motions at the end of every load step.
-    analyses: &'a [RigidBodyAnalysis],
-    /// The closing motions before the first one.
-    before: &'a [Vec<f64>],
-    operators: &'a Operators,
-    /// The rows of contact points that are absent; on the root.
-    absent: &'a [ContactRow],
-    /// The solver that takes over where the steps don't converge.
-    robust: Option<&'a Choice>,
-}
-
-impl StageSteps<'_> {
-    /// Passes what the last load step of the stage leaves on to the `next` stage. Collective.
-    fn pass_on(
-        &self,
-        (solved, analysis): (&Increment, &RigidBodyAnalysis),
-        next: &Range<usize>,
-        progress: &mut Progress,
-    ) {
-        let end = StageEnd {
-            displacement: &solved.solution.displacement,
-            slips: &solved.slips.jumps,
-            closing_motions: &analysis.closing_motions,
-        };
-        let transfer = &progress.finished.transfer;
-        progress.finished.transfer =
-            transfer.after(&self.context, self.stage, end, self.whole, next);
-    }
-
-    /// The handover of load step k, before which the state is `start`, to another working set. Collective.
-    fn with_set(
-        &self,
-        set: WorkingSet,
-        from: (usize, &StepState),
-        progress: &mut Progress,
-    ) -> Handover {
-        let before = progress.finished.working_set.replace(set);
-        let outside = before.map(|before| before.outside).unwrap_or_default();
-        Handover::to_points(&self.context, (self.stage, self.whole), from, &outside)
     }
 }
 

@@ -62,8 +62,9 @@ impl GroupSolution {
     }
 
     /// Lets points slip that stick under more than their bound, and stick that slip under a force that drives them. One that
-    /// slips without a force, which it lost with its pressure, gets the one that it has by the law.
-    pub fn stick_or_slip(&mut self, group: &ContactGroup) {
+    /// slips without a force, which it lost with its pressure, gets the one that it has by the law. Returns whether any changed.
+    pub fn stick_or_slip(&mut self, group: &ContactGroup) -> bool {
+        let mut changed = false;
         for point in group.point_laws() {
             let here = self.point(&point);
             let (size, way) = (here.size(), here.way());
@@ -78,10 +79,12 @@ impl GroupSolution {
                     false if size == 0.0 && here.bound * way > 0.0 => {
                         self.forces[j] = here.bound / way * slip;
                     }
-                    _ => {}
+                    _ => continue,
                 }
+                changed = true;
             }
         }
+        changed
     }
 }
 

@@ -24,6 +24,9 @@ const LIMIT: f64 = 4e-15;
 const LIMIT_OF_LOAD: f64 = 1e-11;
 /// Violation of the law of friction above which a solution is refined.
 const LIMIT_OF_FRICTION: f64 = 1e-14;
+/// Violation of the law of friction above which what sticks and slips is corrected: well above round-off, well below
+/// what isn't accepted as an answer.
+const ASTRAY: f64 = 1e-12;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
 /// Accuracy of a correction where it is iterated for.
@@ -78,17 +81,17 @@ pub fn correct_statuses(
 ) -> Certificate {
     let (mut corrected, mut after) = (None, certificate);
     for _ in 0..MAX_CORRECTIONS {
-        let is_rough = decide(fixed, after.friction > AGAINST_FRICTION);
+        let is_astray = decide(fixed, after.friction > ASTRAY);
         let is_short = decide(fixed, worst(&after) > GOOD);
         let next: &mut DiscreteSolution = corrected.get_or_insert_with(|| solution.clone());
-        let mut changed = is_rough;
+        let mut changed = decide(fixed, after.friction > AGAINST_FRICTION);
         for (g, of_group) in &mut next.groups {
             let group = &fixed.context.groups[g];
             if is_short {
                 changed |= of_group.open_or_close(group);
             }
-            if is_rough {
-                of_group.stick_or_slip(group);
+            if is_astray {
+                changed |= of_group.stick_or_slip(group);
             }
         }
         let changed = fixed.context.comm.collect(&changed).contains(&true);
@@ -108,7 +111,7 @@ pub fn correct_statuses(
         next.share(&fixed.context, &fixed.step.loads);
         after = check(fixed, next);
     }
-    let is_right = after.friction <= AGAINST_FRICTION;
+    let is_right = after.friction <= certificate.friction.clamp(ASTRAY, AGAINST_FRICTION);
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
     match corrected {
         Some(corrected) if decide(fixed, is_right && as_good) => {

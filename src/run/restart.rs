@@ -26,7 +26,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::output::vtkhdf::{ResultFile, kept as file};
 use crate::report::totals::StepTotals;
-use crate::run::stage::{Handover, Successor};
+use crate::run::handover::{Handover, Successor};
 use crate::settings::Settings;
 use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;

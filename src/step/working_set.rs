@@ -52,6 +52,14 @@ impl ClosestApproaches {
     }
 }
 
+/// What the points outside of a working set are at the end of a load step.
+pub enum Outside {
+    /// All open, with these rows.
+    Open(Vec<ContactRow>),
+    /// Some overlap: the larger set with which the step is to be solved again.
+    Overlaps(WorkingSet),
+}
+
 /// Whether a problem may have a working set: friction at many points, most of which are apart at first.
 pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
     let wishes = settings.wishes();
@@ -141,26 +149,23 @@ impl WorkingSet {
         }
     }
 
-    /// The rows of the points outside under the displacement at the end of a load step, or the larger set with which it is to
-    /// be solved again, as some overlap. Collective.
-    ///
-    /// # Errors
-    /// The larger set.
+    /// Checks the points outside under the displacement at the end of a load step, and keeps their jumps where all are open.
+    /// Collective.
     pub fn after_step(
         &mut self,
         context: &Context<'_>,
         whole: &Catalog,
         displacement: &BTreeMap<usize, Vec<f64>>,
-    ) -> Result<Vec<ContactRow>, Self> {
+    ) -> Outside {
         let jumps = self.jumps_outside(context, whole, displacement);
         let gaps = gaps_left(whole, &jumps);
         let overlap: Vec<usize> = (0..gaps.len()).filter(|&j| gaps[j] < 0.0).collect();
         if !overlap.is_empty() {
-            return Err(self.grown(whole, &overlap, &gaps));
+            return Outside::Overlaps(self.grown(whole, &overlap, &gaps));
         }
         let rows = open_rows(whole, &jumps);
         self.outside = jumps;
-        Ok(rows)
+        Outside::Open(rows)
     }
 
     /// The jumps ⟦u⟧ of the points outside under a displacement (m), on all ranks. Collective.

@@ -42,7 +42,7 @@ enum Rest {
 
 impl Found {
     fn converged(&self) -> bool {
-        self.missed <= FORCE_TOLERANCE
+        self.missed <= newton::ACCEPTABLE
     }
 }
 

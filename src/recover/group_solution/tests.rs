@@ -60,7 +60,12 @@ fn a_point_sticks_or_slips_as_its_law_says() {
         (none, [-0.3, -0.4], false, [1.2, 1.6], false),
     ] {
         let mut point = pressed(forces, gaps, sticks);
-        point.stick_or_slip(&group(COULOMB));
+        let changed = point.stick_or_slip(&group(COULOMB));
+        assert_eq!(
+            changed,
+            sticks != sticks_then || forces == none,
+            "{forces:?}"
+        );
         assert_eq!(point.closed, [true, sticks_then, sticks_then], "{forces:?}");
         for (force, after) in point.forces[1..].iter().zip(after) {
             assert!((force - after).abs() < 1e-15, "{forces:?} {force}");

@@ -18,6 +18,9 @@ const STEPS: usize = 40;
 const DAMPED_STEPS: usize = 15;
 /// What may be missed of the law, relative to what acts.
 const LAW: f64 = 1e-9;
+/// What may be missed, relative to the terms of forces, where steps make it no less: round-off of points whose own stiffness is
+/// far above that of others. The certificate has the last word.
+pub(super) const ACCEPTABLE: f64 = 1e-10;
 /// What is missed that can't be less.
 const ROUND_OFF: f64 = 1e-15;
 /// Force, relative to its terms, up to which a limit keeps its status.
@@ -214,7 +217,7 @@ impl FrictionCones<'_> {
             most,
             patience: most,
             tolerance: FORCE_TOLERANCE,
-            acceptable: FORCE_TOLERANCE,
+            acceptable: ACCEPTABLE,
             round_off: ROUND_OFF,
             law: LAW,
         };

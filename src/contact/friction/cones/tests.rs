@@ -30,6 +30,26 @@ fn equilibrium_and_every_law_hold_at_random_points_in_space() {
 }
 
 #[test]
+fn slips_that_turn_about_are_found_by_newton_s_method_however_stiff_points_are() {
+    for seed in 0..60 {
+        let count = 6 + seed % 7;
+        let mut points = Points::in_space(count, 29 * seed, COULOMB);
+        let (h, m) = (points.h.clone(), points.c.len());
+        // Neighbours hold each other a thousand times as stiffly as the body does.
+        let of = |i: usize| (i - count) / 2;
+        let coupled = |i: usize, j: usize| match i.min(j) >= count && (i ^ j) & 1 == 0 {
+            true if i == j => 2e4,
+            true if of(i).abs_diff(of(j)) == 1 => -1e4,
+            _ => 0.0,
+        };
+        points.set_stiffness(m, |i, j| h[(i, j)] + coupled(i, j));
+        points.c[..count].iter_mut().for_each(|c| *c = 5.0 + *c);
+        let (solution, _) = points.solved(&format!("seed {seed}"), 1e-8);
+        assert!(!solution.fell_back, "seed {seed}: {} steps", solution.steps);
+    }
+}
+
+#[test]
 fn the_interior_path_ends_at_solutions() {
     let mut ended = [0; 3];
     for seed in 0..150 {

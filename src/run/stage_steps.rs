@@ -1,0 +1,70 @@
+//! The load steps of a stage, and what the last of them passes on.
+
+use std::ops::Range;
+
+use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::problem::stage::Stage;
+
+use crate::context::Context;
+use crate::fem::contact_state::ContactRow;
+use crate::plan::choice::Choice;
+use crate::rigid::body_analysis::RigidBodyAnalysis;
+use crate::run::handover::Handover;
+use crate::run::increment::Increment;
+use crate::run::operators::Operators;
+use crate::run::restart::Finished;
+use crate::step::state::StepState;
+use crate::step::transfer::StageEnd;
+use crate::step::working_set::WorkingSet;
+
+/// The data that the load steps of a stage share.
+pub struct StageSteps<'a> {
+    /// The stage.
+    pub stage: &'a Stage<'a>,
+    /// The whole problem.
+    pub whole: &'a Catalog,
+    /// The load steps of the next stage.
+    pub next: Option<&'a Range<usize>>,
+    /// The context of its phases.
+    pub context: Context<'a>,
+    /// The rigid motions at the end of every load step.
+    pub analyses: &'a [RigidBodyAnalysis],
+    /// The closing motions before the first one.
+    pub before: &'a [Vec<f64>],
+    /// S_i, S_kl and S_0.
+    pub operators: &'a Operators,
+    /// The rows of contact points that are absent; on the root.
+    pub absent: &'a [ContactRow],
+    /// The solver that takes over where the steps don't converge.
+    pub robust: Option<&'a Choice>,
+}
+
+impl StageSteps<'_> {
+    /// Passes what the last load step of the stage leaves on to the `next` stage. Collective.
+    pub fn pass_on(
+        &self,
+        (solved, analysis): (&Increment, &RigidBodyAnalysis),
+        next: &Range<usize>,
+        finished: &mut Finished,
+    ) {
+        let end = StageEnd {
+            displacement: &solved.solution.displacement,
+            slips: &solved.slips.jumps,
+            closing_motions: &analysis.closing_motions,
+        };
+        let transfer = &finished.transfer;
+        finished.transfer = transfer.after(&self.context, self.stage, end, self.whole, next);
+    }
+
+    /// The handover of load step k, before which the state is `start`, to another working set. Collective.
+    pub fn with_set(
+        &self,
+        set: WorkingSet,
+        from: (usize, &StepState),
+        finished: &mut Finished,
+    ) -> Handover {
+        let before = finished.working_set.replace(set);
+        let outside = before.map(|before| before.outside).unwrap_or_default();
+        Handover::to_points(&self.context, (self.stage, self.whole), from, &outside)
+    }
+}
