@@ -141,7 +141,7 @@ impl Model {
         )?;
         let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
         let count = contacts.len() + equations.len();
-        equations.extend(cyclic::cyclic(scene, &bodies, count)?);
+        equations.extend(cyclic::cyclic(scene, &bodies, &contacts, count)?);
         let count = contacts.len() + equations.len();
         let couplings = couplings::couplings(scene, (&bodies.mesh, &topology), count)?;
         let names = equations.iter().map(|of| &of.name[..]);

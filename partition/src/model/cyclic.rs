@@ -25,6 +25,7 @@ const SAME: f64 = 1e-6;
 pub(super) fn cyclic(
     scene: &Scene,
     bodies: &Bodies,
+    contacts: &[Contact],
     first: usize,
 ) -> Result<Vec<Contact>, InputError> {
     let mesh = &bodies.mesh;
@@ -34,6 +35,7 @@ pub(super) fn cyclic(
         let [a, b] = [0, 1].map(|side| groups::boundary_nodes(mesh, &cyclic.sides[side], &what));
         let sides = [a?, b?];
         let (turn, pairs) = partners((bodies, cyclic), &sides, &what)?;
+        check_contacts(contacts, (mesh, &turn), &pairs, &what)?;
         let mut points = Vec::new();
         for [a, b] in pairs {
             for axis in turn.held_axes(a == b, mesh.dim) {
@@ -54,6 +56,36 @@ pub(super) fn cyclic(
         });
     }
     Ok(all)
+}
+
+/// Refuses contacts whose normals at the ends of a sector aren't each other turned: those of a curved side are of the facets
+/// within the sector alone, without those of its neighbour, so that sectors would interlock.
+fn check_contacts(
+    contacts: &[Contact],
+    (mesh, turn): (&Mesh, &Turn),
+    pairs: &[[u32; 2]],
+    what: &str,
+) -> Result<(), InputError> {
+    for contact in contacts {
+        let unilateral = contact.points.iter().filter(|point| !point.law.is_tied());
+        let normals: HashMap<i64, [f64; 3]> = unilateral
+            .map(|point| (point.tag(), point.normal()))
+            .collect();
+        for pair in pairs {
+            let [a, b] = pair.map(|node| normals.get(&mesh.node_tags[node as usize]));
+            let (Some(&a), Some(&b)) = (a, b) else {
+                continue;
+            };
+            if length(difference(turn.by(turn.angle, a), b)) > SAME {
+                return Err(InputError::new(format!(
+                    "{what}: the sides of contact '{}' are curved where they meet those of the sector, at node {}, which isn't \
+                     supported; expected flat sides there, a tie, or the whole ring",
+                    contact.name, mesh.node_tags[pair[0] as usize]
+                )));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The equation of a pair along an axis of b, which is `back` on a; of a node that is its own partner it is held along the axis.
