@@ -30,3 +30,4 @@ pub mod springs;
 pub mod strain;
 pub mod stress;
 pub mod stress_intensity;
+pub mod tightened_bolt;

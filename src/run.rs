@@ -292,7 +292,7 @@ impl Stages<'_> {
                 outcome.take_over(why);
             }
             log.phase("writing", None);
-            progress.finish_step(&context, &solved, analysis, &rows)?;
+            progress.finish_step(&context, &solved, analysis, &rows, k)?;
             if let Some(next) = steps.next.filter(|next| next.start == k + 1) {
                 steps.pass_on((&solved, analysis), next, &mut progress.finished);
             }
@@ -308,7 +308,7 @@ impl Stages<'_> {
 }
 
 impl Progress {
-    /// Writes the solution of a load step, with the rows of contact points that are `absent`, and keeps its totals.
+    /// Writes the solution of load step `step`, with the rows of contact points that are `absent`, and keeps its totals.
     /// Collective.
     ///
     /// # Errors
@@ -319,10 +319,11 @@ impl Progress {
         solved: &Increment,
         analysis: &RigidBodyAnalysis,
         absent: &[ContactRow],
+        step: usize,
     ) -> Result<(), Failure> {
         let solution = &solved.solution;
         let lap = context.comm.times();
-        let resultants = (self.files).write(context, solution, &solved.slips, absent)?;
+        let resultants = (self.files).write(context, solution, &solved.slips, absent, step)?;
         (self.seconds).add(|s| &mut s.write, context.comm.times() - lap);
         let totals = solved.outcome.clone().map(|outcome| {
             let found = (outcome, self.linear_solves.take());

@@ -50,6 +50,9 @@ pub struct ContactPoint<N> {
     /// Displacement of the obstacle that it faces in every load step (m); of an equation, along the axis of its first entry,
     /// what its value is beyond `gap`. None where nothing moves.
     pub motion: Vec<[f64; 3]>,
+    /// Of the first point of a pretension the force that loads give it in every load step (N, per metre of thickness in the
+    /// plane); none elsewhere.
+    pub preload: Vec<f64>,
 }
 
 /// The bound of the tangential force λ_t at a point, beside λ ≥ 0 for the normal one. Below the bound the sides
@@ -156,6 +159,7 @@ impl<N: Copy> ContactPoint<N> {
             law: Law::Frictionless,
             stiffness: [0.0; 2],
             motion: Vec::new(),
+            preload: Vec::new(),
         }
     }
 
@@ -253,6 +257,7 @@ impl<N: Copy> ContactPoint<N> {
             law: self.law,
             stiffness: self.stiffness,
             motion: self.motion.clone(),
+            preload: self.preload.clone(),
         }
     }
 }

@@ -11,6 +11,7 @@ mod clip;
 mod contact;
 mod couplings;
 mod crack_tips;
+mod cyclic;
 mod diagnostics;
 mod equations;
 mod facet_tree;
@@ -23,6 +24,7 @@ mod node_pairs;
 mod obstacle;
 mod parameters;
 mod parts;
+mod pretension;
 mod quantities;
 mod ray_search;
 mod rules;
@@ -115,6 +117,7 @@ impl Model {
         let plane = plane_state(scene, &mesh)?;
         let mut warnings = mesh.warnings.clone();
         let mut bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
+        let cuts = pretension::cut(scene, &mut bodies)?;
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         adjust::adjust(scene, &mut bodies, &topology, &mut warnings)?;
@@ -136,7 +139,9 @@ impl Model {
             (&loads, &springs),
             &contacts,
         )?;
-        let equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
+        let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
+        let count = contacts.len() + equations.len();
+        equations.extend(cyclic::cyclic(scene, &bodies, &contacts, count)?);
         let count = contacts.len() + equations.len();
         let couplings = couplings::couplings(scene, (&bodies.mesh, &topology), count)?;
         let names = equations.iter().map(|of| &of.name[..]);
@@ -163,6 +168,9 @@ impl Model {
         let prescribed_subdomains = (scene.subdomains.as_ref())
             .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
             .transpose()?;
+        let on = (&bodies, &topology);
+        let first = count + couplings.len();
+        let bolts = pretension::Pretensions::new(scene, on, &cuts, &mut loads, first)?;
         let own = std::mem::take(&mut loads.names);
         let mut support_names: Vec<String> = own.into_iter().chain(springs.names).collect();
         let (coupled, reference_nodes) =
@@ -184,13 +192,15 @@ impl Model {
             forces: loads.forces,
             initial_stress: loads.initial_stress,
             steps: (loads.steps.into_iter().zip(absent_contacts))
-                .map(|(step, absent_contacts)| ModelStep {
-                    absent_contacts,
+                .zip(bolts.absent)
+                .map(|((step, of_scene), of_bolts)| ModelStep {
+                    absent_contacts: [of_scene, of_bolts].concat(),
                     ..step
                 })
                 .collect(),
             contacts: (contacts.into_iter().chain(equations))
                 .chain(coupled)
+                .chain(bolts.contacts)
                 .collect(),
             tips,
             goals,

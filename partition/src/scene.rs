@@ -5,16 +5,19 @@ pub mod compliance;
 pub mod condition;
 pub mod contact;
 pub mod coupling;
+pub mod cyclic;
 pub mod equation;
 pub mod expression;
 mod fault;
 pub mod friction;
 pub mod initial;
+mod joints;
 pub mod loading;
 pub mod material;
 mod motion;
 pub mod number;
 pub mod place;
+pub mod pretension;
 pub mod quantity;
 pub mod spring;
 pub mod step;
@@ -35,8 +38,10 @@ use crate::source;
 use condition::{Bilateral, Body, Displacement, Force, Names, Pressure, Traction};
 use contact::Declaration;
 use coupling::Coupling;
+use cyclic::Cyclic;
 use equation::Equation;
 use material::{Elasticity, PlaneState};
+use pretension::Pretension;
 use quantity::Quantity;
 use spring::Spring;
 use step::LoadStep;
@@ -98,6 +103,12 @@ pub struct Scene {
     /// Nodes that follow reference points.
     #[serde(default, deserialize_with = "place::list")]
     pub coupling: Vec<Coupling>,
+    /// Sectors of rings.
+    #[serde(default, deserialize_with = "place::list")]
+    pub cyclic: Vec<Cyclic>,
+    /// Bolts that are tightened.
+    #[serde(default, deserialize_with = "place::list")]
+    pub pretension: Vec<Pretension>,
     /// Load steps, one after the other; without any the loads of the scene are there at once.
     #[serde(default, deserialize_with = "place::list")]
     pub step: Vec<LoadStep>,

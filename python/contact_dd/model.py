@@ -62,6 +62,7 @@ class Step(TypedDict, total=False):
     motion: dict[str, Sequence[float]]
     equation: dict[str, float]
     coupling: dict[str, dict[str, Any]]
+    pretension: dict[str, dict[str, Any]]
 
 
 class Model:
@@ -252,6 +253,26 @@ class Model:
         keys = given(kind=kind, force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
         entry = self._add("coupling", name=name or f"coupling of {joined(on)}", on=on, point=point, **keys)
         self._calls.add(entry, call("coupling", on, point, name=name, **keys))
+
+    def pretension(
+        self, on: Groups, *, name: str | None = None, force: float | None = None, shortening: float | None = None,
+        direction: Sequence[float] | None = None,
+    ) -> None:
+        """Tightens a bolt at a cut through it, facets between its cells, by a tensile `force` or by the length that is
+        taken out there. A step gives another one, or `{"lock": True}` to keep the length that was reached."""
+        keys = given(force=force, shortening=shortening, direction=direction)
+        entry = self._add("pretension", name=name or f"pretension of {joined(on)}", on=on, **keys)
+        self._calls.add(entry, call("pretension", on, name=name, **keys))
+
+    def cyclic(
+        self, a: Groups, b: Groups, point: Sequence[float], sectors: int, *, axis: Sequence[float] | None = None,
+        name: str | None = None,
+    ) -> None:
+        """Makes the mesh one of so many equal `sectors` of a ring about an axis through `point`, in space along `axis`:
+        side `b` moves as side `a` does, turned. Their meshes match."""
+        keys = given(point=point, axis=axis, sectors=sectors)
+        entry = self._add("cyclic", name=name or f"{joined(a)} to {joined(b)}", sides=[a, b], **keys)
+        self._calls.add(entry, call("cyclic", a, b, point, sectors, axis=axis, name=name))
 
     def steps(self, *steps: Step) -> None:
         """Load steps, one after the other."""

@@ -72,3 +72,47 @@ def test_messages_name_the_call():
     model.equation(("upper top", "z", 1.0))
     with pytest.raises(InputError, match=r"equation\(\('upper top', 'z', 1.0\)\).*a plane scene has no 'z'"):
         model.run(progress=False)
+
+
+def bar():
+    """Two squares that share their nodes at y = 1, one on the other, between two walls."""
+    points = np.array([[x, y, 0.0] for y in range(3) for x in range(2)])
+    blocks = [("quad", np.array([[0, 1, 3, 2], [2, 3, 5, 4]]))]
+    blocks += [("line", np.array([line])) for line in ([0, 1], [2, 3], [5, 4])]
+    names = ["bar", "foot", "cut", "top"]
+    sets = {name: [np.arange(len(block[1])) if other == name else np.array([], int)
+                   for other, block in zip(names, blocks, strict=True)] for name in names}
+    model = Model.from_mesh(meshio.Mesh(points, blocks, cell_sets=sets), plane="strain")
+    model.body("bar", Material(young=200e9, poisson=0.0))
+    model.fix(["foot", "top"])
+    return model
+
+
+def test_a_bolt_is_tightened_and_locked():
+    model = bar()
+    model.pretension("cut", name="bolt", force=2e6)
+    model.steps({}, {"pretension": {"bolt": {"lock": True}}})
+    result = model.run(progress=False)
+    first, second = (step["pretensions"][0] for step in result.report["steps"])
+    assert first["force"] == pytest.approx(2e6)
+    assert first["shortening"] == pytest.approx(2e6 * 2.0 / 200e9)
+    assert (first["held"], second["held"]) == (False, True)
+    assert second["shortening"] == pytest.approx(first["shortening"])
+
+
+def test_a_quarter_of_a_square_does_what_the_others_do():
+    points = np.array([[x, y, 0.0] for y in range(2) for x in range(2)])
+    blocks = [("quad", np.array([[0, 1, 3, 2]])), ("line", np.array([[0, 1]])), ("line", np.array([[2, 0]])),
+              ("line", np.array([[1, 3], [3, 2]]))]
+    names = ["quarter", "side", "next side", "outside"]
+    sets = {name: [np.arange(len(block[1])) if other == name else np.array([], int)
+                   for other, block in zip(names, blocks, strict=True)] for name in names}
+    model = Model.from_mesh(meshio.Mesh(points, blocks, cell_sets=sets), plane="strain")
+    model.body("quarter", Material(young=200e9, poisson=0.3))
+    model.spring("outside", normal=1e12, tangential=1e12)
+    model.load("outside", traction=["-1e6*y", "1e6*x"])
+    model.cyclic("side", "next side", [0.0, 0.0], 4)
+    result = model.run(progress=False)
+    u = {(round(x), round(y)): moved for (x, y, _), moved in zip(result.points, result.displacement, strict=True)}
+    np.testing.assert_allclose(u[0, 1][:2], [-u[1, 0][1], u[1, 0][0]], atol=1e-10 * abs(u[1, 0]).max())
+    assert u[1, 0][1] > 0.0

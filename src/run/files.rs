@@ -2,11 +2,13 @@
 
 mod parcel;
 mod rows;
+mod tightened_bolts;
 
 use contact_dd_partition::model::PlaneState;
 
 pub use self::rows::absent_rows;
 use self::rows::write_solution;
+use self::tightened_bolts::tightened_bolts;
 use crate::comm::is_asked_to_stop;
 use crate::context::Context;
 use crate::error::Failure;
@@ -84,7 +86,7 @@ impl RunFiles {
         })
     }
 
-    /// Writes the solution of a load step, with rows of the contact points that are `absent`; returns what contacts and
+    /// Writes the solution of load step `step`, with rows of the contact points that are `absent`; returns what contacts and
     /// supports carry, which the root knows. Collective.
     ///
     /// # Errors
@@ -95,6 +97,7 @@ impl RunFiles {
         solution: &Solution,
         slips: &Slips,
         absent: &[ContactRow],
+        step: usize,
     ) -> Result<Resultants, Failure> {
         let mut resultants = Resultants::new(context.catalog, solution.reactions.clone());
         resultants.crack_tips = solution.stress_intensities.clone();
@@ -103,6 +106,7 @@ impl RunFiles {
         let files = (self.result.as_mut(), self.beside.as_mut());
         write_solution(context, (solution, slips), files, contacts, absent)?;
         probe(context, &solution.displacement, contacts);
+        resultants.pretensions = tightened_bolts(context, &solution.displacement, contacts, step);
         if context.catalog.plane == Some(PlaneState::Axisymmetric) {
             resultants.sum_around_axis();
         }

@@ -127,9 +127,19 @@ pub fn jumps_of(
     whole: &Catalog,
     displacement: &BTreeMap<usize, Vec<f64>>,
 ) -> Vec<[f64; 3]> {
-    let (comm, dim) = (context.comm, whole.dim);
+    let points = places.iter().map(|&j| whole.points[j].clone());
+    jumps_of_points(&points.collect::<Vec<_>>(), context, displacement)
+}
+
+/// The jumps ⟦u⟧ of points under the displacement of every block (m); on the root. Collective.
+pub fn jumps_of_points(
+    points: &[ContactPoint<SubdomainNode>],
+    context: &Context<'_>,
+    displacement: &BTreeMap<usize, Vec<f64>>,
+) -> Vec<[f64; 3]> {
+    let (comm, dim) = (context.comm, context.catalog.dim);
     let mut wanted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for (at, _) in places.iter().flat_map(|&j| &whole.points[j].entries) {
+    for (at, _) in points.iter().flat_map(|point| &point.entries) {
         wanted.entry(at.subdomain).or_default().push(at.node);
     }
     let mut moved = BTreeMap::new();
@@ -149,8 +159,8 @@ pub fn jumps_of(
         let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
         u.unwrap_or_default()
     };
-    let own = places.iter().filter(|_| comm.is_root());
-    own.map(|&j| jump(&whole.points[j], &mut of_node)).collect()
+    let own = points.iter().filter(|_| comm.is_root());
+    own.map(|point| jump(point, &mut of_node)).collect()
 }
 
 /// The tangential jumps of the contact points of a `stage` with friction (m), by their places in the `whole` problem, from

@@ -1,6 +1,7 @@
 //! Decks of Abaqus and CalculiX, solved as they are.
 
 mod couplings;
+mod pretension;
 
 use contact_dd_partition::deck;
 use contact_dd_partition::model::Model;

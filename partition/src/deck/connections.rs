@@ -12,12 +12,7 @@ use crate::mesh::abaqus::{Block, LinePlace, Of};
 use crate::name;
 
 /// Parameters of `*TIE` that are something else than sides which hang together.
-const REFUSED: [&str; 4] = [
-    "CYCLIC SYMMETRY",
-    "MULTISTAGE",
-    "FLUID PERIODIC",
-    "FLUID CYCLIC",
-];
+const REFUSED: [&str; 3] = ["MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"];
 
 /// A tie of two surfaces, by name in capitals.
 struct Tie {

@@ -7,10 +7,12 @@ use super::axes::{Axes, System};
 use super::connections::Connections;
 use super::contacts::Contacts;
 use super::couplings::Couplings;
+use super::cyclic::Sectors;
 use super::loads::item;
 use super::material::Material;
 use super::model_change::{self, Change};
 use super::place::Places;
+use super::pretensions::Pretensions;
 use super::sections::Section;
 use super::springs::Springs;
 use super::steps::Steps;
@@ -34,6 +36,8 @@ pub(super) struct Content {
     pub(super) connections: Connections,
     pub(super) couplings: Couplings,
     pub(super) springs: Springs,
+    pub(super) pretensions: Pretensions,
+    pub(super) sectors: Sectors,
     pub(super) steps: Steps,
     /// Pairs that come and go.
     pub(super) changes: Vec<Change>,
@@ -53,7 +57,7 @@ impl Content {
         Ok(())
     }
 
-    /// Reads all couplings, before anything loads or holds their reference nodes.
+    /// Reads all couplings and pretensions, before anything loads or holds their reference nodes.
     pub(super) fn read_couplings(&mut self, places: &mut Places) -> Result<(), InputError> {
         for block in &places.source.blocks {
             match block.keyword.as_str() {
@@ -61,10 +65,12 @@ impl Content {
                 "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {
                     self.couplings.read(places, block)?;
                 }
+                "PRE-TENSION SECTION" => self.pretensions.read(places, block)?,
                 _ => {}
             }
         }
-        self.steps.loads.references = self.couplings.references(places)?;
+        let references = self.couplings.references(places)?;
+        self.steps.loads.references = self.pretensions.references(places, references)?;
         Ok(())
     }
 
@@ -118,10 +124,10 @@ impl Content {
                 self.steps.read(places, block)?
             }
             // They have been read before all others.
-            "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {}
+            "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" | "PRE-TENSION SECTION" => {}
             "ELEMENT" => self.springs.elements(places, block)?,
             "SPRING" => self.springs.property(places, block)?,
-            "TIE" | "EQUATION" => self.connections.read(places, block)?,
+            "TIE" | "EQUATION" | "CYCLIC SYMMETRY MODEL" => self.connect(places, block)?,
             "MODEL CHANGE" => {
                 let step = self.steps.is_open().then_some(self.steps.done.len());
                 let changes = model_change::read(places, block, &self.contacts.pairs, step)?;
@@ -130,6 +136,17 @@ impl Content {
             _ => self.contacts.read(places, block)?,
         }
         Ok(())
+    }
+
+    /// A block of ties, equations and sectors.
+    fn connect(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
+        match block.keyword.as_str() {
+            "CYCLIC SYMMETRY MODEL" => self.sectors.model(places, block),
+            "TIE" if block.parameter("CYCLIC SYMMETRY").is_some() => {
+                self.sectors.tie(places, block)
+            }
+            _ => self.connections.read(places, block),
+        }
     }
 
     /// A block of the material that is read.

@@ -114,7 +114,7 @@ impl Couplings {
         let nodes = Coupled::Nodes(nodes.into_iter().collect());
         self.push(places, block, ("rigid body", nodes), Some(Kind::Rigid))?;
         if block.parameter("ROT NODE").is_some() {
-            let node = node(places, block, "ROT NODE")?;
+            let node = places.one_node(block, "ROT NODE")?;
             let own = self.all.last().map_or(node, |coupling| coupling.node);
             let rotations = Reference {
                 node: own,
@@ -133,7 +133,7 @@ impl Couplings {
         (name, coupled): (&str, Coupled),
         kind: Option<Kind>,
     ) -> Result<(), InputError> {
-        let node = node(places, block, "REF NODE")?;
+        let node = places.one_node(block, "REF NODE")?;
         let own = Reference {
             node,
             first: 0,
@@ -221,22 +221,5 @@ impl Couplings {
             reference.coupled = coupled;
         }
         Ok(())
-    }
-}
-
-/// The one node that a parameter names.
-fn node(places: &mut Places, block: &Block, key: &str) -> Result<u32, InputError> {
-    let source = places.source;
-    let item = source.required(block, key)?;
-    match places.members(block.place, Of::Nodes, item)?[..] {
-        [node] => Ok(node),
-        ref all => {
-            let message = format!(
-                "*{}: {key} is {} nodes; expected one",
-                block.keyword,
-                all.len()
-            );
-            Err(source.error(block.place, message))
-        }
     }
 }

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 45] = [
+const READ: [&str; 47] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -50,6 +50,8 @@ const READ: [&str; 45] = [
     "DISTRIBUTING",
     "RIGID BODY",
     "SPRING",
+    "PRE-TENSION SECTION",
+    "CYCLIC SYMMETRY MODEL",
     "MODEL CHANGE",
     "STEP",
     "END STEP",
@@ -104,7 +106,7 @@ const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the answer: what is said of them, and what to do instead.
-const REFUSED: [(&[&str], &str, &str); 21] = [
+const REFUSED: [(&[&str], &str, &str); 20] = [
     (
         &[
             "PLASTIC",
@@ -178,19 +180,14 @@ const REFUSED: [(&[&str], &str, &str); 21] = [
         "give *COUPLING with *KINEMATIC or *DISTRIBUTING",
     ),
     (
-        &["PRE-TENSION SECTION"],
-        NOT_YET,
-        "shrink the bolt by *TEMPERATURE",
-    ),
-    (
         &["CONNECTOR SECTION", "GAP"],
         NOT_YET,
         "give *SPRING of elements of type SPRING1, or a *CONTACT PAIR",
     ),
     (
-        &["CYCLIC SYMMETRY MODEL", "SELECT CYCLIC SYMMETRY MODES"],
-        NOT_YET,
-        "make a deck of the whole ring",
+        &["SELECT CYCLIC SYMMETRY MODES"],
+        NOT_STATIC,
+        "leave it out: all sectors do the same",
     ),
     (
         &["SHELL SECTION", "MEMBRANE SECTION", "SHELL GENERAL SECTION"],

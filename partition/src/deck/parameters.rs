@@ -5,7 +5,7 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 32] = [
+const PARAMETERS: [(&str, &[&str]); 34] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("MATERIAL", &["NAME", "RTOL"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
@@ -115,6 +115,8 @@ const PARAMETERS: [(&str, &[&str]); 32] = [
             "NSET", "PIN NSET", "TIE NSET", "ELSET", "REF NODE", "ROT NODE",
         ],
     ),
+    ("PRE-TENSION SECTION", &["SURFACE", "NODE", "ELEMENT"]),
+    ("CYCLIC SYMMETRY MODEL", &["N", "NGRAPH", "TIE", "ELSET"]),
     ("CLEARANCE", &["MASTER", "SLAVE", "VALUE"]),
     ("CONTACT", &["OP"]),
     ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),

@@ -96,6 +96,22 @@ impl<'a> Places<'a> {
         Ok(found)
     }
 
+    /// The one node that a parameter names.
+    pub(super) fn one_node(&mut self, block: &Block, key: &str) -> Result<u32, InputError> {
+        let item = self.source.required(block, key)?;
+        match self.members(block.place, Of::Nodes, item)?[..] {
+            [node] => Ok(node),
+            ref all => {
+                let message = format!(
+                    "*{}: {key} is {} nodes; expected one",
+                    block.keyword,
+                    all.len()
+                );
+                Err(self.source.error(block.place, message))
+            }
+        }
+    }
+
     /// Whether there is a surface.
     pub(super) fn check_surface(&self, at: LinePlace, name: &str) -> Result<(), InputError> {
         let is_there =

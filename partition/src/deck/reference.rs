@@ -32,6 +32,20 @@ pub(super) struct AtReference {
 }
 
 impl Reference {
+    /// That of the node of a pretension, whose first degree of freedom is the force or the shortening.
+    pub(super) fn of_pretension(node: u32) -> Self {
+        Self {
+            node,
+            first: 0,
+            coupled: std::array::from_fn(|freedom| freedom == 0),
+        }
+    }
+
+    /// Whether it is that of a pretension: what else is coupled has more than one component.
+    pub(super) fn is_of_pretension(&self) -> bool {
+        self.coupled.iter().filter(|&&coupled| coupled).count() == 1
+    }
+
     /// The reference node and its component that is a degree of freedom, from 0 on; `None` where it isn't one in `dim`
     /// dimensions or isn't coupled.
     pub(super) fn component(&self, freedom: usize, dim: usize) -> Option<NodeAxis> {

@@ -11,6 +11,7 @@ use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
 use super::model_change;
 use super::place::Places;
+use super::pretensions;
 use super::sections::{self, Body, Section};
 use super::steps::LoadStep;
 use crate::error::InputError;
@@ -72,6 +73,13 @@ pub(super) fn text(
         &content.steps.systems,
         &mut taken,
     )?;
+    let sectors = content.sectors.in_scene(&mut loads.groups, &mut taken)?;
+    let bolts = content.pretensions.in_scene(
+        &mut loads.groups,
+        &content.steps,
+        (plane, thickness),
+        &mut taken,
+    )?;
     let dim = loads.dim;
     let mut document = Document::default();
     if let Some(title) = &content.title {
@@ -97,6 +105,10 @@ pub(super) fn text(
     couplings
         .iter()
         .for_each(|coupling| coupling.write(&mut document));
+    sectors
+        .iter()
+        .for_each(|sector| sector.write(&mut document));
+    bolts.iter().for_each(|bolt| bolt.write(&mut document));
     springs
         .iter()
         .for_each(|spring| spring.write(&mut document));
@@ -115,6 +127,7 @@ pub(super) fn text(
             for coupling in &couplings {
                 coupling.write_step(number, &mut document);
             }
+            pretensions::write_step(&bolts, number, &mut document);
         }
     }
     Ok(document.text())

@@ -2,7 +2,7 @@
 
 use super::loads::{Loads, item};
 use super::place::Places;
-use super::reference::NodeAxis;
+use super::reference::{NodeAxis, Reference};
 use super::table::Origin;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, Of};
@@ -21,8 +21,7 @@ const WORDS: [(&str, &[usize]); 8] = [
 ];
 
 /// Parameters of `*BOUNDARY` that say something else than displacements of nodes.
-const REFUSED: [&str; 7] = [
-    "FIXED",
+const REFUSED: [&str; 6] = [
     "USER",
     "SUBMODEL",
     "LOAD CASE",
@@ -68,6 +67,10 @@ impl Loads {
                 Some((_, axes)) => axes.to_vec(),
                 None => axes(places, data, block)?,
             };
+            let is_fixed = block.parameter("FIXED").is_some();
+            for &node in &nodes {
+                self.fix(places, data, (node, is_fixed))?;
+            }
             for (&node, &axis) in nodes
                 .iter()
                 .flat_map(|node| axes.iter().map(move |axis| (node, axis)))
@@ -79,6 +82,31 @@ impl Loads {
                     }
                     None => {}
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Remembers whether what a node is held at is what it has reached, of a pretension its shortening.
+    ///
+    /// # Errors
+    /// Another node that is fixed.
+    fn fix(
+        &mut self,
+        places: &Places,
+        data: &Data,
+        (node, is_fixed): (u32, bool),
+    ) -> Result<(), InputError> {
+        let reference = self.references.get(&node);
+        match is_fixed {
+            false => _ = self.fixed.remove(&node),
+            true if reference.is_some_and(Reference::is_of_pretension) => {
+                self.fixed.insert(node);
+            }
+            true => {
+                let message = "*BOUNDARY with FIXED is read of the node of a *PRE-TENSION SECTION alone; expected displacements \
+                               of other nodes";
+                return Err(places.source.error(data.place, message));
             }
         }
         Ok(())
@@ -102,7 +130,7 @@ impl Loads {
         if component.is_none() && places.dim() == SPACE {
             let message = format!(
                 "*{} on the degree of freedom {} of the reference node {}, which isn't coupled; expected it in the \
-                 lines of *DISTRIBUTING, or of a ROT NODE 1 to {SPACE}",
+                 lines of *DISTRIBUTING, of a ROT NODE 1 to {SPACE}, of a *PRE-TENSION SECTION 1",
                 block.keyword,
                 axis + 1,
                 places.deck.node_tags[node as usize]

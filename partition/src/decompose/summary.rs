@@ -115,6 +115,8 @@ impl fmt::Display for Summary<'_> {
             let tied = match contact.kind {
                 ContactKind::Tie => ", tied",
                 ContactKind::Coupling => ", coupled",
+                ContactKind::Pretension => ", pulled together",
+                ContactKind::Held => ", held",
                 ContactKind::Unilateral | ContactKind::Equation => "",
             };
             writeln!(

@@ -4,16 +4,17 @@
 //! that go on side by side, as long as the facets on both of its sides go on without a corner in the same body. Its
 //! sides become groups of the mesh.
 
+mod explicit;
 mod nearest;
 mod patch;
 mod ties;
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 
+use self::explicit::Explicit;
 use self::patch::Patch;
 use self::ties::Ties;
 use super::bodies::Bodies;
-use super::groups;
 use super::skin::{Facing, ROUND_OFF, STANDING_OFF, Skin};
 use crate::error::InputError;
 use crate::magnitude::short;
@@ -23,7 +24,6 @@ use crate::name;
 use crate::scene::Scene;
 use crate::scene::condition::Names;
 use crate::scene::contact::{Between, Contact, Declaration};
-use crate::scene::tie::Tie;
 
 /// Distance up to which facets beside those that touch are thought to come into contact, relative to their size.
 const NEAR: f64 = 0.25;
@@ -229,42 +229,6 @@ fn parting(
         skin.mesh.node_tags[node as usize],
         short(first.gap)
     ))
-}
-
-/// The sides of contacts that are told by their sides.
-struct Explicit {
-    of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>>,
-}
-
-impl Explicit {
-    fn new(scene: &Scene, mesh: &Mesh, topology: &Topology) -> Self {
-        let mut of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>> = HashMap::new();
-        let contacts = scene
-            .contact
-            .iter()
-            .filter_map(Declaration::contact)
-            .cloned();
-        let ties = scene.tie.iter().map(Tie::contact);
-        for (number, contact) in contacts.chain(ties).enumerate() {
-            for (side, names) in contact.sides().enumerate() {
-                // What is wrong with a group is said where the contact is made.
-                for facet in groups::facets(mesh, names, "").unwrap_or_default() {
-                    for place in topology.cells_at(mesh.facets.nodes_of(facet as usize)) {
-                        of_facet.entry(place).or_default().insert((number, side));
-                    }
-                }
-            }
-        }
-        Self { of_facet }
-    }
-
-    /// Whether two facets are on different sides of one contact.
-    fn has(&self, a: CellFacet, b: CellFacet) -> bool {
-        let (Some(of_a), Some(of_b)) = (self.of_facet.get(&a), self.of_facet.get(&b)) else {
-            return false;
-        };
-        (of_a.iter()).any(|&(number, side)| of_b.contains(&(number, 1 - side)))
-    }
 }
 
 /// Writes down what was found.

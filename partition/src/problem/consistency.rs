@@ -97,7 +97,7 @@ impl Places {
     fn fault_of_equation(&self, point: &Point) -> Option<(&'static str, String)> {
         let named = point.entries.iter().any(|(node, _)| {
             let place = self.nodes.get(node);
-            place.is_some_and(|place| place.tag == point.tag_a)
+            place.is_some_and(|place| place.tag == point.tag())
         });
         let what = "expected the tag (GlobalNodeId) of a node of the equation";
         (!named && point.tag() != -1).then(|| ("node_a", format!("{}; {what}", point.tag_a)))

@@ -29,6 +29,10 @@ pub enum ContactKind {
     Equation,
     /// Nodes that follow a reference point.
     Coupling,
+    /// The sides of a cut through a bolt, which it pulls together.
+    Pretension,
+    /// The shortening at that cut, where it is held.
+    Held,
 }
 
 impl ContactKind {
@@ -37,8 +41,12 @@ impl ContactKind {
         match (point.law.is_tied(), point.axes.is_empty()) {
             (false, _) => Self::Unilateral,
             (true, true) => Self::Tie,
-            (true, false) if [point.tag_a, point.tag_b] == [-1; 2] => Self::Coupling,
-            (true, false) => Self::Equation,
+            (true, false) => match (point.tag_a, point.tag_b) {
+                (-1, -1) => Self::Coupling,
+                (-1, _) => Self::Held,
+                (_, -1) => Self::Equation,
+                _ => Self::Pretension,
+            },
         }
     }
 
@@ -49,6 +57,8 @@ impl ContactKind {
             Self::Tie => "tie",
             Self::Equation => "equation",
             Self::Coupling => "coupling",
+            Self::Pretension => "pretension",
+            Self::Held => "held pretension",
         }
     }
 }

@@ -219,6 +219,10 @@ pub const FIELDS: &[Field] = &[
     optional("/contact/motion", "R, L?, d", Numbers,
         "displacement of the obstacle that the point faces, in every load step [m]; of an equation, along the axis of its first \
          entry, what its value is beyond `gap`; zeros at other points"),
+    optional("/contact/preload", "R, L?", Numbers,
+        "of the first point of a pretension the force that `/force` exerts across its cut, in every load step [N]; zeros at other \
+         points. Points of a pretension are equations with `node_a` and `node_b`, of the first of which entries 0 and 1 are a \
+         node of the cut on both sides; with `node_b` alone the point is what holds its shortening, and follows it"),
     field("/probe/contact", "V", Indices("contact", 'Q'),
         "index of the contact of which the probe says whether its sides penetrate where no condition holds them"),
     field("/probe/node", "V", Integers, "name (`GlobalNodeId`) of its node, on the side without conditions"),

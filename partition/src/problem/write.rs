@@ -275,6 +275,13 @@ impl Problem {
                 .collect();
             datasets.vectors("/contact/motion", all.iter())?;
         }
+        if points().any(|p| !p.preload.is_empty()) {
+            let steps = self.catalog.steps.len().max(1);
+            let in_step = |p: &ContactPoint<SubdomainNode>, k: usize| p.preload.get(k).copied();
+            let all =
+                points().flat_map(|p| (0..steps).map(move |k| in_step(p, k).unwrap_or_default()));
+            datasets.put("/contact/preload", all)?;
+        }
         if points().all(|p| p.law == Law::Frictionless) {
             return Ok(());
         }

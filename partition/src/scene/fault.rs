@@ -44,6 +44,8 @@ impl Scene {
             .or_else(|| self.wrong_change())
             .or_else(|| self.wrong_motion())
             .or_else(|| self.wrong_coupling())
+            .or_else(|| self.wrong_pretension())
+            .or_else(|| self.wrong_cyclic())
     }
 
     fn wrong_name(&self) -> Option<Fault> {

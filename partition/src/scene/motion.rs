@@ -80,7 +80,7 @@ impl Scene {
         None
     }
 
-    /// Motions and couplings of the wrong dimension.
+    /// Motions, couplings, pretensions and sectors of the wrong dimension.
     pub(super) fn motions_of_wrong_dimension(
         &self,
         dim: usize,
@@ -97,6 +97,8 @@ impl Scene {
             }
         }
         self.couplings_of_wrong_dimension(dim, check);
+        self.pretensions_of_wrong_dimension(dim, check);
+        self.cyclic_of_wrong_dimension(dim, check);
     }
 }
 

@@ -10,6 +10,7 @@ use super::condition::{Displacement, Force, Names, Pressure, Traction};
 use super::coupling::CouplingLoads;
 use super::number::{Constant, ConstantVector, Number, Vector};
 use super::place;
+use super::pretension::PretensionChange;
 
 /// A load step as a scene gives it.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -17,7 +18,7 @@ use super::place;
     deny_unknown_fields,
     default,
     expecting = "a table of name, time, scale, add, remove, body_force, temperature, traction, pressure, force, displacement, \
-                 motion, equation and coupling"
+                 motion, equation, coupling and pretension"
 )]
 pub struct LoadStep {
     /// Name; its number without.
@@ -43,6 +44,8 @@ pub struct LoadStep {
     /// Loads and prescribed motions of the reference points of the couplings of these names, where they are given here in
     /// place of what the scene says.
     pub coupling: BTreeMap<String, CouplingLoads>,
+    /// What is given of the pretensions of these names from here on.
+    pub pretension: BTreeMap<String, PretensionChange>,
     /// In place of all tractions of the scene.
     #[serde(deserialize_with = "list")]
     pub traction: Option<Vec<Traction>>,

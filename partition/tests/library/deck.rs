@@ -1,7 +1,9 @@
 //! Decks as whole models: the scene and the mesh that they mean.
 
 mod couplings;
+mod cyclic;
 mod laws;
+mod pretensions;
 mod refused;
 mod springs;
 mod steps;

@@ -2,11 +2,11 @@
 
 
 # Kinds of conditions whose forces are no pressures.
-WITHOUT_PRESSURE = ("equation", "coupling")
+WITHOUT_PRESSURE = ("equation", "coupling", "pretension", "held pretension")
 
 
 def pressing(result):
-    """The contacts and ties that are there, by their names, without equations and couplings."""
+    """The contacts and ties that are there, by their names, without equations, couplings and pretensions."""
     kinds = {one["name"]: one.get("kind") for one in result.report["contacts"]}
     return {name: table for name, table in result.contacts_there.items() if kinds.get(name) not in WITHOUT_PRESSURE}
 

@@ -5,6 +5,7 @@ use contact_dd_partition::scene::units::Units;
 use crate::fem::quantity::QuantityValue;
 use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants};
 use crate::fem::stress_intensity::StressIntensity;
+use crate::fem::tightened_bolt::TightenedBolt;
 
 /// Most lines that are printed of a table; the report has all.
 const LINES: usize = 12;
@@ -14,7 +15,6 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
     let Resultants {
         contacts,
         reactions,
-        crack_tips,
         quantities,
         ..
     } = resultants;
@@ -67,9 +67,35 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
         "support"
     );
     lines.extend(table(head, reactions, support));
-    lines.extend(tips(crack_tips, units));
+    lines.extend(places(resultants, units, dim));
     lines.extend(of_quantities(quantities, units, dim));
     lines
+}
+
+/// What bolts and crack tips have.
+fn places(resultants: &Resultants, units: Units, dim: usize) -> Vec<String> {
+    let mut lines = bolts(&resultants.pretensions, units, dim);
+    lines.extend(tips(&resultants.crack_tips, units));
+    lines
+}
+
+/// Force and shortening of bolts.
+fn bolts(bolts: &[TightenedBolt], units: Units, dim: usize) -> Vec<String> {
+    let title = "pretension";
+    let names = bolts.iter().map(|bolt| bolt.name.chars().count());
+    let width = names.max().unwrap_or(0).max(title.len());
+    let (force, length) = (units.force(dim), units.length());
+    let head = format!(
+        "{title:<width$} {:>14} {:>14}\n{:width$} {force:>14} {length:>14}",
+        "force", "shortening", ""
+    );
+    table(head, bolts, |bolt| {
+        let held = if bolt.held { " held" } else { "" };
+        format!(
+            "{:<width$} {:>14.6e} {:>14.6e}{held}",
+            bolt.name, bolt.force, bolt.shortening
+        )
+    })
 }
 
 /// The stress intensity factors of crack tips, and by how much they depend on the disc that is evaluated.

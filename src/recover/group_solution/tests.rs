@@ -30,6 +30,7 @@ pub fn group(law: Law) -> ContactGroup {
         tag_b: -1,
         stiffness: [0.0; 2],
         motion: Vec::new(),
+        preload: Vec::new(),
         law,
     };
     ContactGroup::new(vec![point], vec![node], 3)

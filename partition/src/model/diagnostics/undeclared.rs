@@ -6,6 +6,7 @@ use super::Diagnostics;
 use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
+use crate::model::pretension::other_side;
 use crate::model::skin::{ROUND_OFF, Skin};
 
 impl Diagnostics<'_> {
@@ -42,8 +43,17 @@ impl Diagnostics<'_> {
     fn on_sides(&self) -> HashSet<CellFacet> {
         let mesh = &self.bodies.mesh;
         let mut on_sides = HashSet::new();
-        for names in self.declared.iter().flat_map(|of| of.contact.sides()) {
-            let facets = groups::facets(mesh, names, "").unwrap_or_default();
+        let cuts = &self.scene.pretension;
+        let cuts = cuts
+            .iter()
+            .flat_map(|of| [of.on.clone(), other_side(of).into()]);
+        let declared = self
+            .declared
+            .iter()
+            .flat_map(|of| of.contact.sides())
+            .cloned();
+        for names in declared.chain(cuts) {
+            let facets = groups::facets(mesh, &names, "").unwrap_or_default();
             let nodes = facets.into_iter().map(|f| mesh.facets.nodes_of(f as usize));
             on_sides.extend(nodes.flat_map(|nodes| self.topology.cells_at(nodes)));
         }

@@ -34,6 +34,7 @@ pub(super) fn read(
     let laws = read_laws(contents)?;
     let stiffness = read_stiffness(contents, &laws)?;
     let mut motion = read_motion(contents)?;
+    let mut preload = read_preload(contents)?;
     let entries = read_entries(contents, subdomains)?;
     let mut axes = read_axes(contents, &laws)?;
     let point = |(i, entries): (usize, _)| ContactPoint {
@@ -47,6 +48,7 @@ pub(super) fn read(
         law: laws[i],
         stiffness: stiffness[i],
         motion: std::mem::take(&mut motion[i]),
+        preload: std::mem::take(&mut preload[i]),
         axes: std::mem::take(&mut axes[i]),
         ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
     };
@@ -92,6 +94,21 @@ fn read_motion(contents: &Contents) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
         }
     };
     Ok(all.all().chunks_exact(steps * dim).map(of_point).collect())
+}
+
+/// The force that is given at every point in all load steps; none where there is no pretension.
+fn read_preload(contents: &Contents) -> Result<Vec<Vec<f64>>, InputError> {
+    let rows = contents.count('R');
+    if !contents.has("/contact/preload") {
+        return Ok(vec![Vec::new(); rows]);
+    }
+    let steps = contents.count('L').max(1);
+    let all = contents.numbers("/contact/preload", 0..rows)?;
+    let of_point = |of_point: &[f64]| match of_point.iter().any(|&force| force != 0.0) {
+        true => of_point.to_vec(),
+        false => Vec::new(),
+    };
+    Ok(all.all().chunks_exact(steps).map(of_point).collect())
 }
 
 /// The stiffness between the sides at every point; none gives way where the file says nothing of it.

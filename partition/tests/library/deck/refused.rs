@@ -30,8 +30,8 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         ),
         ("*HEATTRANSFER", "line 49: *HEAT TRANSFER isn't read"),
         (
-            "*TIE, NAME=T, CYCLIC SYMMETRY\nHigh, Low",
-            "line 49: *TIE with CYCLIC SYMMETRY isn't read; expected sides that hang together",
+            "*TIE, NAME=T, MULTISTAGE\nHigh, Low",
+            "line 49: *TIE with MULTISTAGE isn't read; expected sides that hang together",
         ),
         ("*EQUATION\n2", "line 50: the equation has 0 of its 2 terms"),
         (
@@ -51,16 +51,16 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 49: *KINEMATIC COUPLING isn't read; instead give *COUPLING",
         ),
         (
-            "*PRE-TENSION SECTION",
-            "line 49: *PRE-TENSION SECTION isn't supported yet; instead",
+            "*PRE-TENSION SECTION, ELEMENT=2, NODE=100",
+            "line 49: *PRE-TENSION SECTION of an ELEMENT, a beam, isn't read; expected",
         ),
         (
             "*GAP, ELSET=All",
             "line 49: *GAP isn't supported yet; instead",
         ),
         (
-            "*CYCLIC SYMMETRY MODEL",
-            "line 49: *CYCLIC SYMMETRY MODEL isn't supported yet; instead",
+            "*SELECT CYCLIC SYMMETRY MODES, NMIN=0, NMAX=2",
+            "line 49: *SELECT CYCLIC SYMMETRY MODES isn't read: loads are static here: expected *STATIC; instead",
         ),
         (
             "*SHELL SECTION, ELSET=All",
@@ -171,7 +171,7 @@ fn loads_that_arent_read_are_refused_with_their_line() {
         ),
         (
             "*BOUNDARY, FIXED\nTop, 1",
-            "line 51: *BOUNDARY with FIXED isn't read",
+            "line 52: *BOUNDARY with FIXED is read of the node",
         ),
         (
             "*TEMPERATURE\n18, 50.",

@@ -16,13 +16,18 @@ fn page() -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// The parts of a scene that the page shows, those of couplings, which are of space, or all others.
-fn shown(page: &str, of_couplings: bool) -> String {
+/// The parts of a scene that the page shows, those of couplings and sectors, which are of space, or all others.
+fn shown(page: &str, of_space: bool) -> String {
     let above = page.split("## A crack").next().unwrap();
     let blocks = above.split("```toml\n").skip(1);
     blocks
         .map(|block| block.split("```").next().unwrap())
-        .filter(|part| part.contains("[[coupling]]") == of_couplings)
+        .filter(|part| {
+            let is_of_space = ["[[coupling]]", "[[cyclic]]"]
+                .iter()
+                .any(|key| part.contains(key));
+            is_of_space == of_space
+        })
         .collect()
 }
 
@@ -57,6 +62,7 @@ fn the_couplings_that_the_page_shows_make_a_scene_of_space() {
     let couplings = shown(&page(), true);
     let scene = Scene::parse(&format!("mesh = 'a.msh'\n{body}{couplings}")).unwrap();
     assert_eq!((scene.coupling.len(), scene.step.len()), (2, 1));
+    assert_eq!(scene.cyclic.len(), 1);
 }
 
 #[test]

@@ -1,0 +1,242 @@
+//! Cyclic symmetry: equations u_b = R u_a between the nodes of the two sides of a sector, R the rotation from one to the next.
+//!
+//! Each component is an equation of two terms, e·u_b − (Rᵀ e)·u_a = 0, which go through fronts and clusters like others; a node
+//! on the axis is its own partner, and is held across the axis. Everything repeats in every sector (nodal diameter 0).
+
+use std::collections::HashMap;
+
+use super::bodies::Bodies;
+use super::{Contact, groups};
+use crate::contact_point::{ContactPoint, Law, LocalFrame};
+use crate::element::geometry::{advance, cross, difference, dot, length};
+use crate::error::InputError;
+use crate::mesh::Mesh;
+use crate::mesh::bounding_box::BoundingBox;
+use crate::scene::Scene;
+use crate::scene::cyclic::Cyclic;
+
+/// Distance of partners from each other, relative to the extent of the mesh, that is none.
+const SAME: f64 = 1e-6;
+
+/// The cyclic symmetries of a scene, numbered from `first` on.
+///
+/// # Errors
+/// Groups that don't exist, nodes without a partner.
+pub(super) fn cyclic(
+    scene: &Scene,
+    bodies: &Bodies,
+    contacts: &[Contact],
+    first: usize,
+) -> Result<Vec<Contact>, InputError> {
+    let mesh = &bodies.mesh;
+    let mut all = Vec::new();
+    for cyclic in &scene.cyclic {
+        let what = format!("cyclic '{}'", cyclic.name);
+        let [a, b] = [0, 1].map(|side| groups::boundary_nodes(mesh, &cyclic.sides[side], &what));
+        let sides = [a?, b?];
+        let (turn, pairs) = partners((bodies, cyclic), &sides, &what)?;
+        check_contacts(contacts, (mesh, &turn), &pairs, &what)?;
+        let mut points = Vec::new();
+        for [a, b] in pairs {
+            for axis in turn.held_axes(a == b, mesh.dim) {
+                let place = points.len() as u32;
+                let contact = (first + all.len()) as u32;
+                let point = point(mesh, [a, b], (axis, turn.back(axis)));
+                points.push(ContactPoint {
+                    contact,
+                    place,
+                    ..point
+                });
+            }
+        }
+        all.push(Contact {
+            name: cyclic.name.clone(),
+            points,
+            probes: Vec::new(),
+        });
+    }
+    Ok(all)
+}
+
+/// Refuses contacts whose normals at the ends of a sector aren't each other turned: those of a curved side are of the facets
+/// within the sector alone, without those of its neighbour, so that sectors would interlock.
+fn check_contacts(
+    contacts: &[Contact],
+    (mesh, turn): (&Mesh, &Turn),
+    pairs: &[[u32; 2]],
+    what: &str,
+) -> Result<(), InputError> {
+    for contact in contacts {
+        let unilateral = contact.points.iter().filter(|point| !point.law.is_tied());
+        let normals: HashMap<i64, [f64; 3]> = unilateral
+            .map(|point| (point.tag(), point.normal()))
+            .collect();
+        for pair in pairs {
+            let [a, b] = pair.map(|node| normals.get(&mesh.node_tags[node as usize]));
+            let (Some(&a), Some(&b)) = (a, b) else {
+                continue;
+            };
+            if length(difference(turn.by(turn.angle, a), b)) > SAME {
+                return Err(InputError::new(format!(
+                    "{what}: the sides of contact '{}' are curved where they meet those of the sector, at node {}, which isn't \
+                     supported; expected flat sides there, a tie, or the whole ring",
+                    contact.name, mesh.node_tags[pair[0] as usize]
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The equation of a pair along an axis of b, which is `back` on a; of a node that is its own partner it is held along the axis.
+fn point(mesh: &Mesh, [a, b]: [u32; 2], (axis, back): ([f64; 3], [f64; 3])) -> ContactPoint<u32> {
+    let (entries, axes) = match a == b {
+        true => (vec![(b, 1.0)], vec![axis]),
+        false => (vec![(b, 1.0), (a, 1.0)], vec![axis, back.map(|c| -c)]),
+    };
+    let tag = mesh.node_tags[b as usize];
+    ContactPoint {
+        area: 1.0,
+        law: Law::Tied,
+        axes,
+        ..ContactPoint::new(entries, axis, mesh.points[b as usize], tag)
+    }
+}
+
+/// A rotation about an axis through a point.
+struct Turn {
+    point: [f64; 3],
+    axis: [f64; 3],
+    angle: f64,
+}
+
+impl Turn {
+    /// R v, with v turned by an angle, after Rodrigues.
+    fn by(&self, angle: f64, v: [f64; 3]) -> [f64; 3] {
+        let (sin, cos) = angle.sin_cos();
+        let along = (1.0 - cos) * dot(self.axis, v);
+        let turned = advance(v.map(|c| cos * c), sin, cross(self.axis, v));
+        advance(turned, along, self.axis)
+    }
+
+    /// Rᵀ v.
+    fn back(&self, v: [f64; 3]) -> [f64; 3] {
+        self.by(-self.angle, v)
+    }
+
+    /// The place of a point when it is turned.
+    fn place(&self, x: [f64; 3]) -> [f64; 3] {
+        let turned = self.by(self.angle, difference(x, self.point));
+        advance(turned, 1.0, self.point)
+    }
+
+    /// The directions of the equations of a pair; of a node on the axis those across it.
+    fn held_axes(&self, on_axis: bool, dim: usize) -> Vec<[f64; 3]> {
+        match on_axis {
+            // In the plane the axis is z, and both tangents lie across it.
+            true => LocalFrame::new(self.axis).tangents.to_vec(),
+            false => (0..dim)
+                .map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k))))
+                .collect(),
+        }
+    }
+}
+
+/// The rotation, one way or the other, that makes side b of side a, and the pairs of their nodes.
+///
+/// # Errors
+/// None does.
+fn partners(
+    (bodies, cyclic): (&Bodies, &Cyclic),
+    [a, b]: &[Vec<u32>; 2],
+    what: &str,
+) -> Result<(Turn, Vec<[u32; 2]>), InputError> {
+    let mesh = &bodies.mesh;
+    let axis = (cyclic.axis.as_ref()).map_or([0.0, 0.0, 1.0], |axis| axis.value);
+    let axis = axis.map(|c| c / length(axis));
+    let slack = SAME * BoundingBox::around(&mesh.points).extent();
+    let places = Places::new(bodies, b, slack);
+    let mut most: (usize, Option<u32>) = (0, None);
+    for sign in [1.0, -1.0] {
+        let turn = Turn {
+            point: cyclic.point.value,
+            axis,
+            angle: sign * std::f64::consts::TAU / f64::from(cyclic.sectors),
+        };
+        let partner = |&node: &u32| {
+            let place = turn.place(mesh.points[node as usize]);
+            Some([node, places.at(place, node)?])
+        };
+        let pairs: Vec<[u32; 2]> = a.iter().filter_map(partner).collect();
+        if pairs.len() == a.len() && a.len() == b.len() {
+            return Ok((turn, pairs));
+        }
+        if pairs.len() >= most.0 {
+            let lacks = a.iter().find(|node| partner(node).is_none());
+            most = (pairs.len(), lacks.copied());
+        }
+    }
+    let where_to = match most.1 {
+        Some(node) => format!(
+            "node {} of side a has no partner on side b",
+            mesh.node_tags[node as usize]
+        ),
+        None => format!("side a has {} nodes and side b {}", a.len(), b.len()),
+    };
+    Err(InputError::new(format!(
+        "{what}: turned by 360°/{}, {where_to}; expected two sides whose meshes match (Gmsh: Periodic Surface)",
+        cyclic.sectors
+    )))
+}
+
+/// Nodes by their places.
+struct Places<'a> {
+    mesh: &'a Mesh,
+    slack: f64,
+    by_box: HashMap<[i64; 3], Vec<u32>>,
+    /// A body of every node.
+    body: Vec<u32>,
+}
+
+impl<'a> Places<'a> {
+    fn new(bodies: &'a Bodies, nodes: &[u32], slack: f64) -> Self {
+        let mesh = &bodies.mesh;
+        let mut by_box: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        for &node in nodes {
+            let key = Self::key(mesh.points[node as usize], slack);
+            by_box.entry(key).or_default().push(node);
+        }
+        let mut body = vec![u32::MAX; mesh.points.len()];
+        for ((_, nodes), &of_cell) in mesh.cells.iter().zip(&bodies.cell_body) {
+            nodes.iter().for_each(|&node| body[node as usize] = of_cell);
+        }
+        Self {
+            mesh,
+            slack,
+            by_box,
+            body,
+        }
+    }
+
+    fn key(x: [f64; 3], slack: f64) -> [i64; 3] {
+        x.map(|c| (c / (4.0 * slack)).round() as i64)
+    }
+
+    /// The node at a place; of several the one of the body of node `of`, as on the sides of a contact.
+    fn at(&self, x: [f64; 3], of: u32) -> Option<u32> {
+        let [i, j, k] = Self::key(x, self.slack);
+        let near = (-1..2).flat_map(|l| (-1..2).flat_map(move |m| (-1..2).map(move |n| [l, m, n])));
+        let nodes = near
+            .filter_map(|[l, m, n]| self.by_box.get(&[i + l, j + m, k + n]))
+            .flatten();
+        let is_here =
+            |node: &&u32| length(difference(self.mesh.points[**node as usize], x)) <= self.slack;
+        let here: Vec<u32> = nodes.filter(is_here).copied().collect();
+        let is_of_body = |node: &u32| self.body[*node as usize] == self.body[of as usize];
+        let own: Vec<u32> = here.iter().copied().filter(is_of_body).collect();
+        match (&here[..], &own[..]) {
+            ([one], _) | (_, [one]) => Some(*one),
+            _ => None,
+        }
+    }
+}

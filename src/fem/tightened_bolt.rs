@@ -1,0 +1,54 @@
+//! Force and shortening of a bolt that is tightened.
+
+use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::element::geometry::dot;
+use contact_dd_partition::problem::{Catalog, ContactKind};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A bolt that is tightened at a cut through it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TightenedBolt {
+    /// Name of the pretension.
+    pub name: String,
+    /// Tensile force across the cut (N, per metre of thickness in the plane).
+    pub force: f64,
+    /// Length that is taken out of the bolt at the cut (m).
+    pub shortening: f64,
+    /// Whether the shortening is held, as it is given or locked.
+    pub held: bool,
+}
+
+impl TightenedBolt {
+    /// The first points of the pretensions of a problem with the nodes of their cut alone, whose jump is the shortening.
+    pub fn points<N: Copy>(catalog: &Catalog, points: &[ContactPoint<N>]) -> Vec<ContactPoint<N>> {
+        let is_first = |point: &&ContactPoint<N>| {
+            let kind = catalog.contacts[point.contact as usize].kind;
+            kind == ContactKind::Pretension && point.place == 0
+        };
+        let mut all: Vec<_> = points.iter().filter(is_first).cloned().collect();
+        for point in &mut all {
+            point.entries.truncate(2);
+            point.axes.truncate(2);
+        }
+        all.sort_by_key(|point| point.contact);
+        all
+    }
+
+    /// The bolt `name` of a point of these in a load step, with its `jump` (m); `held` is the multiplier λ of what holds its
+    /// shortening, if anything does (N).
+    pub fn new<N: Copy>(
+        name: &str,
+        point: &ContactPoint<N>,
+        (step, jump): (usize, [f64; 3]),
+        held: Option<f64>,
+    ) -> Self {
+        let given = point.preload.get(step).copied().unwrap_or_default();
+        Self {
+            name: name.to_owned(),
+            force: given - held.unwrap_or_default(),
+            shortening: dot(jump, point.normal()),
+            held: held.is_some(),
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! A sector of a ring beside the whole ring.
+
+use std::collections::HashMap;
+
+use contact_dd_partition::element::ElementKind::{self, Hexahedron20, Tetrahedron10};
+use contact_dd_partition::mesh::Mesh;
+use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
+
+use crate::support::blocks::{Blocks, glued, joined};
+use crate::support::close::close;
+use crate::support::scenes::model;
+use crate::support::solids::{moved, solid, turned};
+use crate::support::solution::{Solution, datasets, difference};
+use crate::support::solver::{Case, solve, solve_steps};
+
+const SECTORS: usize = 5;
+
+/// The place of a point of the unit square in sector k between two radii.
+fn around(k: usize, [s, t]: [f64; 2], [inner, outer]: [f64; 2]) -> [f64; 2] {
+    let angle = std::f64::consts::TAU * (k as f64 + t) / SECTORS as f64;
+    let radius = inner + (outer - inner) * s;
+    [radius * angle.cos(), radius * angle.sin()]
+}
+
+/// The first `sectors` of a ring.
+fn ring(name: &str, radii: [f64; 2], n: [usize; 2], sectors: usize) -> Mesh {
+    let sector = |blocks: Blocks, k: usize| blocks.mapped(name, n, |x| around(k, x, radii));
+    glued((0..sectors).fold(Blocks::new(), sector).mesh, |_| true)
+}
+
+/// A tyre that is tied to a hub, turns, and is dragged along its circumference, in two steps.
+const WHEEL: &str = "
+plane = 'stress'
+materials.steel = {young = 20e9, poisson = 0.3}
+bodies.hub = {material = 'steel'}
+[bodies.tyre]
+material = 'steel'
+body_force = ['4e6*x', '4e6*y']
+[[displacement]]
+on = 'hub left'
+x = 0.0
+y = 0.0
+[[tie]]
+name = 'fit'
+sides = ['tyre left', 'hub right']
+[[traction]]
+on = 'tyre right'
+value = ['-4e5*y', '4e5*x']
+[[step]]
+scale = { traction = 0.0, body_force = 0.0 }
+[[step]]
+";
+
+fn wheel(sectors: usize) -> Mesh {
+    let hub = ring("hub", [0.5, 1.0], [3, 4], sectors);
+    joined(hub, ring("tyre", [1.0, 1.6], [4, 4], sectors))
+}
+
+const CYCLIC: &str = "
+[[cyclic]]
+name = 'cut'
+sides = [['hub bottom', 'tyre bottom'], ['hub top', 'tyre top']]
+point = [0.0, 0.0]
+sectors = 5
+";
+
+fn with_cyclic(text: &str) -> String {
+    text.replacen("[[displacement]]", &format!("{CYCLIC}[[displacement]]"), 1)
+}
+
+/// Fails unless every node of the sector moves as the node of the ring that lies there; nodes of two bodies may lie there.
+#[track_caller]
+fn is_part(sector: (&Model, &Solution), ring: (&Model, &Solution), slack: f64) {
+    let key = |model: &Model, node: usize, body: u32| {
+        let x = model.mesh.points[node].map(|c| (c * 1e6).round() as i64);
+        (x, body)
+    };
+    let nodes = |model: &Model| {
+        let cells = model.mesh.cells.iter().zip(&model.cell_body);
+        let all = cells
+            .flat_map(|((_, nodes), &body)| nodes.to_vec().into_iter().map(move |n| (n, body)));
+        all.collect::<Vec<_>>()
+    };
+    let of_ring: HashMap<_, _> = nodes(ring.0)
+        .into_iter()
+        .map(|(node, body)| {
+            (
+                key(ring.0, node as usize, body),
+                ring.0.mesh.node_tags[node as usize],
+            )
+        })
+        .collect();
+    let scale = ring.1.largest_displacement();
+    for (node, body) in nodes(sector.0) {
+        let tag = of_ring[&key(sector.0, node as usize, body)];
+        let expected = ring.1.displacement[&tag];
+        let found = sector.1.displacement[&sector.0.mesh.node_tags[node as usize]];
+        (0..3).for_each(|k| close(found[k], expected[k], slack * scale));
+    }
+}
+
+#[test]
+fn a_sector_of_a_wheel_is_the_whole_wheel() {
+    let whole = model(WHEEL, wheel(SECTORS));
+    let expected = solve_steps(&whole, 6);
+    let sector = model(&with_cyclic(WHEEL), wheel(1));
+    for count in [2, 5] {
+        let found = solve_steps(&sector, count);
+        for (found, expected) in found.iter().zip(&expected) {
+            is_part((&sector, found), (&whole, expected), 1e-10);
+        }
+    }
+}
+
+#[test]
+fn ranks_and_solvers_make_no_difference() {
+    let case = Case::in_clusters(&model(&with_cyclic(WHEEL), wheel(1)), 6, 3);
+    let ended = case.run(&[]);
+    assert_eq!(ended.code(), 0, "{}", ended.stderr);
+    let direct = case.folder().join("direct.vtkhdf");
+    std::fs::rename(case.result(), &direct).unwrap();
+    let expected = datasets(&direct);
+    for ranks in [2, 3, 4] {
+        let ended = case.run_on(ranks, &[]);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        assert!(datasets(&case.result()) == expected, "{ranks} ranks");
+    }
+    let ended = case.run(&["--interface", "iterative"]);
+    assert_eq!(ended.code(), 0, "{}", ended.stderr);
+    let (apart, at) = difference(&direct, &case.result());
+    assert!(apart < 1e-8, "{apart:e} in {at}");
+}
+
+/// A mesh with another one, whose groups grow the ones of their names.
+fn grown(first: Mesh, second: Mesh) -> Mesh {
+    let before = first.groups.clone();
+    let mut mesh = joined(first, second);
+    for (name, group) in before {
+        let own = mesh.groups.get_mut(&name).map(|own| &mut own.members);
+        own.unwrap().splice(0..0, group.members);
+    }
+    mesh
+}
+
+/// A ring in space that turns about an axis and is dragged, along no coordinate axis.
+fn disc(kind: ElementKind, sectors: usize) -> Mesh {
+    let sector = |k: usize| {
+        solid("disc", kind, [2, 2, 2], move |[s, t, z]| {
+            let [x, y] = around(k, [s, t], [0.5, 1.5]);
+            [x, y, 0.4 * z]
+        })
+    };
+    glued((1..sectors).map(sector).fold(sector(0), grown), |_| true)
+}
+
+#[test]
+fn a_sector_in_space_is_the_whole_ring_about_any_axis() {
+    let text = "
+materials.steel = {young = 20e9, poisson = 0.3}
+[bodies.disc]
+material = 'steel'
+body_force = ['4e6*x', '4e6*y', '1e6']
+[[displacement]]
+on = 'disc z0'
+x = 0.0
+y = 0.0
+z = 0.0
+[[traction]]
+on = 'disc x1'
+value = ['-4e6*y', '4e6*x', '2e6*z']
+";
+    let cyclic = |axis: [f64; 3]| {
+        format!(
+            "[[cyclic]]\nname = 'cut'\nsides = ['disc y0', 'disc y1']\npoint = [0.0, 0.0, 0.0]\naxis = {axis:?}\nsectors = 5\n"
+        )
+    };
+    for kind in [Hexahedron20, Tetrahedron10] {
+        let whole = model(text, disc(kind, SECTORS));
+        let expected = solve(&whole, 5);
+        let sector = model(
+            &(text.to_owned() + &cyclic([0.0, 0.0, -2.0])),
+            disc(kind, 1),
+        );
+        is_part((&sector, &solve(&sector, 3)), (&whole, &expected), 1e-10);
+    }
+    // Loads that don't depend on the place, turned with all else.
+    let axis = turned([0.0, 0.0, 1.0]);
+    let text = text
+        .replace(
+            "['4e6*x', '4e6*y', '1e6']",
+            &format!("{:?}", axis.map(|c| 1e6 * c)),
+        )
+        .replace(
+            "['-4e6*y', '4e6*x', '2e6*z']",
+            &format!("{:?}", axis.map(|c| -3e6 * c)),
+        );
+    let whole = model(&text, moved(disc(Hexahedron20, SECTORS), turned));
+    let expected = solve(&whole, 5);
+    let sector = model(
+        &(text + &cyclic(axis)),
+        moved(disc(Hexahedron20, 1), turned),
+    );
+    is_part((&sector, &solve(&sector, 3)), (&whole, &expected), 1e-10);
+}
+
+/// A full disc has an axis within, which stays where it is.
+#[test]
+fn nodes_on_the_axis_stay_on_it() {
+    let pie = |sectors: usize| {
+        let sector = |k: usize| {
+            solid(
+                "disc",
+                ElementKind::Hexahedron8,
+                [2, 2, 2],
+                move |[s, t, z]| {
+                    // A kite: its corner on the axis is one of four.
+                    let angle = |t: f64| std::f64::consts::TAU * (k as f64 + t) / SECTORS as f64;
+                    let (p, q) = (angle(0.0), angle(1.0));
+                    let middle = angle(0.5);
+                    let at = |r: f64, a: f64| [r * a.cos(), r * a.sin()];
+                    let corners = [[0.0, 0.0], at(1.0, p), at(1.2, middle), at(1.0, q)];
+                    let shares = [(1.0 - s) * (1.0 - t), s * (1.0 - t), s * t, (1.0 - s) * t];
+                    let sum = |i: usize| (0..4).map(|c| shares[c] * corners[c][i]).sum();
+                    [sum(0), sum(1), 0.4 * z]
+                },
+            )
+        };
+        glued((1..sectors).map(sector).fold(sector(0), grown), |_| true)
+    };
+    let text = "
+materials.steel = {young = 20e9, poisson = 0.3}
+[bodies.disc]
+material = 'steel'
+body_force = ['4e6*x - 1e6*y', '4e6*y + 1e6*x', '1e6*z']
+[[displacement]]
+on = 'disc z0'
+x = 0.0
+y = 0.0
+z = 0.0
+";
+    let cut = "[[cyclic]]\nname = 'cut'\nsides = ['disc y0', 'disc x0']\npoint = [0.0, 0.0, 3.0]\naxis = [0.0, 0.0, 1.0]\nsectors = 5\n";
+    let whole = model(text, pie(SECTORS));
+    let sector = model(&format!("{text}{cut}"), pie(1));
+    is_part(
+        (&sector, &solve(&sector, 3)),
+        (&whole, &solve(&whole, 4)),
+        1e-10,
+    );
+}
+
+#[test]
+fn what_is_no_sector_is_refused() {
+    let with = |from: &str, to: &str| with_cyclic(WHEEL).replace(from, to);
+    for (text, expected) in [
+        (
+            with("sectors = 5", "sectors = 6"),
+            "has no partner on side b",
+        ),
+        (with("sectors = 5", "sectors = 1"), "expected at least 2"),
+        (
+            with("'tyre top']", "]").replace("top', ]", "top']"),
+            "side b",
+        ),
+        (
+            with("point = [0.0, 0.0]", "point = [0.0, 0.0, 1.0]"),
+            "two components",
+        ),
+        (
+            with("sectors = 5", "sectors = 5\naxis = [0.0, 1.0]"),
+            "no 'axis' but z",
+        ),
+        (
+            with("name = 'cut'", "name = 'fit'"),
+            "there is another 'fit' already",
+        ),
+        (with("'stress'", "'axisymmetric'"), "has no sectors"),
+        (with("[[tie]]", "[[contact]]"), "are curved where they meet"),
+    ] {
+        let text = format!("mesh = 'm'\n{text}");
+        let error = match Scene::parse(&text) {
+            Err(error) => error.to_string(),
+            Ok(scene) => Model::new(&scene, wheel(1)).unwrap_err().to_string(),
+        };
+        assert!(error.contains(expected), "{error}");
+    }
+}

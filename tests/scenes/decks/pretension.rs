@@ -1,0 +1,130 @@
+//! A bolt of a deck, and a sector of a ring.
+
+use super::solved;
+use crate::support::close::close;
+
+/// A bar of two cubes that share a face, which is the cut, between two walls.
+const BOLT: &str = "\
+*NODE
+ 1, 0, 0, 0
+ 2, 1, 0, 0
+ 3, 1, 1, 0
+ 4, 0, 1, 0
+ 5, 0, 0, 1
+ 6, 1, 0, 1
+ 7, 1, 1, 1
+ 8, 0, 1, 1
+15, 0, 0, 2
+16, 1, 0, 2
+17, 1, 1, 2
+18, 0, 1, 2
+99, 0, 0, 0
+*ELEMENT, TYPE=C3D8, ELSET=Bar
+1, 1, 2, 3, 4, 5, 6, 7, 8
+2, 5, 6, 7, 8, 15, 16, 17, 18
+*NSET, NSET=Ends
+1, 2, 3, 4, 15, 16, 17, 18
+*SURFACE, NAME=Cut
+1, S2
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.
+*SOLID SECTION, ELSET=Bar, MATERIAL=M
+*BOUNDARY
+Ends, 1, 3
+*PRE-TENSION SECTION, SURFACE=Cut, NODE=99
+";
+
+/// Pulled to a force, kept at the length that it has then, stretched by a wall that goes away, and let go.
+#[test]
+fn a_bolt_is_tightened_by_its_node_and_fixed() {
+    let steps = "\
+*STEP
+*STATIC
+*CLOAD
+99, 1, 20.
+*END STEP
+*STEP
+*STATIC
+*BOUNDARY, FIXED
+99, 1, 1
+*BOUNDARY
+15, 3, 3, 0.01
+16, 3, 3, 0.01
+17, 3, 3, 0.01
+18, 3, 3, 0.01
+*END STEP
+*STEP
+*STATIC
+*BOUNDARY, OP=NEW
+Ends, 1, 3
+*CLOAD, OP=NEW
+99, 1, 20.
+*END STEP
+";
+    let solutions = solved(&format!("{BOLT}{steps}"));
+    // E A / L = 500.
+    for (solution, [force, shortening]) in
+        (solutions.iter()).zip([[20.0, 0.04], [25.0, 0.04], [20.0, 0.04]])
+    {
+        let bolt = &solution.report["pretensions"][0];
+        close(bolt["force"].as_f64().unwrap(), force, 1e-10);
+        close(bolt["shortening"].as_f64().unwrap(), shortening, 1e-12);
+    }
+    let shortened = format!("{BOLT}*STEP\n*STATIC\n*BOUNDARY\n99, 1, 1, 0.04\n*END STEP\n");
+    let bolt = &solved(&shortened)[0].report["pretensions"][0];
+    close(bolt["force"].as_f64().unwrap(), 20.0, 1e-10);
+}
+
+/// A quarter of a square that is turned at its outer faces: the sides move alike, turned.
+#[test]
+fn a_quarter_of_a_square_does_what_the_others_do() {
+    let deck = "\
+*NODE
+ 1, 0, 0, 0
+ 2, 1, 0, 0
+ 3, 1, 1, 0
+ 4, 0, 1, 0
+ 5, 0, 0, 1
+ 6, 1, 0, 1
+ 7, 1, 1, 1
+ 8, 0, 1, 1
+15, 0, 0, 2
+16, 1, 0, 2
+17, 1, 1, 2
+18, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=Quarter
+1, 1, 2, 3, 4, 5, 6, 7, 8
+2, 5, 6, 7, 8, 15, 16, 17, 18
+*NSET, NSET=Foot
+1, 2, 3, 4
+*SURFACE, NAME=One
+Quarter, S3
+*SURFACE, NAME=Next
+Quarter, S6
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*SOLID SECTION, ELSET=Quarter, MATERIAL=M
+*BOUNDARY
+Foot, 1, 3
+*TIE, NAME=Sides, CYCLIC SYMMETRY
+One, Next
+*CYCLIC SYMMETRY MODEL, N=4, TIE=Sides
+0., 0., 0., 0., 0., 1.
+*STEP
+*STATIC
+*CLOAD
+6, 2, 3.
+7, 1, 2.
+*END STEP
+";
+    let solution = &solved(deck)[0];
+    let [u, v, on_axis] = [6, 8, 5].map(|tag| solution.displacement[&tag]);
+    let scale = solution.largest_displacement();
+    close(v[0], -u[1], 1e-10 * scale);
+    close(v[1], u[0], 1e-10 * scale);
+    close(v[2], u[2], 1e-10 * scale);
+    close(on_axis[0].hypot(on_axis[1]), 0.0, 1e-10 * scale);
+    assert!(u[1].abs() > 0.1 * scale);
+}
