@@ -2,6 +2,7 @@
 //!
 //! for each stage: read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
+mod cases;
 mod files;
 mod increment;
 mod operators;
@@ -9,6 +10,7 @@ mod prediction;
 mod restart;
 mod stage;
 mod step_totals;
+mod study;
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -34,6 +36,7 @@ use crate::output::report::Status;
 use crate::plan::Plan;
 use crate::plan::choice::Choice;
 use crate::read::check_problem;
+use crate::recover::stress_intensity::check_quantities;
 use crate::report::collect;
 use crate::report::log::RunLog;
 use crate::report::totals::{StepTotals, Totals};
@@ -83,6 +86,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let file = comm.agree(ProblemFile::open(&path).map_err(Failure::from))?;
     let settings = &Settings::new(command_line, &file.catalog().solver);
     comm.agree(settings.check_paths())?;
+    comm.agree(check_quantities(file.catalog()))?;
     let par = match settings.threads {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
@@ -108,6 +112,12 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     }
     let lock = comm.is_root().then(|| OutputLock::take(&settings.output));
     let _lock = comm.agree(lock.transpose().map_err(Failure::from))?;
+    if let Some(cases) = &command_line.run.study {
+        return Ok(match stages.study(cases)? {
+            true => Ending::Converged,
+            false => Ending::NotConverged,
+        });
+    }
     let mut progress = Progress {
         finished: finished_steps(comm, settings)?,
         smallest_pivot: 1.0,
@@ -256,6 +266,7 @@ impl Stages<'_> {
                 log,
                 operators: steps.operators,
                 is_relieved: robust.is_some(),
+                has_derivatives: true,
                 linear_solves: &progress.linear_solves,
             };
             let (analysis, earlier) = (&analyses[k - first], &analyses[..k - first]);
