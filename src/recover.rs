@@ -13,7 +13,7 @@ pub mod penetration;
 mod reactions;
 pub mod refine;
 pub mod solution;
-mod stress_intensity;
+pub mod stress_intensity;
 pub mod stresses;
 
 use std::collections::BTreeMap;

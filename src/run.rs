@@ -2,6 +2,7 @@
 //!
 //! for each stage: read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
+mod cases;
 mod files;
 mod handover;
 mod increment;
@@ -11,6 +12,7 @@ mod restart;
 mod stage;
 mod stage_steps;
 mod step_totals;
+mod study;
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -36,6 +38,7 @@ use crate::output::lock::OutputLock;
 use crate::output::report::Status;
 use crate::plan::Plan;
 use crate::read::check_problem;
+use crate::recover::stress_intensity::check_quantities;
 use crate::report::collect;
 use crate::report::log::RunLog;
 use crate::report::totals::{StepTotals, Totals};
@@ -84,6 +87,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     let file = comm.agree(ProblemFile::open(&path).map_err(Failure::from))?;
     let settings = &Settings::new(command_line, &file.catalog().solver);
     comm.agree(settings.check_paths())?;
+    comm.agree(check_quantities(file.catalog()))?;
     let par = match settings.threads {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
@@ -109,6 +113,12 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     }
     let lock = comm.is_root().then(|| OutputLock::take(&settings.output));
     let _lock = comm.agree(lock.transpose().map_err(Failure::from))?;
+    if let Some(cases) = &command_line.run.study {
+        return Ok(match stages.study(cases)? {
+            true => Ending::Converged,
+            false => Ending::NotConverged,
+        });
+    }
     let mut progress = Progress {
         finished: finished_steps(comm, settings)?,
         smallest_pivot: 1.0,
@@ -257,6 +267,7 @@ impl Stages<'_> {
                 log,
                 operators: steps.operators,
                 is_relieved: robust.is_some(),
+                has_derivatives: true,
                 linear_solves: &progress.linear_solves,
             };
             let (analysis, earlier) = (&analyses[k - first], &analyses[..k - first]);

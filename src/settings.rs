@@ -85,7 +85,10 @@ impl Settings {
                 .unwrap_or(false),
             output: from
                 .choose("output", &run.output, &None)
-                .unwrap_or_else(|| default_result_path(&path)),
+                .unwrap_or_else(|| match run.study {
+                    Some(_) => path.with_extension("study.json"),
+                    None => default_result_path(&path),
+                }),
             report: from.choose("report", &run.report, &None),
             log: from.choose("log", &run.log, &None).unwrap_or_default(),
             quiet: from

@@ -133,11 +133,13 @@ impl Model {
             found,
         } = MadeContacts::new(&sides, &declared, &mut warnings)?;
         activation::check(scene, &bodies, &contacts)?;
+        let on = (&bodies.mesh, &topology);
+        let (tips, coarse) = crack_tips::find(on, plane, &bodies.cell_material, &contacts);
         let goals = goals(
             (scene, &bodies, &topology),
             &materials,
             (&loads, &springs),
-            &contacts,
+            (&contacts, &tips),
         )?;
         let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
         let count = contacts.len() + equations.len();
@@ -159,8 +161,6 @@ impl Model {
         let all: Vec<&str> = declared.iter().map(|of| &of.table[..]).collect();
         diagnostics.check_repeated_contacts(&activation::contacts(scene, &all))?;
         warnings.extend(diagnostics.warnings()?);
-        let on = (&bodies.mesh, &topology);
-        let (tips, coarse) = crack_tips::find(on, plane, &bodies.cell_material, &contacts);
         let found = found
             .into_iter()
             .chain(crack_tips::remark(coarse))
@@ -221,7 +221,7 @@ fn goals(
     (scene, bodies, topology): (&Scene, &bodies::Bodies, &Topology),
     materials: &[Material],
     (loads, springs): (&steps::Loads, &springs::Springs),
-    contacts: &[Contact],
+    (contacts, tips): (&[Contact], &[(u32, CrackTip)]),
 ) -> Result<Goals, InputError> {
     if scene.quantity.is_empty() {
         return Ok(Goals::default());
@@ -240,6 +240,7 @@ fn goals(
         bodies,
         materials,
         contacts,
+        tips,
         supports: &supports,
         initial: &initial,
     };

@@ -7,8 +7,13 @@ pub struct Quantity {
     pub name: String,
     /// Kind.
     pub kind: QuantityKind,
-    /// The direction of a force, a unit vector; zeros for the sum of the normal forces, and where there is none.
+    /// The direction of a force, in space the axis of a moment, a unit vector; zeros for the sum of the normal forces, and where
+    /// there is none.
     pub direction: [f64; 3],
+    /// The point about which a moment is one (m); zeros for other kinds.
+    pub point: [f64; 3],
+    /// The length over which a largest pressure is smoothed (m); 0 where it is that of a point.
+    pub length: f64,
     /// The constant part in every load step, the only one where there are none: what initial stress adds to a mean stress.
     pub constants: Vec<f64>,
     /// The numbers of what it is a quantity of, as its kind says.
@@ -30,17 +35,25 @@ pub enum QuantityKind {
     ContactForce,
     /// The sum of the normal forces of a contact over the area of all its points.
     MeanPressure,
-    /// The largest pressure of a contact.
+    /// The largest pressure of a contact, of a point or smoothed.
     LargestPressure,
     /// The gap that is left at a point of a contact: the numbers of both.
     Opening,
     /// The elastic energy ½ uᵀ K u of all bodies.
     Energy,
+    /// K_I of a crack tip.
+    OpeningIntensity,
+    /// K_II of a crack tip.
+    SlidingIntensity,
+    /// J of a crack tip.
+    EnergyReleaseRate,
+    /// Moment of the forces on side a of a contact about an axis.
+    ContactMoment,
 }
 
 impl QuantityKind {
     /// All kinds, in the order of their numbers in the problem file.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 12] = [
         Self::Displacement,
         Self::MeanStress,
         Self::Reaction,
@@ -49,6 +62,10 @@ impl QuantityKind {
         Self::LargestPressure,
         Self::Opening,
         Self::Energy,
+        Self::OpeningIntensity,
+        Self::SlidingIntensity,
+        Self::EnergyReleaseRate,
+        Self::ContactMoment,
     ];
 
     /// Its word in scenes and reports.
@@ -62,6 +79,10 @@ impl QuantityKind {
             Self::LargestPressure => "largest_pressure",
             Self::Opening => "opening",
             Self::Energy => "energy",
+            Self::OpeningIntensity => "k_i",
+            Self::SlidingIntensity => "k_ii",
+            Self::EnergyReleaseRate => "energy_release_rate",
+            Self::ContactMoment => "contact_moment",
         }
     }
 }

@@ -16,8 +16,9 @@ from contact_dd.comparison import Compared, compare
 from contact_dd.errors import ContactError, IllPosed, InputError, NotConverged, OutputError, Stopped
 from contact_dd.model import Material, Model, Step
 from contact_dd.result import Result
+from contact_dd.study import Study
 
 __all__ = [
     "Compared", "ContactError", "IllPosed", "InputError", "Material", "Model", "NotConverged", "OutputError", "Result",
-    "Step", "Stopped", "adapt", "compare",
+    "Step", "Stopped", "Study", "adapt", "compare",
 ]

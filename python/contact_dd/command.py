@@ -16,6 +16,7 @@ from contact_dd.errors import ContactError, InputError, OutputError
 from contact_dd.manual import KINDS, Generate, version
 from contact_dd.model import Model, scene_of
 from contact_dd.result import Result
+from contact_dd.study import cases_of, values_of
 from contact_dd.tables import write_tables
 
 
@@ -49,6 +50,18 @@ def parser() -> argparse.ArgumentParser:
     solved.add_argument("--subdomains", type=int, help="how many there are (default: by size)")
     solved.add_argument("--folder", type=Path, default=Path(), help="of problem file and result (default: this one)")
     solved.set_defaults(command=run)
+
+    what = "Solves a scene for many values of its loads, gaps and friction by the factors of one run; writes tables."
+    studied = commands.add_parser("study", help="solve for many values of parameters", description=what)
+    studied.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene with [[quantity]]")
+    studied.add_argument(
+        "--vary", action="append", required=True, metavar="NAME=VALUES",
+        help="parameter, or a part of its name, and first:last:step or values with commas; several: all combinations",
+    )
+    studied.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
+    studied.add_argument("--subdomains", type=int, help="how many there are (default: by size)")
+    studied.add_argument("--folder", type=Path, default=Path(), help="of problem file and tables (default: this one)")
+    studied.set_defaults(command=study)
 
     what = "Writes the scene and the mesh that a deck of Abaqus or CalculiX means, to go on from there."
     converted = commands.add_parser("convert", help="make a scene of a deck", description=what)
@@ -111,14 +124,31 @@ def factor(text: str) -> float | None:
 
 
 def run(arguments: argparse.Namespace) -> None:
+    print(programs.solve(partitioned(arguments), arguments.ranks, (), True).path)
+
+
+def study(arguments: argparse.Namespace) -> None:
+    vary = dict(map(values_of, arguments.vary))
+    if len(vary) < len(arguments.vary):
+        raise InputError("--vary: a name occurs twice; expected it once, with all of its values")
+    problem = partitioned(arguments)
+    table = programs.study(problem, cases_of(problem, vary), arguments.ranks, (), True)
+    for path, write in (
+        (problem.with_suffix(".study.csv"), table.write_csv), (problem.with_suffix(".study.h5"), table.write_hdf5)
+    ):
+        write(path)
+        print(path)
+
+
+def partitioned(arguments: argparse.Namespace) -> Path:
+    """The problem file of a scene or a deck, in the folder that is asked for."""
     source, folder = arguments.source, arguments.folder
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: can't be made: {error.strerror}") from error
-    problem = folder / (source.stem + ".h5")
-    programs.partition(source, arguments.subdomains, True, problem=problem)
-    print(programs.solve(problem, arguments.ranks, (), True).path)
+    problem: Path = folder / (source.stem + ".h5")
+    return programs.partition(source, arguments.subdomains, True, problem=problem)
 
 
 def convert(arguments: argparse.Namespace) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, TypedDict
@@ -15,6 +15,7 @@ from contact_dd.calls import Calls, call
 from contact_dd.errors import InputError, OutputError
 from contact_dd.mesh import MeshSource, deck_of, msh_of
 from contact_dd.result import Result
+from contact_dd.study import Study, cases_of
 
 Number = float | str
 """A number, or an expression of position such as `"1e6*(1 - x^2/25)"`."""
@@ -230,14 +231,18 @@ class Model:
     def quantity(
         self, name: str, kind: str, *, contact: str | None = None, body: str | None = None, on: str | None = None,
         at: Sequence[float] | None = None, node: int | None = None, direction: str | Sequence[float] | None = None,
-        component: str | None = None,
+        component: str | None = None, about: Sequence[float] | None = None, over: float | None = None,
+        tip: str | None = None,
     ) -> None:
         """Asks for a quantity, its value and its derivatives: a "displacement" (`direction`, `at` or `node`), the
         "reaction" of what holds a group (`on`, `direction`), of a contact its "contact_force" (perhaps `direction`),
-        "mean_pressure", "largest_pressure" or the "opening" at a point (`at` or `node`), the "mean_stress" of a body
-        (`body`, `component`) or the elastic "energy". `Result.quantities` and `Result.gradient` have it by its name."""
+        its "contact_moment" (`about` a point, in space with the `direction` of an axis), "mean_pressure",
+        "largest_pressure" (perhaps smoothed `over` a length) or the "opening" at a point (`at` or `node`), the
+        "mean_stress" of a body (`body`, `component`), "k_i", "k_ii" or the "energy_release_rate" of a crack `tip`, as
+        "left crack, tip 1", or the elastic "energy". `Result.quantities` and `Result.gradient` have it by its name."""
         keys = given(
-            contact=contact, body=body, on=on, at=at, node=node, direction=direction, component=component
+            contact=contact, body=body, on=on, at=at, node=node, direction=direction, component=component, about=about,
+            over=over, tip=tip,
         )
         entry = self._add("quantity", name=name, kind=kind, **keys)
         self._calls.add(entry, call("quantity", name, kind, **keys))
@@ -304,6 +309,36 @@ class Model:
 
         Raises the programs' messages as `InputError`, `NotConverged`, `IllPosed` and so on.
         """
+        temporary, problem, worded = self._partition(folder, subdomains, progress)
+        result = programs.solve(problem, ranks, options, progress, worded)
+        result.folder = temporary
+        return result
+
+    def study(
+        self, vary: Mapping[str, Sequence[float]], ranks: int = 2, *, folder: str | Path | None = None,
+        subdomains: int | None = None, options: Sequence[str] = (),
+        progress: bool | Callable[[dict[str, Any]], None] = True,
+    ) -> Study:
+        """Solves for all combinations of the values of parameters, by the factors of one run, and returns the table
+        of the quantities that the model asks for.
+
+        `vary` has the values by the names of parameters, as `Result.gradient` has them, or a part that only one name
+        has, as "friction": factors of loads, additions to gaps, coefficients of friction. What changes the stiffness
+        takes a run of its own. The other arguments are those of `run`.
+        """
+        # The folder is needed until the table is read.
+        temporary, problem, worded = self._partition(folder, subdomains, progress)
+        cases = cases_of(problem, vary)
+        table = programs.study(problem, cases, ranks, options, progress, worded)
+        if temporary:
+            temporary.cleanup()
+        return table
+
+    def _partition(
+        self, folder: str | Path | None, subdomains: int | None,
+        progress: bool | Callable[[dict[str, Any]], None],
+    ) -> tuple[tempfile.TemporaryDirectory[str] | None, Path, Callable[[str], str]]:
+        """Writes the problem file into a folder; returns that if it is temporary, the file, and what words messages."""
         try:
             temporary = tempfile.TemporaryDirectory(prefix="contact-dd-") if folder is None else None
         except OSError as error:
@@ -313,10 +348,7 @@ class Model:
         def worded(message: str) -> str:
             return self._calls.worded(message, self.scene, scene, self._name)
 
-        problem = programs.partition(scene, subdomains, progress, worded)
-        result = programs.solve(problem, ranks, options, progress, worded)
-        result.folder = temporary
-        return result
+        return temporary, programs.partition(scene, subdomains, progress, worded), worded
 
     def _add(self, kind: str, /, **keys: Any) -> dict[str, Any]:
         entry = given(**keys)

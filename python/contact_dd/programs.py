@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import operator
 import os
@@ -15,8 +16,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from contact_dd import errors
+from contact_dd import errors, files
+from contact_dd import study as studies
 from contact_dd.result import Result
+from contact_dd.study import Study
 
 Progress = bool | Callable[[dict[str, Any]], None]
 Worded = Callable[[str], str]
@@ -75,7 +78,7 @@ def partition(
         word, _, rest = line.partition(" ")
         if word == "warning":
             # The solver's warnings come without the name of their explanation.
-            warnings.warn(worded(NAMED.sub("", rest.strip())), stacklevel=5)
+            warnings.warn(worded(NAMED.sub("", rest.strip())), stacklevel=6)
         elif progress is True and word in ("mesh", "contact"):
             print(line, flush=True)
 
@@ -95,25 +98,44 @@ def solve(
     if isinstance(options, str):
         raise errors.InputError(f"options={options!r}; expected a list of them")
     output = problem.with_suffix(".vtkhdf")
+    try:
+        hear_solver(problem, output, ranks, options, progress, worded)
+    except errors.NotConverged as error:
+        error.result = Result(output)
+        raise
+    return Result(output)
+
+
+def study(
+    problem: Path, cases: dict[str, Any], ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str
+) -> Study:
+    """Solves the cases of a study. Messages are `worded`."""
+    asked, output = problem.with_suffix(".cases.json"), problem.with_suffix(".study.json")
+    files.write(asked, json.dumps(cases))
+    # Which cases don't converge the table says.
+    with contextlib.suppress(errors.NotConverged):
+        hear_solver(problem, output, ranks, ["--study", str(asked), *options], progress, worded)
+    return studies.read(output)
+
+
+def hear_solver(
+    problem: Path, output: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded
+) -> None:
+    """Runs the solver. Messages are `worded`."""
 
     def hear(line: str) -> None:
         event = event_of(line)
         if event is None:
             return
         if event["event"] == "warning":
-            warnings.warn(worded(event["message"]), stacklevel=5)
+            warnings.warn(worded(event["message"]), stacklevel=6)
         if callable(progress):
             progress(event)
         elif progress:
             show(event)
 
     command = [*launcher(ranks), find("contact-dd-mpi"), str(problem), "-o", str(output), "--log", "json"]
-    try:
-        run([*command, *map(str, options)], hear, worded)
-    except errors.NotConverged as error:
-        error.result = Result(output)
-        raise
-    return Result(output)
+    run([*command, *map(str, options)], hear, worded)
 
 
 def run(command: Sequence[str], hear: Callable[[str], None], worded: Worded) -> None:

@@ -61,6 +61,11 @@ impl CondensedPatch {
 }
 
 impl LastPatch {
+    /// Forgets it, so that the next problem is solved as if it were the first one.
+    pub fn forget(&self) {
+        self.0.take();
+    }
+
     /// H condensed onto these `jumps`, as it is known already or made anew; `None` where they are too many or the bodies
     /// move freely as they hold them.
     pub fn condensed(

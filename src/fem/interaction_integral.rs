@@ -13,6 +13,7 @@
 //! 3-D curved cracks including surface tractions*, Eng. Fract. Mech. 72 (2005).
 
 mod faces;
+mod weights;
 
 use std::collections::BTreeMap;
 
@@ -136,7 +137,7 @@ impl<'a> TipDisc<'a> {
         initial: &InitialStress,
     ) -> Option<Integrals> {
         let mut sum = None;
-        self.each_cell(block, initial, |cell, found| {
+        self.each_cell(block, initial, RADII.len(), |cell, found| {
             let of_nodes = cell
                 .nodes
                 .iter()
@@ -155,11 +156,12 @@ impl<'a> TipDisc<'a> {
         sum
     }
 
-    /// Hands the integral over every cell in the disc to `take`.
+    /// Hands the integral over every cell in the disc, for the first so many `radii`, to `take`.
     fn each_cell(
         &self,
         block: &Block,
         initial: &InitialStress,
+        radii: usize,
         mut take: impl FnMut(&LocalCell, &[[OfCell; 2]]),
     ) {
         let mut rules: BTreeMap<u8, Vec<TabulatedPoint>> = BTreeMap::new();
@@ -178,7 +180,7 @@ impl<'a> TipDisc<'a> {
                 slopes: vec![[0.0; 2]; places],
                 constant: 0.0,
             };
-            let mut found: Vec<[OfCell; 2]> = (0..RADII.len()).map(|_| [none(), none()]).collect();
+            let mut found: Vec<[OfCell; 2]> = (0..radii).map(|_| [none(), none()]).collect();
             for point in stiffness_points(&cell.kind, 3) {
                 self.add_forces(&local, point, &mut found);
             }

@@ -10,7 +10,7 @@ pub struct QuantityValue {
     pub name: String,
     /// Its kind, by the scene's word for it.
     pub kind: String,
-    /// Its value (m, Pa, N or J; forces and energies in the plane per metre of thickness).
+    /// Its value (m, Pa, Pa √m, N, N m or J; forces, moments and energies in the plane per metre of thickness).
     pub value: f64,
     /// Tag of the node at which it is taken, of the largest pressure that which has it; `null` where it isn't one of a node.
     pub node: Option<i64>,

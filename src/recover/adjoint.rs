@@ -15,18 +15,20 @@
 //! makes its derivative w·(df − dK u) + ν·dg + η·dv − τ'·dφ for all parameters at once. M = μ e and, in space, Q = κ (I − e eᵀ).
 //! Slipping points are not symmetric: M stands in the conditions here, where it stands in the forces there.
 
+mod crack_tip;
 mod derivatives;
 mod functional;
 mod near_change;
 mod slip_conditions;
 mod slipping;
+mod smoothing;
 mod solved;
 mod transposed;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use contact_dd_partition::quantity::{Parameter, Quantity};
+use contact_dd_partition::quantity::{Parameter, Quantity, QuantityKind};
 
 use self::derivatives::{Sensitivity, derivatives};
 use self::functional::{Functional, MaterialForces};
@@ -45,21 +47,24 @@ const RECIPROCITY: f64 = 1e-7;
 const GOOD: f64 = 1e-10;
 const REFINEMENTS: usize = 3;
 
-/// The quantities that the scene asks for, if this `moment` is the end of a load step, which began with the slips `before`.
-/// Collective.
+/// The quantities that the scene asks for, if this `moment` is the end of a load step; with derivatives where the slips are known
+/// with which it began. Collective.
 pub fn quantities_at(
     moment: LoadPoint,
     fixed: &FixedActiveSet<'_>,
     solution: &Solution,
-    before: &BTreeMap<usize, Vec<f64>>,
+    before: Option<&BTreeMap<usize, Vec<f64>>>,
 ) -> Quantities {
     let catalog = fixed.context.catalog;
     if moment.part < 1.0 || catalog.quantities.is_empty() {
         return Quantities::default();
     }
-    let has_slipped = fixed.context.comm.largest(before.values().flatten()) > 0.0;
+    let slips = before.into_iter().flat_map(BTreeMap::values).flatten();
+    let has_slipped = fixed.context.comm.largest(slips) > 0.0;
     let has_come = catalog.points.iter().any(|point| point.since != [0.0; 3]);
-    let without = if has_slipped {
+    let without = if before.is_none() {
+        Some("they aren't asked for")
+    } else if has_slipped {
         Some("friction remembers the load steps and increments before the last one")
     } else if has_come {
         Some("a contact that came later remembers the position of its bodies")
@@ -84,7 +89,11 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
     };
     context.comm.broadcast(&mut all.without_derivatives);
     let has_derivatives = all.without_derivatives.is_none();
-    let forces = MaterialForces::new(context, &solved.solution.discrete);
+    let of_energy = |of: &Quantity| of.kind == QuantityKind::Energy;
+    let forces = match has_derivatives || catalog.quantities.iter().any(of_energy) {
+        true => MaterialForces::new(context, &solved.solution.discrete),
+        false => MaterialForces::default(),
+    };
     let slipping: BTreeMap<usize, SlippingPoints> = (solved.solution.discrete.groups.iter())
         .map(|(&g, of_group)| (g, SlippingPoints::new(&context.groups[&g], of_group)))
         .collect();

@@ -2,12 +2,43 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::problem::Catalog;
+use contact_dd_partition::quantity::QuantityKind;
 use nalgebra::Vector2;
 
 use crate::context::Context;
+use crate::error::Failure;
 use crate::fem::interaction_integral::{Integrals, TipDisc};
 use crate::fem::stress_intensity::StressIntensity;
 use crate::recover::BlockSolution;
+
+/// Checks that the near fields are known of every crack tip that a quantity is of.
+///
+/// # Errors
+/// A material whose fields aren't.
+pub fn check_quantities(catalog: &Catalog) -> Result<(), Failure> {
+    for quantity in &catalog.quantities {
+        let is_of_tip = matches!(
+            quantity.kind,
+            QuantityKind::OpeningIntensity
+                | QuantityKind::SlidingIntensity
+                | QuantityKind::EnergyReleaseRate
+        );
+        let Some(tip) = quantity.of.first().filter(|_| is_of_tip) else {
+            continue;
+        };
+        let tip = &catalog.tips[*tip as usize];
+        let material = &catalog.materials[tip.material as usize];
+        if TipDisc::new(tip, material).is_none() {
+            return Err(Failure::input(format!(
+                "quantity '{}': the near fields of crack tip '{}' aren't known in material '{}', as its stiffness is almost \
+                 that of one with twofold roots; expected 'young' and 'poisson', or another stiffness",
+                quantity.name, tip.name, material.name
+            )));
+        }
+    }
+    Ok(())
+}
 
 /// The stress intensity factors of all crack tips in load step `step`, on the root; tips of absent bodies and in materials
 /// without near fields have none. Collective.

@@ -44,6 +44,8 @@ pub struct Increments<'a> {
     pub operators: &'a Operators,
     /// Whether another solver takes over where this one doesn't converge.
     pub is_relieved: bool,
+    /// Whether quantities get derivatives.
+    pub has_derivatives: bool,
     /// Linear problems that were solved for contact conditions, in tries that were given up, too; on the root.
     pub linear_solves: &'a Cell<usize>,
 }
@@ -211,7 +213,8 @@ impl Increments<'_> {
         let discrete = self.discrete(&mut swept, &fixed, &problem);
         let stress_of = (!self.settings.no_stress).then_some(moment.step);
         let mut solution = Solution::new(&fixed, analysis, discrete, stress_of);
-        solution.quantities = quantities_at(moment, &fixed, &solution, &held_at);
+        let slips_before = self.has_derivatives.then_some(&held_at);
+        solution.quantities = quantities_at(moment, &fixed, &solution, slips_before);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
         let scales = self.accept(&mut swept.outcome, &solution, &energy, problem.earlier);
         seconds.add(|s| &mut s.recover, comm.times() - lap);

@@ -8,7 +8,9 @@ use crate::comm::ranks::RankSeconds;
 use crate::condense::Condensation;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::interface::assemble_interface;
+use crate::condense::limits::{limits_of_clusters, limits_of_groups};
 use crate::condense::tree::condense_clusters;
+use crate::contact::tangent::TangentialLimit;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::interface::numbering::Numbering;
@@ -95,6 +97,32 @@ impl Operators {
             interface: self.interface.as_ref(),
             analysis,
         }
+    }
+
+    /// Takes the laws of friction under other `loads` on the same bodies, and forgets what the last solution has left to begin
+    /// with: the next one has the bits of the first one of a run. Collective.
+    ///
+    /// # Errors
+    /// Supports that make two sides penetrate.
+    pub fn begin_anew(&mut self, context: &Context<'_>, loads: &Loads) -> Result<(), Failure> {
+        let limits = limits_of_clusters(context, &limits_of_groups(context, loads)?);
+        let mut all: Vec<Vec<TangentialLimit>> = Vec::new();
+        context.comm.gather(
+            &context.plan.contact_owners(),
+            |p| {
+                limits
+                    .get(&p)
+                    .map_or_else(Vec::new, |of| of.tangents.clone())
+            },
+            |_, tangents| all.push(tangents),
+        );
+        if let Some((_, interface)) = &mut self.interface {
+            for (law, tangents) in interface.laws.iter_mut().zip(all) {
+                law.tangents = tangents;
+            }
+            interface.last_patch.forget();
+        }
+        Ok(())
     }
 
     /// The smallest pivot relative to its diagonal entry; on the root.

@@ -67,6 +67,7 @@ impl Stages<'_> {
                 log: self.log,
                 operators,
                 is_relieved: false,
+                has_derivatives: false,
                 linear_solves: &Cell::default(),
             };
             let solved = increments.step(k, (earlier, analysis), state, seconds)?;

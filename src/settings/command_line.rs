@@ -131,6 +131,11 @@ pub struct RunSettings {
     #[arg(long, help_heading = "Running")]
     pub second_start: bool,
 
+    /// Solve for the cases of a study instead, and write a table of the quantities
+    #[arg(long, value_name = "CASES", value_hint = ValueHint::FilePath, help_heading = "Running",
+          conflicts_with_all = ["restart", "report", "second_start", "check"])]
+    pub study: Option<PathBuf>,
+
     /// How the linear interface problem is solved, with --method newton [default: what takes less time]
     #[arg(long, value_name = "NAME", value_enum, help_heading = "Solving")]
     pub interface: Option<InterfaceMethod>,

@@ -30,7 +30,7 @@ use support::solver::{LIMIT, program};
 use walk::{Place, places};
 
 /// Changes that make another problem which nothing in the file contradicts.
-const FREE: [&str; 63] = [
+const FREE: [&str; 65] = [
     "/@title",
     "/@plane",
     "/VTKHDF/Points",
@@ -59,6 +59,8 @@ const FREE: [&str; 63] = [
     "/quantity/name",
     "/quantity/kind",
     "/quantity/direction",
+    "/quantity/point",
+    "/quantity/length",
     "/quantity/constant",
     "/quantity/node",
     "/quantity/of",

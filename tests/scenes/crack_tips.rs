@@ -15,7 +15,7 @@ use crate::support::validation::gather;
 const LOAD: f64 = 1e7;
 
 /// A plate of 6 m × 6 m with a crack of `length` along x from its left side on, in cells of a kind, so many times finer.
-fn plate(length: f64, cells: &str, finer: usize) -> Mesh {
+pub fn plate(length: f64, cells: &str, finer: usize) -> Mesh {
     let graded = |s: f64| s.powi(3);
     let x = move |column: &str, s: f64| match column {
         "crack" => length * (1.0 - graded(1.0 - s)),

@@ -4,6 +4,7 @@ use super::bodies::Bodies;
 use super::initial_stress::{InitialStress, mean_weights};
 use super::{Contact, Material, PlaneState};
 use crate::contact_point::ContactPoint;
+use crate::crack_tip::CrackTip;
 use crate::element::geometry::{difference, length};
 use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
@@ -23,6 +24,8 @@ pub(super) struct Known<'a> {
     pub bodies: &'a Bodies,
     pub materials: &'a [Material],
     pub contacts: &'a [Contact],
+    /// The crack tips, each with a cell that has it.
+    pub tips: &'a [(u32, CrackTip)],
     /// The names of supports, behind which those of springs come.
     pub supports: &'a [String],
     /// The initial stress in every load step.
@@ -58,6 +61,8 @@ impl Known<'_> {
             name: asked.name.clone(),
             kind: QuantityKind::Energy,
             direction: [0.0; 3],
+            point: [0.0; 3],
+            length: 0.0,
             constants: vec![0.0; self.initial.len()],
             of: Vec::new(),
             node: -1,
@@ -80,14 +85,45 @@ impl Known<'_> {
                 quantity.direction = self.of_force(along)?;
                 quantity.of = self.conditions(on)?;
             }
+            Target::CrackTip { tip, kind } => {
+                quantity.kind = *kind;
+                let (number, tag) = self.tip(tip)?;
+                (quantity.of, quantity.node) = (vec![number], tag);
+            }
+            Target::Energy => {}
+            of_contact => self.of_contact(of_contact, &mut quantity)?,
+        }
+        Ok((quantity, weights))
+    }
+
+    /// Tells a quantity of a contact what it is of.
+    fn of_contact(&self, target: &Target, quantity: &mut Quantity) -> Result<(), String> {
+        match target {
             Target::ContactForce { contact, along } => {
                 quantity.kind = QuantityKind::ContactForce;
                 let along = along.as_ref().map(|along| self.of_force(along));
                 quantity.direction = along.transpose()?.unwrap_or_default();
                 quantity.of = vec![self.contact(contact, true)?.0];
             }
-            Target::Pressure { contact, kind } => {
-                quantity.kind = *kind;
+            Target::ContactMoment {
+                contact,
+                about,
+                axis,
+            } => {
+                if self.is_ring() {
+                    return Err("around an axis forces have no moment about a point".into());
+                }
+                quantity.kind = QuantityKind::ContactMoment;
+                quantity.direction = axis.as_ref().map_or([0.0; 3], |axis| axis.value);
+                quantity.point = about.value;
+                quantity.of = vec![self.contact(contact, true)?.0];
+            }
+            Target::Pressure {
+                contact,
+                kind,
+                over,
+            } => {
+                (quantity.kind, quantity.length) = (*kind, *over);
                 quantity.of = vec![self.contact(contact, false)?.0];
             }
             Target::Opening { contact, at } => {
@@ -97,15 +133,39 @@ impl Known<'_> {
                 quantity.node = point.tag();
                 quantity.of = vec![number, point.place];
             }
-            Target::Energy => {}
+            _ => {}
         }
-        Ok((quantity, weights))
+        Ok(())
+    }
+
+    /// Whether forces are those of whole rings.
+    fn is_ring(&self) -> bool {
+        self.scene.plane == Some(PlaneState::Axisymmetric)
+    }
+
+    /// The number and the node of a crack tip.
+    fn tip(&self, name: &str) -> Result<(u32, i64), String> {
+        let mut tips = (0..).zip(self.tips);
+        if let Some((number, (_, tip))) = tips.find(|(_, (_, tip))| tip.name == name) {
+            return Ok((number, tip.tag));
+        }
+        let known = self.tips.iter().map(|(_, tip)| tip.name.as_str());
+        Err(match self.tips.is_empty() {
+            true => format!(
+                "there is no crack tip '{name}'; the scene has none with stress intensity factors, which are of straight \
+                 cracks in the plane, three facets of whose faces or more lie between the tip and the next kink, end, boundary \
+                 or other material"
+            ),
+            false => format!(
+                "there is no crack tip '{name}'{}",
+                hint_and_known(name, known)
+            ),
+        })
     }
 
     /// The direction of a force; around an axis that along the axis.
     fn of_force(&self, along: &ConstantVector) -> Result<[f64; 3], String> {
-        let is_ring = self.scene.plane == Some(PlaneState::Axisymmetric);
-        match is_ring && along.value[0] != 0.0 {
+        match self.is_ring() && along.value[0] != 0.0 {
             true => Err(
                 "around an axis the sum of forces is one along it; expected direction = \"y\""
                     .into(),

@@ -15,6 +15,8 @@ pub(super) fn write(problem: &Problem, datasets: &mut Datasets) -> hdf5::Result<
     datasets.strings("/quantity/name", all().map(|of| of.name.as_str()))?;
     datasets.put("/quantity/kind", kinds)?;
     datasets.vectors("/quantity/direction", all().map(|of| &of.direction))?;
+    datasets.vectors("/quantity/point", all().map(|of| &of.point))?;
+    datasets.put("/quantity/length", all().map(|of| of.length))?;
     let constants = all().flat_map(|of| &of.constants).copied();
     datasets.put("/quantity/constant", constants)?;
     datasets.put("/quantity/node", all().map(|of| of.node))?;

@@ -247,19 +247,23 @@ pub const FIELDS: &[Field] = &[
     field("/tip/facet_distance", "X, 3", NotNegative,
         "distances of these from the tip [m]; without a node between them the last one isn't used"),
     field("/quantity/name", "J", Names, "names of quantities that are asked for, each another one"),
-    field("/quantity/kind", "J", Codes("kind of quantity", 8),
+    field("/quantity/kind", "J", Codes("kind of quantity", 12),
         "0 displacement of a node, 1 mean stress of a body, 2 reaction, 3 force of a contact on side a, 4 its mean pressure, 5 its \
-         largest pressure, 6 gap that is left at one of its points, 7 elastic energy"),
+         largest pressure, 6 gap that is left at one of its points, 7 elastic energy, 8 K_I of a crack tip, 9 its K_II, 10 its J, 11 \
+         moment of the forces of a contact on side a"),
     field("/quantity/direction", "J, d", Numbers,
-        "direction of a reaction or a contact's force; zeros for the sum of the normal forces, and for other kinds but \
+        "direction of a reaction or a contact's force, in space axis of a moment; zeros for the sum of the normal forces, and for other kinds but \
          displacements, whose direction `/weight` has, too"),
+    field("/quantity/point", "J, d", Numbers, "point about which a moment is one [m]; zeros for other kinds"),
+    field("/quantity/length", "J", NotNegative,
+        "length over which a largest pressure is smoothed [m]; 0 for that of a point, and for other kinds"),
     field("/quantity/constant", "J, L?", Numbers,
         "what is added to the sum of weights and displacements, in every load step: the mean of the initial stress"),
     field("/quantity/node", "J", Integers, "name (`GlobalNodeId`) of the node of a displacement or a gap; −1 for other kinds"),
     field("/quantity/of_offset", "J + 1", Offsets('D'), "slices of `of`"),
     field("/quantity/of", "D", Integers,
-        "by kind: 1 the materials of the body; 2 the conditions, indices into `/support/name`; 3 to 5 the contact; 6 the contact and \
-         the point's place in it; none for others"),
+        "by kind: 1 the materials of the body; 2 the conditions, indices into `/support/name`; 3 to 5 and 11 the contact; 6 the contact \
+         and the point's place in it; 8 to 10 the crack tip; none for others"),
     field("/weight/offset", "N + 1", Offsets('w'), "slices of the datasets below"),
     field("/weight/quantity", "w", Indices("quantity", 'J'), "index of a quantity of kind 0 or 1"),
     field("/weight/node", "w", Integers, "node, counted within the subdomain"),

@@ -47,10 +47,28 @@ pub enum Target {
         /// The direction; `None` for the sum of normal forces.
         along: Option<ConstantVector>,
     },
+    /// The moment about an axis that a contact exerts on side a.
+    ContactMoment {
+        /// Name of the contact.
+        contact: String,
+        /// A point of the axis.
+        about: ConstantVector,
+        /// The direction of the axis in space; in the plane that is z.
+        axis: Option<ConstantVector>,
+    },
     /// The mean or the largest pressure of a contact.
     Pressure {
         /// Name of the contact.
         contact: String,
+        /// Which of them.
+        kind: QuantityKind,
+        /// The length over which a largest one is smoothed (m); 0 where it isn't.
+        over: f64,
+    },
+    /// A stress intensity factor of a crack tip, or its energy release rate.
+    CrackTip {
+        /// Name of the tip.
+        tip: String,
         /// Which of them.
         kind: QuantityKind,
     },
@@ -92,17 +110,23 @@ pub enum StressComponent {
     Xz,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Kind {
     Displacement,
     MeanStress,
     Reaction,
     ContactForce,
+    ContactMoment,
     MeanPressure,
     LargestPressure,
     Opening,
     Energy,
+    #[serde(rename = "k_i")]
+    OpeningIntensity,
+    #[serde(rename = "k_ii")]
+    SlidingIntensity,
+    EnergyReleaseRate,
 }
 
 #[derive(Deserialize)]
@@ -127,7 +151,7 @@ enum Axis {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, kind, at, node, direction, contact, body, on and component"
+    expecting = "a table of name, kind, at, node, direction, contact, body, on, component, about, over and tip"
 )]
 struct Keys {
     name: String,
@@ -139,6 +163,24 @@ struct Keys {
     body: Option<String>,
     on: Option<String>,
     component: Option<StressComponent>,
+    about: Option<ConstantVector>,
+    over: Option<f64>,
+    tip: Option<String>,
+}
+
+/// The keys beside name and kind, as far as no kind has taken them.
+#[derive(Default, PartialEq)]
+struct Given {
+    place: Option<Place>,
+    /// The direction, the inner `None` being the normal one.
+    along: Option<Option<ConstantVector>>,
+    contact: Option<String>,
+    body: Option<String>,
+    on: Option<String>,
+    component: Option<StressComponent>,
+    about: Option<ConstantVector>,
+    over: Option<f64>,
+    tip: Option<String>,
 }
 
 /// A unit vector; its dimension is 0 where it is one of the first two axes, which any space has.
@@ -165,11 +207,90 @@ fn unit(direction: Direction) -> Result<Option<ConstantVector>, &'static str> {
     }))
 }
 
+impl Given {
+    /// Takes the keys of a kind; `None` where one that it needs isn't there.
+    fn take(&mut self, kind: Kind) -> Option<Target> {
+        Some(match kind {
+            Kind::Displacement => Target::Displacement {
+                at: self.place.take()?,
+                along: self.along.take()??,
+            },
+            Kind::MeanStress => Target::MeanStress {
+                body: self.body.take()?,
+                component: self.component.take()?,
+            },
+            Kind::Reaction => Target::Reaction {
+                on: self.on.take()?,
+                along: self.along.take()??,
+            },
+            Kind::ContactForce => Target::ContactForce {
+                contact: self.contact.take()?,
+                along: self.along.take().flatten(),
+            },
+            Kind::ContactMoment => Target::ContactMoment {
+                contact: self.contact.take()?,
+                about: self.about.take()?,
+                axis: match self.along.take() {
+                    Some(axis) => Some(axis?),
+                    None => None,
+                },
+            },
+            Kind::MeanPressure => Target::Pressure {
+                contact: self.contact.take()?,
+                kind: QuantityKind::MeanPressure,
+                over: 0.0,
+            },
+            Kind::LargestPressure => Target::Pressure {
+                contact: self.contact.take()?,
+                kind: QuantityKind::LargestPressure,
+                over: self.over.take().unwrap_or(0.0),
+            },
+            Kind::Opening => Target::Opening {
+                contact: self.contact.take()?,
+                at: self.place.take()?,
+            },
+            Kind::Energy => Target::Energy,
+            Kind::OpeningIntensity => self.of_tip(QuantityKind::OpeningIntensity)?,
+            Kind::SlidingIntensity => self.of_tip(QuantityKind::SlidingIntensity)?,
+            Kind::EnergyReleaseRate => self.of_tip(QuantityKind::EnergyReleaseRate)?,
+        })
+    }
+
+    fn of_tip(&mut self, kind: QuantityKind) -> Option<Target> {
+        let tip = self.tip.take()?;
+        Some(Target::CrackTip { tip, kind })
+    }
+}
+
+impl Kind {
+    /// The keys that a quantity of this kind has, in words.
+    fn expected(self) -> &'static str {
+        match self {
+            Self::Displacement => {
+                "a displacement has 'direction', an axis or a vector, and 'at' or 'node'"
+            }
+            Self::MeanStress => "a mean stress has 'body' and 'component'",
+            Self::Reaction => "a reaction has 'on' and 'direction', an axis or a vector",
+            Self::ContactForce => "a contact force has 'contact' and perhaps 'direction'",
+            Self::ContactMoment => {
+                "a contact moment has 'contact' and 'about', a point, in space also 'direction', an axis or a vector"
+            }
+            Self::MeanPressure => "a mean pressure has 'contact'",
+            Self::LargestPressure => "a largest pressure has 'contact' and perhaps 'over'",
+            Self::Opening => "an opening has 'contact', and 'at' or 'node'",
+            Self::Energy => "an energy has no other key; it is that of all bodies",
+            Self::OpeningIntensity | Self::SlidingIntensity => {
+                "a stress intensity factor has 'tip', the name of a crack tip"
+            }
+            Self::EnergyReleaseRate => "an energy release rate has 'tip', the name of a crack tip",
+        }
+    }
+}
+
 impl TryFrom<Keys> for Quantity {
     type Error = &'static str;
 
     fn try_from(keys: Keys) -> Result<Self, Self::Error> {
-        let along = keys.direction.map(unit).transpose()?;
         let place = match (keys.at, keys.node) {
             (Some(point), None) => Some(Place::Point(point)),
             (None, Some(node)) => Some(Place::Node(node)),
@@ -178,53 +299,25 @@ impl TryFrom<Keys> for Quantity {
                 return Err("'at' and 'node' are both there; expected one of them");
             }
         };
-        let rest = (keys.contact, keys.body, keys.on, keys.component);
-        let of = match (keys.kind, place, along, rest) {
-            (Kind::Displacement, Some(at), Some(Some(along)), (None, None, None, None)) => {
-                Target::Displacement { at, along }
-            }
-            (Kind::Displacement, ..) => {
-                return Err(
-                    "a displacement has 'direction', an axis or a vector, and 'at' or 'node'",
-                );
-            }
-            (Kind::MeanStress, None, None, (None, Some(body), None, Some(component))) => {
-                Target::MeanStress { body, component }
-            }
-            (Kind::MeanStress, ..) => return Err("a mean stress has 'body' and 'component'"),
-            (Kind::Reaction, None, Some(Some(along)), (None, None, Some(on), None)) => {
-                Target::Reaction { on, along }
-            }
-            (Kind::Reaction, ..) => {
-                return Err("a reaction has 'on' and 'direction', an axis or a vector");
-            }
-            (Kind::ContactForce, None, along, (Some(contact), None, None, None)) => {
-                let along = along.flatten();
-                Target::ContactForce { contact, along }
-            }
-            (Kind::ContactForce, ..) => {
-                return Err("a contact force has 'contact' and perhaps 'direction'");
-            }
-            (Kind::MeanPressure, None, None, (Some(contact), None, None, None)) => {
-                let kind = QuantityKind::MeanPressure;
-                Target::Pressure { contact, kind }
-            }
-            (Kind::LargestPressure, None, None, (Some(contact), None, None, None)) => {
-                let kind = QuantityKind::LargestPressure;
-                Target::Pressure { contact, kind }
-            }
-            (Kind::MeanPressure | Kind::LargestPressure, ..) => {
-                return Err("a pressure has 'contact'");
-            }
-            (Kind::Opening, Some(at), None, (Some(contact), None, None, None)) => {
-                Target::Opening { contact, at }
-            }
-            (Kind::Opening, ..) => return Err("an opening has 'contact', and 'at' or 'node'"),
-            (Kind::Energy, None, None, (None, None, None, None)) => Target::Energy,
-            (Kind::Energy, ..) => {
-                return Err("an energy has no other key; it is that of all bodies");
-            }
+        if keys
+            .over
+            .is_some_and(|over| !(over > 0.0 && over.is_finite()))
+        {
+            return Err("'over' is a length; expected a number above 0");
+        }
+        let mut given = Given {
+            place,
+            along: keys.direction.map(unit).transpose()?,
+            contact: keys.contact,
+            body: keys.body,
+            on: keys.on,
+            component: keys.component,
+            about: keys.about,
+            over: keys.over,
+            tip: keys.tip,
         };
+        let of = given.take(keys.kind).filter(|_| given == Given::default());
+        let of = of.ok_or(keys.kind.expected())?;
         let name = keys.name;
         Ok(Self { name, of })
     }
@@ -243,7 +336,21 @@ impl Quantity {
                 let fault = format!("a plane scene has no such shear{OR_IN_SPACE}");
                 return (dim == 2 && is_spatial).then_some(("component", fault));
             }
-            Target::Pressure { .. } | Target::Energy => (None, None),
+            Target::ContactMoment { about, axis, .. } => {
+                let fault = match (dim, axis) {
+                    (2, Some(_)) => "in the plane a moment is one about z; expected no direction",
+                    (3, None) => {
+                        "the axis of a moment is missing; expected \"x\", \"y\", \"z\" or a vector"
+                    }
+                    _ if about.dim != dim => return Some(("about", expected_components(dim))),
+                    _ => "",
+                };
+                if !fault.is_empty() {
+                    return Some(("direction", fault.into()));
+                }
+                (None, axis.as_ref())
+            }
+            Target::Pressure { .. } | Target::Energy | Target::CrackTip { .. } => (None, None),
         };
         let point = match at {
             Some(Place::Point(point)) => Some(point),

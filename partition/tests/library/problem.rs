@@ -85,6 +85,8 @@ fn with_goals(model: &Model) -> Model {
     let quantity = |kind, of: &[u32], node| Quantity {
         name: format!("{kind:?}"),
         kind,
+        point: [0.5, -1.0, 0.0],
+        length: 0.25,
         direction: [0.6, -0.8, 0.0],
         constants: (0..steps).map(|k| 0.5 * k as f64).collect(),
         of: of.to_vec(),

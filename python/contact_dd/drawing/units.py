@@ -14,6 +14,7 @@ class Units:
     stress: str = "Pa"
     force: str = "N/m"
     work: str = "J/m"
+    moment: str = "N"
 
     def of_quantity(self, kind):
         """Of a quantity of a scene."""
@@ -21,6 +22,12 @@ class Units:
             return self.length
         if kind in ("reaction", "contact_force"):
             return self.force
+        if kind in ("k_i", "k_ii"):
+            return f"{self.stress} √{self.length}"
+        if kind == "energy_release_rate":
+            return KNOWN[self.length].force
+        if kind == "contact_moment":
+            return self.moment
         return self.work if kind == "energy" else self.stress
 
 
@@ -31,11 +38,12 @@ def units_of(result):
     """The symbols of a result's units; forces in the plane are those per thickness, but not around an axis."""
     known = KNOWN[result.units]
     whole = result.is_in_space or result.plane == "axisymmetric"
-    return replace(known, force="N", work={"m": "J", "mm": "mJ"}[known.length]) if whole else known
+    work = {"m": "J", "mm": "mJ"}[known.length]
+    return replace(known, force="N", work=work, moment=f"N {known.length}") if whole else known
 
 
 def has_prefix(unit):
-    return unit in ("mm", "MPa", "N/mm", "mJ")
+    return unit in ("mm", "MPa", "MPa √mm", "N/mm", "N mm", "mJ")
 
 
 def in_units(values, unit):

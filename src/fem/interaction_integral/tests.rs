@@ -157,3 +157,37 @@ fn what_expands_freely_has_none() {
     let k = factors(&material, u, stress);
     assert!(k.iter().all(|k| k.norm() < 5e-3), "{k:?}");
 }
+
+/// Displacements without any pattern, and cells that bend by modes of their own, too.
+#[test]
+fn weights_times_displacements_are_the_integral() {
+    let tip = tip();
+    let block = block(&tip);
+    let points = block.points().iter();
+    let u = points
+        .clone()
+        .map(|x| [(7.0 * x[0] + x[1]).sin(), (5.0 * x[1] * x[0]).cos()]);
+    let u: Vec<f64> = u.flatten().collect();
+    let initial = InitialStress {
+        cells: Vec::new(),
+        nodes: points.map(|x| [x[0], 2.0, 0.0, x[1], 0.0, 0.0]).collect(),
+    };
+    for has_incompatible_modes in [false, true] {
+        let material = Material {
+            has_incompatible_modes,
+            ..orthotropic()
+        };
+        let disc = TipDisc::new(&tip, &material).unwrap();
+        let [expected, ..] = disc.integrals(&block, &u, &initial).unwrap();
+        let found = disc.weights(&block, &initial).unwrap();
+        for (mode, expected) in expected.into_iter().enumerate() {
+            let products = found.of_nodes[mode].iter().zip(&u);
+            let sum: f64 = products.map(|(weight, u)| weight * u).sum();
+            let off = sum + found.constants[mode] - expected;
+            assert!(
+                off.abs() < 1e-11 * expected.abs(),
+                "{off:e} of {expected:e}"
+            );
+        }
+    }
+}

@@ -129,10 +129,13 @@ fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<
     let head = format!("{title:<width$} {:>14} {:<6} % per % of", "", "");
     table(head, quantities, |of| {
         let unit = match &of.kind[..] {
-            "displacement" | "opening" => units.length(),
-            "reaction" | "contact_force" => units.force(dim),
-            "energy" => units.work(dim),
-            _ => units.stress(),
+            "displacement" | "opening" => units.length().to_owned(),
+            "reaction" | "contact_force" => units.force(dim).to_owned(),
+            "contact_moment" => units.moment(dim).to_owned(),
+            "energy_release_rate" => units.force(2).to_owned(),
+            "k_i" | "k_ii" => format!("{} √{}", units.stress(), units.length()),
+            "energy" => units.work(dim).to_owned(),
+            _ => units.stress().to_owned(),
         };
         // Of the parameters that have a size of their own.
         let shares = of.derivatives.iter().filter_map(|one| {

@@ -148,7 +148,8 @@ impl Sensitivity<'_> {
         }
     }
 
-    /// Explicit derivative of a mean stress with respect to a stiffness, at fixed displacements; on the root.
+    /// Explicit derivative of a mean stress, or of what is of a crack tip, with respect to a stiffness, at fixed displacements; on
+    /// the root.
     fn beside(&self, parameter: &Parameter) -> f64 {
         let catalog = self.solved.fixed.context.catalog;
         let quantity = &catalog.quantities[self.functional.number];
@@ -159,6 +160,15 @@ impl Sensitivity<'_> {
             QuantityKind::MeanStress if parameter.of.contains(&quantity.of[0]) => {
                 let constant = quantity.constants.get(self.solved.step).copied();
                 (self.functional.value - constant.unwrap_or_default()) / parameter.value
+            }
+            QuantityKind::OpeningIntensity
+            | QuantityKind::SlidingIntensity
+            | QuantityKind::EnergyReleaseRate => {
+                let material = catalog.tips[quantity.of[0] as usize].material;
+                match parameter.of.contains(&material) {
+                    true => self.functional.of_stiffness / parameter.value,
+                    false => 0.0,
+                }
             }
             _ => 0.0,
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::ContactPoint;
-use contact_dd_partition::element::geometry::dot as along;
+use contact_dd_partition::element::geometry::{cross, difference, dot as along};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::{Quantity, QuantityKind};
 
@@ -17,6 +17,7 @@ use crate::recover::DiscreteSolution;
 use crate::vector::{axpy, dot};
 
 /// K_m u of every material m, by block and node by node (N/m).
+#[derive(Default)]
 pub struct MaterialForces(BTreeMap<usize, BTreeMap<usize, Vec<f64>>>);
 
 impl MaterialForces {
@@ -81,6 +82,8 @@ pub struct Functional {
     pub number: usize,
     /// Its value; on the root.
     pub value: f64,
+    /// The part of the value that is in proportion to the stiffness around a crack tip, at fixed displacements; on the root.
+    pub of_stiffness: f64,
     /// Tag of its node, −1 where there is none; of a largest pressure on the root.
     pub node: i64,
     /// ∂q/∂u of the blocks that it depends on, the parts of blocks add up.
@@ -107,12 +110,18 @@ impl Functional {
                 functional.weigh_nodes(solved, quantity);
             }
             QuantityKind::Reaction => functional.weigh_reactions(solved, quantity),
-            QuantityKind::ContactForce | QuantityKind::MeanPressure => {
-                functional.weigh_forces(solved, quantity);
+            QuantityKind::ContactForce
+            | QuantityKind::ContactMoment
+            | QuantityKind::MeanPressure => functional.weigh_forces(solved, quantity),
+            QuantityKind::LargestPressure if quantity.length > 0.0 => {
+                functional.find_smoothed(solved, quantity);
             }
             QuantityKind::LargestPressure => functional.find_largest(solved, quantity),
             QuantityKind::Opening => functional.weigh_gap(solved, quantity),
             QuantityKind::Energy => functional.weigh_energy(solved, forces),
+            QuantityKind::OpeningIntensity
+            | QuantityKind::SlidingIntensity
+            | QuantityKind::EnergyReleaseRate => functional.weigh_tip(solved, quantity),
         }
         functional
     }
@@ -179,14 +188,19 @@ impl Functional {
         self.value = parts.sum();
     }
 
-    /// Forces of a contact along a direction, or normal ones, over an area where they are a mean pressure.
+    /// Forces of a contact along a direction, or normal ones, over an area where they are a mean pressure, or their moment.
     fn weigh_forces(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let share = match quantity.kind {
             QuantityKind::MeanPressure => 1.0 / area(context.catalog, quantity.of[0]),
             _ => 1.0,
         };
-        let is_normal = quantity.direction == [0.0; 3];
+        let is_moment = quantity.kind == QuantityKind::ContactMoment;
+        let is_normal = quantity.direction == [0.0; 3] && !is_moment;
+        let axis = match context.catalog.dim {
+            2 => [0.0, 0.0, 1.0],
+            _ => quantity.direction,
+        };
         let mut parts = BTreeMap::new();
         for (&g, of_group) in &solved.solution.discrete.groups {
             let group = &context.groups[&g];
@@ -197,6 +211,10 @@ impl Functional {
                 (false, _) => 0.0,
                 (true, true) if condition.is_tangential => 0.0,
                 (true, true) => share,
+                (true, false) if is_moment => {
+                    let arm = difference(group.points[condition.point].force_point, quantity.point);
+                    -along(cross(arm, condition.direction), axis)
+                }
                 (true, false) => -share * along(condition.direction, quantity.direction),
             };
             let weights: Vec<f64> = group.conditions().map(weight).collect();

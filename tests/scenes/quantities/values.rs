@@ -45,6 +45,19 @@ fn quantities_are_those_of_the_fields() {
             .map(|point| point.pressure)
             .fold(0.0, f64::max),
     );
+    // Mean pressures in windows of 0.3 m to both sides.
+    let joint = varied.contacts.iter().find(|of| of.name == "joint");
+    let joint = &joint.unwrap().points;
+    let window = |at: f64, x: f64| (1.0 - (at - x).abs() / 0.3).max(0.0);
+    let smoothed = |at: f64| {
+        let force = points("joint").map(|point| window(at, point.position[0]) * point.force);
+        let area = joint
+            .iter()
+            .map(|point| window(at, point.position[0]) * point.area);
+        force.sum::<f64>() / area.sum::<f64>()
+    };
+    let all_smoothed = joint.iter().map(|point| smoothed(point.position[0]));
+    check("smooth", all_smoothed.fold(0.0, f64::max));
     let corner = points("wall")
         .find(|point| point.position == [0.4, 1.0, 0.0])
         .unwrap();
@@ -54,6 +67,12 @@ fn quantities_are_those_of_the_fields() {
         "sheared",
         report["contacts"][0]["force"][0].as_f64().unwrap(),
     );
+    let (force, moment) = (
+        &report["contacts"][0]["force"],
+        &report["contacts"][0]["moment"],
+    );
+    let [x, y, moment] = [&force[0], &force[1], &moment[2]].map(|of| of.as_f64().unwrap());
+    check("tilt", moment - (0.3 * y - 0.9 * x));
     check(
         "support",
         report["reactions"][0]["force"][1].as_f64().unwrap(),
@@ -155,6 +174,19 @@ fn what_is_no_quantity_is_refused_with_what_there_is() {
         ("component = 'yy'", "component = 'yz'", "no such shear"),
         ("direction = [1, -2]", "direction = 'down'", "a direction"),
         ("direction = 'x'", "direction = [0, 0]", "zero vector"),
+        ("over = 0.3", "over = 0", "expected a number above 0"),
+        ("over = 0.3", "about = [0, 0]", "perhaps 'over'"),
+        (
+            "about = [0.3, 0.9]",
+            "about = [0.3, 0.9, 0]",
+            "two components",
+        ),
+        (
+            "about = [0.3, 0.9]",
+            "about = [0.3, 0.9]\ndirection = 'x'",
+            "expected no direction",
+        ),
+        ("about = [0.3, 0.9]", "", "'about', a point"),
     ] {
         let message = refused(from, to);
         assert!(message.contains(expected), "{to}: {message}");

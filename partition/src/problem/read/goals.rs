@@ -20,6 +20,9 @@ pub(super) fn quantities(contents: &Contents) -> Result<Vec<Quantity>, InputErro
     let kind = contents.integers("/quantity/kind", rows.clone())?;
     let direction = contents.numbers("/quantity/direction", rows.clone())?;
     let direction = direction.vectors(rows.clone());
+    let point = contents.numbers("/quantity/point", rows.clone())?;
+    let point = point.vectors(rows.clone());
+    let length = contents.numbers("/quantity/length", rows.clone())?;
     let constant = contents.numbers("/quantity/constant", rows.clone())?;
     let node = contents.integers("/quantity/node", rows)?;
     let of = contents.all_integers("/quantity/of")?;
@@ -30,6 +33,9 @@ pub(super) fn quantities(contents: &Contents) -> Result<Vec<Quantity>, InputErro
             QuantityKind::MeanStress => &[("material", 'M')],
             QuantityKind::Reaction => &[("condition", 'U')],
             QuantityKind::Opening => &[("contact", 'Q'), ("place", 'R')],
+            QuantityKind::OpeningIntensity
+            | QuantityKind::SlidingIntensity
+            | QuantityKind::EnergyReleaseRate => &[("crack tip", 'A')],
             _ => &[("contact", 'Q')],
         };
         let is_list = matches!(kind, QuantityKind::MeanStress | QuantityKind::Reaction);
@@ -37,6 +43,8 @@ pub(super) fn quantities(contents: &Contents) -> Result<Vec<Quantity>, InputErro
             name,
             kind,
             direction: direction[row],
+            point: point[row],
+            length: length.all()[row],
             constants: constant.of(row..row + 1).to_vec(),
             of: numbers(contents, &of, contents.rows('D', row), (letters, is_list))?,
             node: node.all()[row],
