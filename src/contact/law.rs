@@ -7,9 +7,6 @@
 //! λ_t = ξ_t min(1, b / |ξ_t|)   with ξ_t = λ_t + r s,   b = c + μ λ
 //! ```
 //!
-//! As r may be any, it is no larger at a slip s than b / |s|: with a larger one a point whose force turns about would slip to
-//! and fro for ever, as no r |s| is small enough for it to stick between.
-//!
 //! P. Alart, A. Curnier, *A mixed formulation for frictional contact problems prone to Newton like solution methods*,
 //! Comput. Methods Appl. Mech. Engrg 92 (1991).
 
@@ -153,21 +150,13 @@ impl PointLaw {
         self.bound.only_closed && !self.is_closed(closed)
     }
 
-    /// r at an iterate (N/m).
-    fn stiffness_at(&self, at: &PointState) -> f64 {
-        match at.bound > 0.0 && at.way() > 0.0 {
-            true => self.stiffness.min(at.bound / at.way()),
-            false => self.stiffness,
-        }
-    }
-
     /// ξ_t. Along a prescribed slip the force is what the bound leaves.
     pub fn reach(&self, at: &PointState) -> [f64; 2] {
         let [along, mut across] = at.force;
         if self.prescribed != 0.0 {
             across = rest_of_bound(at.bound, along).copysign(self.prescribed);
         }
-        let r = self.stiffness_at(at);
+        let r = self.stiffness;
         [along + r * at.slip[0], across + r * at.slip[1]]
     }
 
@@ -181,7 +170,7 @@ impl PointLaw {
         let rest = (size - bound).max(f64::EPSILON * size);
         PointStatus::Slips {
             direction: xi.map(|x| x / size),
-            turning: self.turning(self.stiffness_at(at) * bound / rest),
+            turning: self.turning(self.stiffness * bound / rest),
         }
     }
 

@@ -10,6 +10,10 @@ use super::friction::Status;
 use super::law::{PointLaw, PointState, PointStatus};
 use super::limits::TangentialLimit;
 
+/// Slips that turn about in a row of steps from which on a point's r is lowered, and the part of it that is left.
+const TURNS: usize = 3;
+const SOFTER: f64 = 0.1;
+
 /// The laws of all limits.
 #[derive(Clone, Debug)]
 pub struct ContactLaws<'a> {
@@ -23,6 +27,8 @@ pub struct ContactLaws<'a> {
     pub is_tangential: Vec<bool>,
     /// r of every limit (N/m).
     pub stiffness: Vec<f64>,
+    /// How often the slip of every point has turned about in full steps.
+    turns: Vec<usize>,
 }
 
 /// The statuses of all limits.
@@ -83,6 +89,7 @@ impl<'a> ContactLaws<'a> {
             points.extend(PointLaw::new(tangent, mean));
         }
         Self {
+            turns: vec![0; points.len()],
             bounds,
             rows,
             points,
@@ -265,6 +272,28 @@ impl<'a> ContactLaws<'a> {
             squares,
             missed: relative.unwrap_or(f64::INFINITY),
             statuses,
+        }
+    }
+
+    /// Lowers r of points whose slip turns about again and again between the statuses of steps: |λ_t + r s| ≤ b, where they
+    /// would stick, is too narrow for them where they are much stiffer than what moves them.
+    pub fn soften(&mut self, before: &Statuses, now: &Statuses) {
+        let statuses = before.points.iter().zip(&now.points);
+        let points = self.points.iter_mut().zip(&mut self.turns);
+        for ((point, turns), statuses) in points.zip(statuses) {
+            if let (
+                PointStatus::Slips {
+                    direction: from, ..
+                },
+                PointStatus::Slips { direction: to, .. },
+            ) = statuses
+                && from[0] * to[0] + from[1] * to[1] < 0.0
+            {
+                *turns += 1;
+                if *turns >= TURNS {
+                    point.stiffness *= SOFTER;
+                }
+            }
         }
     }
 

@@ -176,7 +176,7 @@ pub fn newton<O: ContactOperator>(
     statuses: &OnGroups<Statuses>,
     settings: NewtonSettings,
 ) -> Result<Found, O::Error> {
-    let (mut at, mut statuses) = (start.clone(), statuses.clone());
+    let (mut at, mut statuses, laws) = (start.clone(), statuses.clone(), &mut laws.clone());
     let (mut merit, mut changed) = (f64::INFINITY, None);
     let (mut least, mut patience) = (f64::INFINITY, settings.patience);
     let (mut accuracy, mut missed) = (operator.accuracy(&TotalResidual::UNKNOWN), f64::INFINITY);
@@ -223,6 +223,9 @@ pub fn newton<O: ContactOperator>(
             .iter()
             .map(|(&g, of_group)| (g, of_group.statuses.opened.clone()))
             .collect();
+        for (&g, of_group) in laws.iter_mut() {
+            of_group.soften(&statuses[&g], &look[&g].statuses);
+        }
         let before = statuses;
         (at, merit, statuses) =
             part_of_way(operator, laws, (at, merit), target, (look, total), settings);

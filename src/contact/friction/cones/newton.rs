@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{Found, FrictionCones, Rest};
+use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
 use crate::contact::law::PointStatus;
@@ -18,9 +18,6 @@ const STEPS: usize = 40;
 const DAMPED_STEPS: usize = 15;
 /// What may be missed of the law, relative to what acts.
 const LAW: f64 = 1e-9;
-/// What may be missed, relative to the terms of forces, where steps make it no less: round-off of points whose own stiffness is
-/// far above that of others. The certificate has the last word.
-pub(super) const ACCEPTABLE: f64 = 1e-10;
 /// What is missed that can't be less.
 const ROUND_OFF: f64 = 1e-15;
 /// Force, relative to its terms, up to which a limit keeps its status.
