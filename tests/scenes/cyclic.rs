@@ -78,8 +78,7 @@ fn is_part(sector: (&Model, &Solution), ring: (&Model, &Solution), slack: f64) {
     };
     let nodes = |model: &Model| {
         let cells = model.mesh.cells.iter().zip(&model.cell_body);
-        let all = cells
-            .flat_map(|((_, nodes), &body)| nodes.to_vec().into_iter().map(move |n| (n, body)));
+        let all = cells.flat_map(|((_, nodes), &body)| nodes.iter().map(move |&n| (n, body)));
         all.collect::<Vec<_>>()
     };
     let of_ring: HashMap<_, _> = nodes(ring.0)

@@ -43,7 +43,7 @@ fn slips_that_turn_about_are_found_by_newton_s_method_however_stiff_points_are()
             _ => 0.0,
         };
         points.set_stiffness(m, |i, j| h[(i, j)] + coupled(i, j));
-        points.c[..count].iter_mut().for_each(|c| *c = 5.0 + *c);
+        points.c[..count].iter_mut().for_each(|c| *c += 5.0);
         let (solution, _) = points.solved(&format!("seed {seed}"), 1e-8);
         assert!(!solution.fell_back, "seed {seed}: {} steps", solution.steps);
     }
