@@ -77,6 +77,8 @@ impl BlockCheck {
         let (mut check, mut shared) = (Self::default(), SharedCheck::default());
         check.most.displacement = largest(&u[..block.dim * block.body_nodes()]);
         check.most.load = balance.largest_load;
+        // Springs may carry at each node what acts there, so that nothing of both is left.
+        check.most.external = balance.largest_load;
         let prescribed = loads.supports.iter().map(|support| support.value);
         check.most.driven = prescribed.fold(0.0, larger);
         check.equilibrium(block, loads, balance, &mut shared);

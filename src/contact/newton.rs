@@ -150,6 +150,8 @@ pub struct NewtonSettings {
     /// The merit, relative to what acts, above which forces are no measure: what slides away has small ones beside the terms
     /// of its way.
     pub law: f64,
+    /// Whether r is lowered where slips turn about again and again: not by steps that are rough.
+    pub softens: bool,
 }
 
 /// Where Newton's method ends.
@@ -223,7 +225,7 @@ pub fn newton<O: ContactOperator>(
             .iter()
             .map(|(&g, of_group)| (g, of_group.statuses.opened.clone()))
             .collect();
-        for (&g, of_group) in laws.iter_mut() {
+        for (&g, of_group) in laws.iter_mut().filter(|_| settings.softens) {
             of_group.soften(&statuses[&g], &look[&g].statuses);
         }
         let before = statuses;

@@ -131,6 +131,7 @@ fn with_friction(
         acceptable: ACCEPTABLE,
         round_off: ROUND_OFF,
         law: 1.0,
+        softens: false,
     };
     let laws = &problem.laws;
     let (mut start, mut statuses) = begin(laws, &problem.all_closed());

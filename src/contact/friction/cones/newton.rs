@@ -217,6 +217,7 @@ impl FrictionCones<'_> {
             acceptable: ACCEPTABLE,
             round_off: ROUND_OFF,
             law: LAW,
+            softens: true,
         };
         let Ok(found) = newton(
             &mut Dense(self),
