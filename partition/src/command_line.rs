@@ -141,6 +141,11 @@ pub struct CommandLine {
     #[arg(long, value_name = "DIR", help_heading = "Problem file", value_hint = ValueHint::DirPath)]
     pub write_scene: Option<PathBuf>,
 
+    /// Write the tables that *NODE PRINT and *EL PRINT of the deck ask for as JSON, for what prints them of the result
+    #[arg(long, value_name = "FILE.json", conflicts_with = "example", help_heading = "Problem file",
+          value_hint = ValueHint::FilePath)]
+    pub write_prints: Option<PathBuf>,
+
     /// Print the man page or completions for a shell
     #[arg(
         long,

@@ -22,6 +22,7 @@ mod pairs;
 mod parameters;
 mod place;
 mod pretensions;
+pub mod prints;
 mod reference;
 mod scene;
 mod sections;
@@ -37,6 +38,7 @@ use std::path::{Path, PathBuf};
 use self::content::Content;
 use self::keyword::Meaning;
 use self::place::Places;
+use self::prints::Prints;
 use crate::destination;
 use crate::error::{InputError, OutputError};
 use crate::mesh::abaqus::{self, Source, Whole};
@@ -50,6 +52,8 @@ pub struct Translation {
     pub mesh: Mesh,
     /// The deck and the files that it includes.
     pub files: Vec<PathBuf>,
+    /// The tables that the deck asks for.
+    pub prints: Prints,
 }
 
 impl Translation {
@@ -124,6 +128,12 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
         ));
     }
     not_needed.extend(content.steps.loads.notes.iter().cloned());
+    let has_axes = content
+        .sections
+        .iter()
+        .any(|section| section.orientation.is_some());
+    (content.prints).note_axes(!content.steps.systems.is_empty(), has_axes);
+    not_needed.append(&mut content.prints.left_out);
     if !not_needed.is_empty() {
         let list = not_needed.into_iter().collect::<Vec<_>>().join(", ");
         warnings.push(format!("not needed, and left out: {list}"));
@@ -134,8 +144,14 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
             "{place}: NLGEOM is left out: displacements and strains are taken as small, and nodes keep what they face"
         ));
     }
-    let scene = scene::text(&mut places, &content, &mut warnings)?;
-    let files = source.paths().map(Path::to_path_buf).collect();
-    let mesh = abaqus::mesh(&places.deck, warnings)?;
-    Ok(Translation { scene, mesh, files })
+    let (scene, thickness) = scene::text(&mut places, &content, &mut warnings)?;
+    let prints = content
+        .prints
+        .tables(&places, content.steps.done.len(), thickness);
+    Ok(Translation {
+        scene,
+        mesh: abaqus::mesh(&places.deck, warnings)?,
+        files: source.paths().map(Path::to_path_buf).collect(),
+        prints,
+    })
 }

@@ -12,6 +12,7 @@ use contact_dd_partition::allocator::Allocator;
 use contact_dd_partition::command_line::{CommandLine, MANUAL};
 use contact_dd_partition::deck;
 use contact_dd_partition::decompose::Decomposition;
+use contact_dd_partition::destination;
 use contact_dd_partition::error::{InputError, OutputError};
 use contact_dd_partition::example::{self, EXAMPLES};
 use contact_dd_partition::explanation::{Explanation, with_name};
@@ -181,6 +182,11 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
 /// Reads a deck, whose scene and mesh are written where that was asked for.
 fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure> {
     let translation = deck::read(path)?;
+    if let Some(file) = &args.write_prints {
+        let text = serde_json::to_string(&translation.prints)
+            .map_err(|error| destination::failure(file, error))?;
+        destination::write_bytes(file, |out| out.write_all(text.as_bytes()))?;
+    }
     if let Some(directory) = &args.write_scene {
         if !translation.mesh.has_modes.is_empty() {
             let message = "has elements with incompatible modes, for which Gmsh's format has no word; expected C3D8, CPE4 \

@@ -2,8 +2,10 @@
 that adapt."""
 
 import argparse
+import json
 import signal
 import sys
+import tempfile
 import warnings
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import matplotlib
 from contact_dd import files, programs
 from contact_dd.adaptivity import adapt as solve_adapted
 from contact_dd.comparison import Compared, compare
+from contact_dd.dat import write_dat
 from contact_dd.errors import ContactError, InputError, OutputError
 from contact_dd.manual import KINDS, Generate, version
 from contact_dd.model import Model, scene_of
@@ -124,7 +127,16 @@ def factor(text: str) -> float | None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    print(programs.solve(partitioned(arguments), arguments.ranks, (), True).path)
+    if arguments.source.suffix.lower() != ".inp":
+        print(programs.solve(partitioned(arguments), arguments.ranks, (), True).path)
+        return
+    with tempfile.TemporaryDirectory(prefix="contact-dd-") as folder:
+        prints = Path(folder) / "prints.json"
+        result = programs.solve(partitioned(arguments, prints), arguments.ranks, (), True)
+        print(result.path)
+        path = result.path.with_suffix(".dat")
+        if write_dat(result, json.loads(prints.read_text(encoding="utf-8")), path):
+            print(path)
 
 
 def study(arguments: argparse.Namespace) -> None:
@@ -140,15 +152,15 @@ def study(arguments: argparse.Namespace) -> None:
         print(path)
 
 
-def partitioned(arguments: argparse.Namespace) -> Path:
-    """The problem file of a scene or a deck, in the folder that is asked for."""
+def partitioned(arguments: argparse.Namespace, prints: Path | None = None) -> Path:
+    """The problem file of a scene or a deck, in the folder asked for; what a deck prints in a file of its own."""
     source, folder = arguments.source, arguments.folder
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: can't be made: {error.strerror}") from error
     problem: Path = folder / (source.stem + ".h5")
-    return programs.partition(source, arguments.subdomains, True, problem=problem)
+    return programs.partition(source, arguments.subdomains, True, problem=problem, prints=prints)
 
 
 def convert(arguments: argparse.Namespace) -> None:

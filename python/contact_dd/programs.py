@@ -68,11 +68,14 @@ def launcher(ranks: int) -> list[str]:
 
 
 def partition(
-    scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str, problem: Path | None = None
+    scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str, problem: Path | None = None,
+    prints: Path | None = None,
 ) -> Path:
-    """Writes the problem file of a scene or a deck, beside it unless it is named. Messages are `worded`."""
+    """Writes the problem file of a scene or a deck, beside it unless it is named, and what the deck asks to be printed
+    into `prints`. Messages are `worded`."""
     problem = problem or scene.with_suffix(".h5")
     number = [] if subdomains is None else ["-n", str(subdomains)]
+    number += [] if prints is None else ["--write-prints", str(prints)]
 
     def hear(line: str) -> None:
         word, _, rest = line.partition(" ")

@@ -13,6 +13,7 @@ use super::material::Material;
 use super::model_change::{self, Change};
 use super::place::Places;
 use super::pretensions::Pretensions;
+use super::prints::Requests;
 use super::sections::Section;
 use super::springs::Springs;
 use super::steps::Steps;
@@ -38,6 +39,7 @@ pub(super) struct Content {
     pub(super) springs: Springs,
     pub(super) pretensions: Pretensions,
     pub(super) sectors: Sectors,
+    pub(super) prints: Requests,
     pub(super) steps: Steps,
     /// Pairs that come and go.
     pub(super) changes: Vec<Change>,
@@ -128,8 +130,9 @@ impl Content {
             "ELEMENT" => self.springs.elements(places, block)?,
             "SPRING" => self.springs.property(places, block)?,
             "TIE" | "EQUATION" | "CYCLIC SYMMETRY MODEL" => self.connect(places, block)?,
+            "NODE PRINT" | "EL PRINT" => self.prints.read(places, block, self.steps.number())?,
             "MODEL CHANGE" => {
-                let step = self.steps.is_open().then_some(self.steps.done.len());
+                let step = self.steps.number();
                 let changes = model_change::read(places, block, &self.contacts.pairs, step)?;
                 self.changes.extend(changes);
             }

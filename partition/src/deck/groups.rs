@@ -20,16 +20,8 @@ pub(super) struct Groups<'a, 'b> {
 
 impl<'a, 'b> Groups<'a, 'b> {
     pub(super) fn new(places: &'a mut Places<'b>) -> Self {
-        let dim = places.dim();
+        let has_cell = places.with_cells();
         let deck = &places.deck;
-        let mut has_cell = vec![false; deck.points.len()];
-        for (element, (_, nodes)) in (0..).zip(deck.elements.iter()) {
-            if places.is_cell(element, dim) {
-                nodes
-                    .iter()
-                    .for_each(|&node| has_cell[node as usize] = true);
-            }
-        }
         let mut count = BTreeMap::new();
         let names = (deck.node_sets.iter().map(|set| &set.name))
             .chain(deck.element_sets.iter().map(|set| &set.name))

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 47] = [
+const READ: [&str; 49] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -57,10 +57,12 @@ const READ: [&str; 47] = [
     "END STEP",
     "STATIC",
     "HEADING",
+    "NODE PRINT",
+    "EL PRINT",
 ];
 
 /// Keywords that don't matter to the answer.
-const NOT_NEEDED: [&str; 38] = [
+const NOT_NEEDED: [&str; 36] = [
     "CONDUCTIVITY",
     "ELECTRICAL CONDUCTIVITY",
     "SPECIFIC HEAT",
@@ -75,8 +77,6 @@ const NOT_NEEDED: [&str; 38] = [
     "ELEMENT OUTPUT",
     "CONTACT OUTPUT",
     "ENERGY OUTPUT",
-    "NODE PRINT",
-    "EL PRINT",
     "ELEMENT PRINT",
     "CONTACT PRINT",
     "FACE PRINT",

@@ -134,6 +134,20 @@ impl<'a> Places<'a> {
             .unwrap_or_default()
     }
 
+    /// Of every node whether a cell has it.
+    pub(super) fn with_cells(&self) -> Vec<bool> {
+        let dim = self.dim();
+        let mut has_cell = vec![false; self.deck.points.len()];
+        for (element, (_, nodes)) in (0..).zip(self.deck.elements.iter()) {
+            if self.is_cell(element, dim) {
+                nodes
+                    .iter()
+                    .for_each(|&node| has_cell[node as usize] = true);
+            }
+        }
+        has_cell
+    }
+
     /// Whether an element is a cell, in a mesh of dimension `dim`.
     pub(super) fn is_cell(&self, element: u32, dim: usize) -> bool {
         let element = element as usize;

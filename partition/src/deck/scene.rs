@@ -25,12 +25,12 @@ pub(super) const MESH: &str = "mesh.msh";
 /// A modulus below which lengths are taken for millimetres: it decides what messages and pictures call the units.
 const OF_MILLIMETRES: f64 = 1e8;
 
-/// The text of the scene; sets that it needs are added to the deck.
+/// The text of the scene, and the thickness by which its forces are divided; sets that it needs are added to the deck.
 pub(super) fn text(
     places: &mut Places,
     content: &Content,
     warnings: &mut Vec<String>,
-) -> Result<String, InputError> {
+) -> Result<(String, f64), InputError> {
     let source = places.source;
     let plane = plane(places)?;
     (content.couplings).check_plane(places, plane == Some(PlaneState::Axisymmetric))?;
@@ -130,7 +130,7 @@ pub(super) fn text(
             pretensions::write_step(&bolts, number, &mut document);
         }
     }
-    Ok(document.text())
+    Ok((document.text(), thickness))
 }
 
 /// The plane state that the types of elements say; `None` in space.

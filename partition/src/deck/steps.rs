@@ -57,6 +57,11 @@ impl Steps {
         self.open.is_some()
     }
 
+    /// The number of the step that is read, from 0.
+    pub(super) fn number(&self) -> Option<usize> {
+        self.is_open().then_some(self.done.len())
+    }
+
     /// `*STEP`.
     pub(super) fn begin(
         &mut self,

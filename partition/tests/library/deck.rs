@@ -4,6 +4,7 @@ mod couplings;
 mod cyclic;
 mod laws;
 mod pretensions;
+mod prints;
 mod refused;
 mod springs;
 mod steps;
@@ -181,14 +182,14 @@ fn loads_on_some_elements_of_a_section_make_bodies_of_them() {
 
 #[test]
 fn what_is_left_out_is_named_once() {
-    let blocks = step("*NODE PRINT, NSET=Top\nU\n*EL FILE\nS\n*DLOAD\nUpper, P2, 1.")
+    let blocks = step("*NODE FILE, NSET=Top\nU\n*EL FILE\nS\n*DLOAD\nUpper, P2, 1.")
         .replace("STEP\n", "STEP, NLGEOM\n");
     let blocks = blocks.replace("END STEP, NLGEOM", "END STEP");
     let deck = format!("{CUBES}{MODEL}{blocks}")
         .replace("OVERCLOSURE=HARD", "OVERCLOSURE=EXPONENTIAL\n1e-3, 5.");
     let warnings = read(&deck).unwrap().mesh.warnings.join("\n");
     for expected in [
-        "not needed, and left out: *EL FILE, *NODE PRINT",
+        "not needed, and left out: *EL FILE, *NODE FILE",
         "line 50: NLGEOM is left out",
         "line 42: the exponential law of contact (p0 = 5. at no clearance, 0 at 1e-3) is taken as hard contact",
     ] {

@@ -43,20 +43,26 @@ class Rule:
 
 @cache
 def rule_of(kind):
-    """Shape functions are sums of monomials, each 1 at its node and 0 at the others."""
+    """That by which all cells of a kind are integrated here."""
+    at, weights = points_of(kind, len(NODES[kind][0]))
+    return Rule(*shapes(kind, at), weights)
+
+
+def shapes(kind, at):
+    """Shape functions of a kind of cells and their derivatives at points of its reference cell, (points, nodes) and
+    (points, nodes, d): sums of monomials, each 1 at its node and 0 at the others."""
     nodes = np.array(NODES[kind], dtype=float)
     dimension = nodes.shape[1]
     is_linear = len(nodes) <= 2**dimension
     all_powers = product(range(2 if is_linear else 3), repeat=dimension)
     powers = np.array([one for one in all_powers if is_used(kind, one, is_linear)])
     factors = np.linalg.inv(np.prod(nodes[:, None] ** powers, axis=2))
-    at, weights = points_of(kind, dimension)
     slopes = []
     for k in range(dimension):
         less = powers.copy()
         less[:, k] = np.maximum(less[:, k] - 1, 0)
         slopes.append(powers[:, k] * np.prod(at[:, None] ** less, axis=2) @ factors)
-    return Rule(np.prod(at[:, None] ** powers, axis=2) @ factors, np.stack(slopes, axis=2), weights)
+    return np.prod(at[:, None] ** powers, axis=2) @ factors, np.stack(slopes, axis=2)
 
 
 def is_used(kind, powers, is_linear):

@@ -291,7 +291,8 @@ impl Deck {
             let nodes: Vec<u32> = nodes.iter().map(|&node| node + first_node).collect();
             self.elements.push(kind, &nodes);
             let tag = part.element_tags[element] + offsets.elements;
-            self.push_tag(tag, part.is_side[element], part.has_modes[element]);
+            let formulation = (part.has_modes[element], part.is_reduced[element]);
+            self.push_tag(tag, part.is_side[element], formulation);
         }
         let name = |set: &str| format!("{instance}.{set}");
         for set in part.node_sets.iter() {

@@ -31,6 +31,8 @@ pub(crate) struct Deck {
     pub(crate) is_side: Vec<bool>,
     /// Elements with incompatible modes.
     pub(crate) has_modes: Vec<bool>,
+    /// Elements of reduced integration.
+    pub(crate) is_reduced: Vec<bool>,
     pub(crate) element_of: HashMap<i64, u32>,
     /// The tags of elements that are left out, as they are neither cells nor sides.
     left_out: HashSet<i64>,
@@ -289,17 +291,23 @@ impl Deck {
             return Ok(other);
         }
         self.elements.push(found.kind, nodes);
-        Ok(self.push_tag(*tag, found.is_side, found.has_modes))
+        Ok(self.push_tag(*tag, found.is_side, (found.has_modes, found.is_reduced)))
     }
 
     /// Gives the element that was appended last its tag, and says whether it is a side, and whether it has incompatible
-    /// modes.
-    pub(crate) fn push_tag(&mut self, tag: i64, is_side: bool, has_modes: bool) -> u32 {
+    /// modes, and reduced integration.
+    pub(crate) fn push_tag(
+        &mut self,
+        tag: i64,
+        is_side: bool,
+        (has_modes, is_reduced): (bool, bool),
+    ) -> u32 {
         let element = self.element_tags.len() as u32;
         self.element_of.insert(tag, element);
         self.element_tags.push(tag);
         self.is_side.push(is_side);
         self.has_modes.push(has_modes);
+        self.is_reduced.push(is_reduced);
         self.highest.elements = self.highest.elements.max(tag);
         element
     }

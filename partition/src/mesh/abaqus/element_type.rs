@@ -45,6 +45,8 @@ pub(super) struct ElementType {
     pub(super) plain: Option<&'static str>,
     /// Whether the element has incompatible modes, which let it bend.
     pub(super) has_modes: bool,
+    /// Whether its integration is a reduced one.
+    pub(super) is_reduced: bool,
 }
 
 /// The meaning of the type `name`; `None` where it isn't supported.
@@ -63,6 +65,7 @@ pub(super) fn find(name: &str) -> Option<ElementType> {
         is_side: place >= OF_CELLS,
         plain: (*plain != name).then_some(*plain),
         has_modes: place < OF_CELLS && name[plain.len()..].contains('I'),
+        is_reduced: place < OF_CELLS && name[plain.len()..].contains('R'),
     })
 }
 
