@@ -31,6 +31,7 @@ mod rules;
 mod sides;
 mod skin;
 mod springs;
+mod springs_between;
 mod steps;
 mod supports;
 mod surface;
@@ -144,6 +145,12 @@ impl Model {
         let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
         let count = contacts.len() + equations.len();
         equations.extend(cyclic::cyclic(scene, &bodies, &contacts, count)?);
+        let count = contacts.len() + equations.len();
+        equations.extend(springs_between::springs_between(
+            scene,
+            &bodies.mesh,
+            count,
+        )?);
         let count = contacts.len() + equations.len();
         let couplings = couplings::couplings(scene, (&bodies.mesh, &topology), count)?;
         let names = equations.iter().map(|of| &of.name[..]);

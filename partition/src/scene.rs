@@ -43,7 +43,7 @@ use equation::Equation;
 use material::{Elasticity, PlaneState};
 use pretension::Pretension;
 use quantity::Quantity;
-use spring::Spring;
+use spring::{AnySpring, Spring, SpringBetween};
 use step::LoadStep;
 use tie::Tie;
 use units::Units;
@@ -85,9 +85,9 @@ pub struct Scene {
     /// Forces on nodes.
     #[serde(default, deserialize_with = "place::list")]
     pub force: Vec<Force>,
-    /// Springs to the ground.
+    /// Springs to the ground and between points.
     #[serde(default, deserialize_with = "place::list")]
-    pub spring: Vec<Spring>,
+    pub spring: Vec<AnySpring>,
     /// Γ_c: contacts, and bodies between which they are to be found.
     #[serde(default, deserialize_with = "place::list")]
     pub contact: Vec<Declaration>,
@@ -120,6 +120,24 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The springs to the ground, each with its place in the scene's list.
+    pub fn springs_to_ground(&self) -> impl Iterator<Item = (usize, &Spring)> + Clone {
+        let all = self.spring.iter().enumerate();
+        all.filter_map(|(index, spring)| match spring {
+            AnySpring::ToGround(spring) => Some((index, spring)),
+            AnySpring::Between(_) => None,
+        })
+    }
+
+    /// The springs between points, each with its place in the scene's list.
+    pub fn springs_between(&self) -> impl Iterator<Item = (usize, &SpringBetween)> {
+        let all = self.spring.iter().enumerate();
+        all.filter_map(|(index, spring)| match spring {
+            AnySpring::ToGround(_) => None,
+            AnySpring::Between(spring) => Some((index, spring)),
+        })
+    }
+
     /// Reads a scene. Its mesh is looked for beside it.
     ///
     /// # Errors

@@ -138,6 +138,15 @@ class Model:
         keys = given(stiffness=stiffness, normal=normal, tangential=tangential)
         self._calls.add(self._add("spring", on=on, **keys), call("spring", on, **keys))
 
+    def spring_between(
+        self, a: Groups, b: Groups, *, stiffness: Sequence[float] | None = None, axial: float | None = None,
+        name: str | None = None,
+    ) -> None:
+        """A spring between two points, or the mean displacements of two groups, with a stiffness along the line between
+        them (`axial`) or along the axes (`stiffness`)."""
+        keys = given(name=name, stiffness=stiffness, axial=axial)
+        self._calls.add(self._add("spring", between=[a, b], **keys), call("spring_between", a, b, **keys))
+
     def load(
         self, on: Groups, *, pressure: Number | None = None, traction: Vector | None = None,
         force: Vector | None = None, force_on_each: Vector | None = None, body_force: Vector | None = None,

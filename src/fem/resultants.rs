@@ -48,13 +48,13 @@ impl Resultant {
 pub struct ContactResultant {
     /// Name of the contact.
     pub name: String,
-    /// Its kind: "contact", "tie", "equation", "coupling", "pretension" or "held pretension".
+    /// Its kind: "contact", "tie", "equation", "spring", "coupling", "pretension" or "held pretension".
     pub kind: String,
     /// Number of conditions.
     pub conditions: usize,
     /// Number of those that are closed.
     pub closed: usize,
-    /// Resultant on side a, of equations on the first node of each.
+    /// Resultant on side a, of equations on the first node of each, of springs on their first end.
     #[serde(flatten)]
     pub resultant: Resultant,
     /// Largest contact pressure (Pa).
@@ -129,6 +129,11 @@ impl ContactResultant {
         }
         match ContactKind::of(point) {
             ContactKind::Pretension => return,
+            ContactKind::Spring => {
+                let force = point.normal().map(|n| -state.force * n);
+                self.resultant.add(point.force_point, force);
+                return;
+            }
             ContactKind::Held => {
                 self.held = state.force;
                 return;

@@ -1,5 +1,7 @@
 //! Springs to the ground and elastic foundations.
 
+mod between;
+
 use contact_dd_partition::mesh::Group;
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;

@@ -60,13 +60,16 @@ pub(super) fn text(
         .collect();
     let ties = content.connections.ties(&mut loads.groups);
     let equations = (content.connections).equations(&mut loads.groups, &content.steps.systems)?;
-    let springs = content
-        .springs
-        .in_scene(&mut loads.groups, thickness, &content.steps.systems)?;
     let mut taken = Names::default();
     let pairs: Vec<String> = (sides.iter())
         .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
         .collect();
+    let springs = content.springs.in_scene(
+        &mut loads.groups,
+        thickness,
+        &content.steps.systems,
+        &mut taken,
+    )?;
     let couplings = content.couplings.in_scene(
         &mut loads.groups,
         (&content.steps.done, thickness),

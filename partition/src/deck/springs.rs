@@ -1,18 +1,25 @@
-//! `*SPRING` of elements of type SPRING1: springs between nodes and the ground.
+//! `*SPRING` of elements of type SPRING1, springs between nodes and the ground, and of SPRING2 and SPRINGA, springs between two
+//! nodes along an axis or the line between them.
 
 use std::collections::BTreeMap;
 
 use super::axes::System;
-use super::document::{Document, quoted, vector};
+use super::document::{Document, Names, quoted, vector};
 use super::groups::Groups;
 use super::loads::item;
 use super::place::Places;
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, LinePlace, Of};
+use crate::mesh::abaqus::{Block, Data, LinePlace, Of};
 use crate::name;
 
 /// The type of elements that are springs to the ground.
 const TO_GROUND: &str = "SPRING1";
+
+/// The type of those between two nodes along an axis.
+const ALONG_AXIS: &str = "SPRING2";
+
+/// The type of those between two nodes along the line between them.
+const ALONG_LINE: &str = "SPRINGA";
 
 /// Parameters of `*SPRING` that are something else than a stiffness along an axis.
 const REFUSED: [&str; 3] = ["NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"];
@@ -24,7 +31,8 @@ struct Elements {
     kind: String,
     /// Their set, by name in capitals.
     set: String,
-    nodes: Vec<u32>,
+    /// Each with its number in the deck; a spring to the ground has one end.
+    ends: Vec<(i64, Vec<u32>)>,
 }
 
 /// What a set of elements exerts.
@@ -32,7 +40,8 @@ struct Property {
     place: LinePlace,
     /// By name in capitals.
     set: String,
-    axis: usize,
+    /// `None` along the line between the ends.
+    axis: Option<usize>,
     stiffness: f64,
 }
 
@@ -43,10 +52,13 @@ pub(super) struct Springs {
     properties: Vec<Property>,
 }
 
-/// Springs in the words of the scene: the group of their nodes, and their stiffness along the axes.
+/// Springs in the words of the scene: the group of their nodes, or those of both ends and a name, and their stiffness along the
+/// axes, or the line.
 pub(super) struct SceneSpring {
-    on: String,
+    on: Vec<String>,
+    name: String,
     stiffness: [f64; 3],
+    axial: Option<f64>,
     dim: usize,
 }
 
@@ -62,15 +74,35 @@ impl Springs {
         if !kind.starts_with("SPRING") {
             return Ok(());
         }
-        let mut nodes = Vec::new();
-        for data in block.data.iter().filter(|_| kind == TO_GROUND) {
-            nodes.extend(places.members(data.place, Of::Nodes, item(source, data, 1))?);
+        let count = match kind.as_str() {
+            TO_GROUND => 1,
+            ALONG_AXIS | ALONG_LINE => 2,
+            _ => {
+                let message = format!(
+                    "elements of type {} aren't supported; expected {TO_GROUND}, {ALONG_AXIS} or {ALONG_LINE}",
+                    name::shown(&kind)
+                );
+                return Err(source.error(block.place, message));
+            }
+        };
+        let mut ends = Vec::new();
+        for data in &block.data {
+            let number = source.tag(
+                data.place,
+                item(source, data, 0),
+                "the number of an element",
+            )?;
+            let mut nodes = Vec::new();
+            for end in 1..=count {
+                nodes.extend(places.members(data.place, Of::Nodes, item(source, data, end))?);
+            }
+            ends.push((number, nodes));
         }
         self.elements.push(Elements {
             place: block.place,
             kind,
             set: block.parameter("ELSET").unwrap_or_default().to_uppercase(),
-            nodes,
+            ends,
         });
         Ok(())
     }
@@ -84,14 +116,19 @@ impl Springs {
             return Err(source.error(block.place, message));
         }
         let set = source.required(block, "ELSET")?.to_uppercase();
-        let mut between = self.elements.iter().filter(|of| of.set == set);
-        if let Some(of) = between.find(|of| of.kind != TO_GROUND) {
-            let message = format!(
-                "*SPRING of elements of type {} isn't supported: they are between two nodes; instead give {TO_GROUND} at a node \
-                 whose other one stands still, along x, y or z",
-                name::shown(&of.kind)
-            );
-            return Err(source.error(block.place, message));
+        let of = self.elements.iter().find(|of| of.set == set);
+        let kind = of.map_or(TO_GROUND, |of| &of.kind);
+        // Before the stiffness along a line there is a line that may be empty.
+        let rows = block.data.len();
+        if let (ALONG_LINE, Some(row)) = (kind, block.data.last().filter(|_| rows <= 2)) {
+            let stiffness = self.stiffness(places, row)?;
+            self.properties.push(Property {
+                place: block.place,
+                set,
+                axis: None,
+                stiffness,
+            });
+            return Ok(());
         }
         let [head, row] = &block.data[..] else {
             let message = format!(
@@ -108,21 +145,37 @@ impl Springs {
                 format!("*SPRING along the degree of freedom {freedom}; expected 1 to {dim}");
             return Err(source.error(head.place, message));
         }
-        let stiffness = source.real(row.place, item(source, row, 0), "a stiffness")?;
-        if stiffness < 0.0 {
-            let message = format!("*SPRING: the stiffness is {stiffness}; expected at least 0");
-            return Err(source.error(row.place, message));
+        if kind == ALONG_AXIS && item(source, head, 1) != item(source, head, 0) {
+            let message = format!(
+                "*SPRING of {ALONG_AXIS} between different degrees of freedom isn't read; expected the same one of both nodes"
+            );
+            return Err(source.error(head.place, message));
         }
+        let stiffness = self.stiffness(places, row)?;
         self.properties.push(Property {
             place: block.place,
             set,
-            axis: freedom as usize - 1,
+            axis: Some(freedom as usize - 1),
             stiffness,
         });
         Ok(())
     }
 
-    /// The springs with the groups of their nodes, which none of `systems` turns; per `thickness` of plane sections.
+    /// The stiffness at the beginning of a line.
+    fn stiffness(&self, places: &Places, row: &Data) -> Result<f64, InputError> {
+        let source = places.source;
+        let stiffness = source.real(row.place, item(source, row, 0), "a stiffness")?;
+        match stiffness >= 0.0 {
+            true => Ok(stiffness),
+            false => {
+                let message = format!("*SPRING: the stiffness is {stiffness}; expected at least 0");
+                Err(source.error(row.place, message))
+            }
+        }
+    }
+
+    /// The springs with the groups of their nodes, which none of `systems` turns, under names that are none of `names`; per
+    /// `thickness` of plane sections.
     ///
     /// # Errors
     /// Elements without a stiffness, a stiffness without elements, nodes of no body or with axes of their own.
@@ -131,6 +184,7 @@ impl Springs {
         groups: &mut Groups,
         thickness: f64,
         systems: &BTreeMap<u32, System>,
+        names: &mut Names,
     ) -> Result<Vec<SceneSpring>, InputError> {
         let lacks = |of: &&Elements| {
             !self
@@ -146,44 +200,98 @@ impl Springs {
             return Err(groups.error(of.place, &message));
         }
         let mut at_nodes: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+        let mut between = Vec::new();
         for property in &self.properties {
             let elements = self.elements.iter().filter(|of| of.set == property.set);
-            let nodes: Vec<u32> = elements.flat_map(|of| &of.nodes).copied().collect();
-            if nodes.is_empty() {
+            let ends: Vec<&(i64, Vec<u32>)> = elements.flat_map(|of| &of.ends).collect();
+            if ends.is_empty() {
                 let message = format!(
                     "there are no springs '{}'; expected *ELEMENT, TYPE={TO_GROUND} with this ELSET",
                     name::shown(&property.set)
                 );
                 return Err(groups.error(property.place, &message));
             }
-            for node in nodes {
-                let why = match (groups.is_of_body(node), systems.contains_key(&node)) {
-                    (true, false) => None,
-                    (true, true) => Some("has *TRANSFORM; expected springs along x, y and z"),
-                    (false, _) => Some("is none of a body; expected nodes of solids"),
-                };
-                if let Some(why) = why {
-                    let message = format!("*SPRING: the node {} {why}", groups.tag(node));
-                    return Err(groups.error(property.place, &message));
+            for (number, nodes) in ends {
+                property.check(groups, nodes, systems)?;
+                match (&nodes[..], property.axis) {
+                    ([node], Some(axis)) => {
+                        at_nodes.entry(*node).or_default()[axis] += property.stiffness / thickness;
+                    }
+                    _ if property.stiffness == 0.0 => {}
+                    _ => between.push(property.between(groups, (*number, nodes), thickness, names)),
                 }
-                at_nodes.entry(node).or_default()[property.axis] += property.stiffness / thickness;
             }
         }
-        // Bits of numbers that aren't negative are in the order of these.
-        let mut alike: BTreeMap<[u64; 3], Vec<u32>> = BTreeMap::new();
-        for (node, stiffness) in at_nodes {
-            let bits = stiffness.map(|k| (k + 0.0).to_bits());
-            alike.entry(bits).or_default().push(node);
+        let mut all = to_ground(groups, at_nodes);
+        all.extend(between);
+        Ok(all)
+    }
+}
+
+/// Springs to the ground by their stiffness.
+fn to_ground(groups: &mut Groups, at_nodes: BTreeMap<u32, [f64; 3]>) -> Vec<SceneSpring> {
+    // Bits of numbers that aren't negative are in the order of these.
+    let mut alike: BTreeMap<[u64; 3], Vec<u32>> = BTreeMap::new();
+    for (node, stiffness) in at_nodes {
+        let bits = stiffness.map(|k| (k + 0.0).to_bits());
+        alike.entry(bits).or_default().push(node);
+    }
+    let dim = groups.dim();
+    let spring = |(bits, nodes): ([u64; 3], Vec<u32>)| {
+        Some(SceneSpring {
+            on: vec![groups.of_points(&nodes, "spring")?],
+            name: String::new(),
+            stiffness: bits.map(f64::from_bits),
+            axial: None,
+            dim,
+        })
+    };
+    alike.into_iter().filter_map(spring).collect()
+}
+
+impl Property {
+    /// Checks the ends of a spring.
+    ///
+    /// # Errors
+    /// A node of no body, or with axes of its own.
+    fn check(
+        &self,
+        groups: &Groups,
+        nodes: &[u32],
+        systems: &BTreeMap<u32, System>,
+    ) -> Result<(), InputError> {
+        for &node in nodes {
+            let is_turned = self.axis.is_some() && systems.contains_key(&node);
+            let why = match (groups.is_of_body(node), is_turned) {
+                (true, false) => continue,
+                (true, true) => "has *TRANSFORM; expected springs along x, y and z",
+                (false, _) => "is none of a body; expected nodes of solids",
+            };
+            let message = format!("*SPRING: the node {} {why}", groups.tag(node));
+            return Err(groups.error(self.place, &message));
         }
-        let dim = groups.dim();
-        let spring = |(bits, nodes): ([u64; 3], Vec<u32>)| {
-            Some(SceneSpring {
-                on: groups.of_points(&nodes, "spring")?,
-                stiffness: bits.map(f64::from_bits),
-                dim,
-            })
-        };
-        Ok(alike.into_iter().filter_map(spring).collect())
+        Ok(())
+    }
+
+    /// A spring between two nodes.
+    fn between(
+        &self,
+        groups: &mut Groups,
+        (number, nodes): (i64, &[u32]),
+        thickness: f64,
+        names: &mut Names,
+    ) -> SceneSpring {
+        let stiffness = self.stiffness / thickness;
+        let along = |axis: usize| [0, 1, 2].map(|k| if k == axis { stiffness } else { 0.0 });
+        SceneSpring {
+            on: (nodes.iter())
+                .filter_map(|&node| groups.of_points(&[node], "end of spring"))
+                .collect(),
+            name: names.unique(&format!("spring {number}")),
+            stiffness: self.axis.map_or([0.0; 3], along),
+            axial: self.axis.is_none().then_some(stiffness),
+            dim: groups.dim(),
+        }
     }
 }
 
@@ -191,7 +299,17 @@ impl SceneSpring {
     /// Writes the springs.
     pub(super) fn write(&self, document: &mut Document) {
         document.table("[[spring]]");
-        document.key("on", quoted(&self.on));
-        document.key("stiffness", vector(&self.stiffness, self.dim));
+        match &self.on[..] {
+            [on] => document.key("on", quoted(on)),
+            ends => {
+                let ends: Vec<String> = ends.iter().map(|end| quoted(end)).collect();
+                document.key("name", quoted(&self.name));
+                document.key("between", format!("[{}]", ends.join(", ")));
+            }
+        }
+        match self.axial {
+            Some(stiffness) => document.key("axial", format!("{stiffness:?}")),
+            None => document.key("stiffness", vector(&self.stiffness, self.dim)),
+        }
     }
 }

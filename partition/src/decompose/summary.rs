@@ -117,7 +117,7 @@ impl fmt::Display for Summary<'_> {
                 ContactKind::Coupling => ", coupled",
                 ContactKind::Pretension => ", pulled together",
                 ContactKind::Held => ", held",
-                ContactKind::Unilateral | ContactKind::Equation => "",
+                ContactKind::Unilateral | ContactKind::Equation | ContactKind::Spring => "",
             };
             writeln!(
                 f,

@@ -276,7 +276,7 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
     });
     let explicit = scene.contact.iter().filter_map(Declaration::contact);
     (loaded.chain(scene.bilateral.iter().map(|c| &c.on)))
-        .chain(scene.spring.iter().map(|c| &c.on))
+        .chain(scene.spring.iter().flat_map(|spring| spring.groups()))
         .chain(explicit.flat_map(Contact::sides))
         .chain(scene.tie.iter().flat_map(|tie| &tie.sides))
         .chain(scene.equation.iter().flat_map(|e| &e.terms).map(|t| &t.at))

@@ -249,11 +249,11 @@ impl Known<'_> {
         let loadings = scene.loadings();
         let displacements = loadings.first().map_or(&[][..], |of| of.displacement);
         let rest = self.supports.len() - displacements.len() - scene.bilateral.len();
-        let rest = rest - scene.spring.len();
+        let rest = rest - scene.springs_to_ground().count();
         let names = (displacements.iter().map(|of| Some(&of.on)))
             .chain(scene.bilateral.iter().map(|of| Some(&of.on)))
             .chain(std::iter::repeat_n(None, rest))
-            .chain(scene.spring.iter().map(|of| Some(&of.on)));
+            .chain(scene.springs_to_ground().map(|(_, of)| Some(&of.on)));
         let groups = || {
             names
                 .clone()

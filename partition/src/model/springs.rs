@@ -47,9 +47,9 @@ impl Springs {
     ) -> Result<Self, InputError> {
         let mesh = &bodies.mesh;
         let mut all = Self::default();
-        for (index, spring) in scene.spring.iter().enumerate() {
+        for (number, (index, spring)) in scene.springs_to_ground().enumerate() {
             let what = format!("spring[{}] on {}", index + 1, spring.on);
-            let condition = (supports + index) as u32;
+            let condition = (supports + number) as u32;
             if groups::are_of_facets(mesh, &spring.on) {
                 let facets = groups::facets(mesh, &spring.on, &what)?;
                 let surface = Surface::new(mesh, topology, scene.plane, &facets, &what)?;

@@ -27,6 +27,8 @@ pub enum ContactKind {
     Tie,
     /// A linear equation between displacements.
     Equation,
+    /// A spring between points.
+    Spring,
     /// Nodes that follow a reference point.
     Coupling,
     /// The sides of a cut through a bolt, which it pulls together.
@@ -37,10 +39,11 @@ pub enum ContactKind {
 
 impl ContactKind {
     /// The kind of the contact of a point.
-    pub fn of<N>(point: &ContactPoint<N>) -> Self {
+    pub fn of<N: Copy>(point: &ContactPoint<N>) -> Self {
         match (point.law.is_tied(), point.axes.is_empty()) {
             (false, _) => Self::Unilateral,
             (true, true) => Self::Tie,
+            (true, false) if point.is_compliant() => Self::Spring,
             (true, false) => match (point.tag_a, point.tag_b) {
                 (-1, -1) => Self::Coupling,
                 (-1, _) => Self::Held,
@@ -56,6 +59,7 @@ impl ContactKind {
             Self::Unilateral => "contact",
             Self::Tie => "tie",
             Self::Equation => "equation",
+            Self::Spring => "spring",
             Self::Coupling => "coupling",
             Self::Pretension => "pretension",
             Self::Held => "held pretension",

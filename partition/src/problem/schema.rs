@@ -215,7 +215,7 @@ pub const FIELDS: &[Field] = &[
     optional("/contact/stiffness", "R, 2", NotNegative,
         "stiffness of what lies between the sides, along the normal and along the tangents, its `area` times the stiffness per \
          area [N/m]; 0 where it is rigid. Along the normal the sides overlap by force over stiffness, along the tangents what \
-         sticks is displaced by it"),
+         sticks is displaced by it. An equation with one along the normal is a spring between points, whose force is its multiplier"),
     optional("/contact/motion", "R, L?, d", Numbers,
         "displacement of the obstacle that the point faces, in every load step [m]; of an equation, along the axis of its first \
          entry, what its value is beyond `gap`; zeros at other points"),

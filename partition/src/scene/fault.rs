@@ -46,6 +46,7 @@ impl Scene {
             .or_else(|| self.wrong_coupling())
             .or_else(|| self.wrong_pretension())
             .or_else(|| self.wrong_cyclic())
+            .or_else(|| self.wrong_spring())
     }
 
     fn wrong_name(&self) -> Option<Fault> {
@@ -193,7 +194,7 @@ impl Scene {
             of_step.check(dim, &within, &mut check);
         }
         for (index, spring) in self.spring.iter().enumerate() {
-            if let Some((key, fault)) = spring.stiffness.fault(dim) {
+            if let Some((key, fault)) = spring.fault(dim) {
                 check(entry("spring", index, key), Some(fault));
             }
         }

@@ -1,5 +1,7 @@
 //! Pretensions in load steps, and what is wrong with them and with cyclic symmetries.
 
+use std::collections::BTreeSet;
+
 use super::fault::{Fault, entry};
 use super::material::PlaneState;
 use super::number::OR_IN_SPACE;
@@ -130,6 +132,23 @@ impl Scene {
             if all.any(|name| name == cyclic.name) {
                 let message = format!("there is another '{}' already", cyclic.name);
                 return Some((entry("cyclic", index, "name"), message));
+            }
+        }
+        None
+    }
+
+    /// A spring between points whose name something else has.
+    pub(super) fn wrong_spring(&self) -> Option<Fault> {
+        let mut taken: BTreeSet<String> = (self.connections().map(|(_, _, name)| name))
+            .chain(self.coupling.iter().map(|of| &of.name[..]))
+            .chain(self.pretension.iter().map(|of| &of.name[..]))
+            .chain(self.cyclic.iter().map(|of| &of.name[..]))
+            .map(str::to_owned)
+            .collect();
+        for (index, spring) in self.springs_between() {
+            if !taken.insert(spring.title()) {
+                let message = format!("there is another '{}' already", spring.title());
+                return Some((entry("spring", index, "name"), message));
             }
         }
         None

@@ -1,13 +1,44 @@
-//! Springs between bodies and the ground.
+//! Springs between bodies and the ground, and between points.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 use super::condition::Names;
-use super::number::{Number, Vector};
+use super::contact::contact_name;
+use super::number::{Constant, Number, Vector};
+use crate::element::geometry::length;
 
-/// Springs to the ground at points, or an elastic foundation under a side.
+/// A spring to the ground, or between two points.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "SpringKeys")]
+pub enum AnySpring {
+    /// To the ground.
+    ToGround(Spring),
+    /// Between points.
+    Between(SpringBetween),
+}
+
+/// A spring between two points, or the mean displacements of two groups.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpringBetween {
+    /// Name; without one that of its ends.
+    pub name: Option<String>,
+    /// Its ends.
+    pub ends: [Names; 2],
+    /// Force per relative displacement.
+    pub stiffness: BetweenStiffness,
+}
+
+/// The stiffness of a spring between points (N/m).
+#[derive(Clone, Debug, PartialEq)]
+pub enum BetweenStiffness {
+    /// Along the line between its ends.
+    Axial(f64),
+    /// Along the axes.
+    Axes(Vector),
+}
+
+/// Springs to the ground at points, or an elastic foundation under a side.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
     /// The groups of facets or points that it holds.
     pub on: Names,
@@ -32,33 +63,130 @@ pub enum SpringStiffness {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of on, and stiffness or normal and tangential"
+    expecting = "a table of on, and stiffness or normal and tangential, or of between, name, and stiffness or axial"
 )]
 struct SpringKeys {
-    on: Names,
+    on: Option<Names>,
+    between: Option<[Names; 2]>,
+    #[serde(default, deserialize_with = "some_name")]
+    name: Option<String>,
     stiffness: Option<Vector>,
+    axial: Option<Constant>,
     normal: Option<Number>,
     tangential: Option<Number>,
 }
 
-impl TryFrom<SpringKeys> for Spring {
+fn some_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
+    contact_name(deserializer).map(Some)
+}
+
+impl TryFrom<SpringKeys> for AnySpring {
     type Error = &'static str;
 
     fn try_from(keys: SpringKeys) -> Result<Self, Self::Error> {
-        let stiffness = match (keys.stiffness, keys.normal, keys.tangential) {
-            (Some(stiffness), None, None) => SpringStiffness::Axes(stiffness),
-            (None, Some(normal), tangential) => SpringStiffness::Foundation { normal, tangential },
+        let to_ground =
+            "expected 'stiffness' along the axes, or of a side 'normal' and perhaps 'tangential'";
+        match (keys.on, keys.between) {
+            (Some(on), None) if keys.axial.is_none() && keys.name.is_none() => {
+                let stiffness = match (keys.stiffness, keys.normal, keys.tangential) {
+                    (Some(stiffness), None, None) => SpringStiffness::Axes(stiffness),
+                    (None, Some(normal), tangential) => {
+                        SpringStiffness::Foundation { normal, tangential }
+                    }
+                    _ => return Err(to_ground),
+                };
+                Ok(Self::ToGround(Spring { on, stiffness }))
+            }
+            (None, Some(ends)) if keys.normal.is_none() && keys.tangential.is_none() => {
+                let stiffness = match (keys.stiffness, keys.axial) {
+                    (Some(stiffness), None) => BetweenStiffness::Axes(stiffness),
+                    (None, Some(Constant(k))) => BetweenStiffness::Axial(k),
+                    _ => {
+                        return Err(
+                            "expected 'stiffness' along the axes, or 'axial' along the line between the points",
+                        );
+                    }
+                };
+                Ok(Self::Between(SpringBetween {
+                    name: keys.name,
+                    ends,
+                    stiffness,
+                }))
+            }
+            (Some(_), None) => Err(to_ground),
             _ => {
+                Err("expected 'on' with what holds it to the ground, or 'between' with two points")
+            }
+        }
+    }
+}
+
+impl SpringBetween {
+    /// Its stiffness along unit vectors, one along the line from the second to the first of its ends, which are `apart`.
+    ///
+    /// # Errors
+    /// One that is less than 0 or no number there, none at all, or ends at one place.
+    pub fn along(&self, apart: [f64; 3]) -> Result<Vec<([f64; 3], f64)>, String> {
+        let all = match &self.stiffness {
+            BetweenStiffness::Axial(_) if length(apart) == 0.0 => {
                 return Err(
-                    "expected 'stiffness' along the axes, or of a side 'normal' and perhaps \
-                            'tangential'",
+                    "its ends lie at one place; expected 'stiffness' along the axes".into(),
                 );
             }
+            BetweenStiffness::Axial(k) => vec![(apart.map(|x| x / length(apart)), *k)],
+            BetweenStiffness::Axes(stiffness) if !stiffness.is_constant() => {
+                return Err("its stiffness depends on the place; expected numbers".into());
+            }
+            BetweenStiffness::Axes(stiffness) => {
+                let axis = |k: usize| [0, 1, 2].map(|i| f64::from(u8::from(i == k)));
+                let all = stiffness.at(apart)?.into_iter().enumerate();
+                all.map(|(k, stiffness)| (axis(k), stiffness)).collect()
+            }
         };
-        Ok(Self {
-            on: keys.on,
-            stiffness,
-        })
+        for &(_, k) in &all {
+            not_negative(k)?;
+        }
+        let all: Vec<_> = all.into_iter().filter(|&(_, k)| k > 0.0).collect();
+        match all.is_empty() {
+            false => Ok(all),
+            true => Err("its stiffness is 0; expected more".into()),
+        }
+    }
+
+    /// Its name, among those of results.
+    pub fn title(&self) -> String {
+        let [a, b] = self
+            .ends
+            .each_ref()
+            .map(|of| of.to_string().replace(['\'', '/'], ""));
+        self.name.clone().unwrap_or_else(|| format!("{a} to {b}"))
+    }
+
+    /// The key that is wrong in space of `dim` dimensions, and why.
+    fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
+        match &self.stiffness {
+            BetweenStiffness::Axes(axes) => axes.fault(dim).map(|fault| ("stiffness", fault)),
+            BetweenStiffness::Axial(_) => None,
+        }
+    }
+}
+
+impl AnySpring {
+    /// The groups that it is on, at both of its ends.
+    pub fn groups(&self) -> impl Iterator<Item = &Names> {
+        let (one, both) = match self {
+            Self::ToGround(spring) => (Some(&spring.on), &[][..]),
+            Self::Between(spring) => (None, &spring.ends[..]),
+        };
+        one.into_iter().chain(both)
+    }
+
+    /// The key that is wrong in space of `dim` dimensions, and why.
+    pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
+        match self {
+            Self::ToGround(spring) => spring.stiffness.fault(dim),
+            Self::Between(spring) => spring.fault(dim),
+        }
     }
 }
 
@@ -94,7 +222,7 @@ impl SpringStiffness {
     }
 
     /// The key that is wrong in space of `dim` dimensions, and why.
-    pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
+    fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         match self {
             Self::Axes(stiffness) => stiffness.fault(dim).map(|fault| ("stiffness", fault)),
             Self::Foundation { normal, tangential } => {

@@ -2,7 +2,7 @@
 
 
 # Kinds of conditions whose forces are no pressures.
-WITHOUT_PRESSURE = ("equation", "coupling", "pretension", "held pretension")
+WITHOUT_PRESSURE = ("equation", "spring", "coupling", "pretension", "held pretension")
 
 
 def pressing(result):

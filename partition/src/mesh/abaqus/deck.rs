@@ -10,6 +10,9 @@ use crate::element::Elements;
 use crate::error::InputError;
 use crate::name;
 
+/// The types of elements that are springs.
+const SPRINGS: [&str; 3] = ["SPRING1", "SPRING2", "SPRINGA"];
+
 /// A part of a surface.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Face {
@@ -238,8 +241,8 @@ impl Deck {
                 self.left_out.insert(offset + tag);
             }
         }
-        // Springs to the ground are told by their keyword.
-        if !name.eq_ignore_ascii_case("SPRING1") {
+        // Springs are told by their keyword.
+        if !SPRINGS.contains(&&name.to_uppercase()[..]) {
             self.notes.add(
                 "elements that are no cells of a body are left out",
                 name.to_uppercase(),

@@ -88,7 +88,7 @@ impl<'a> Cut<'a> {
     fn check_groups(&self, scene: &Scene, mesh: &Mesh) -> Result<(), InputError> {
         let loadings = scene.loadings();
         let forces = loadings.iter().flat_map(|loading| loading.force);
-        let springs = scene.spring.iter().map(|spring| &spring.on);
+        let springs = scene.spring.iter().flat_map(|spring| spring.groups());
         let couplings = scene.coupling.iter().map(|coupling| &coupling.on);
         let terms = scene.equation.iter().flat_map(|equation| &equation.terms);
         let on = (forces.map(|force| &force.on).chain(springs))

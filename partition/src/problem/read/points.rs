@@ -32,11 +32,11 @@ pub(super) fn read(
     let tag_a = integers("/contact/node_a")?;
     let tag_b = integers("/contact/node_b")?;
     let laws = read_laws(contents)?;
-    let stiffness = read_stiffness(contents, &laws)?;
     let mut motion = read_motion(contents)?;
     let mut preload = read_preload(contents)?;
     let entries = read_entries(contents, subdomains)?;
     let mut axes = read_axes(contents, &laws)?;
+    let stiffness = read_stiffness(contents, &laws, &axes)?;
     let point = |(i, entries): (usize, _)| ContactPoint {
         // Checked when the file was opened: an index of a contact, and one of its places.
         contact: contact.all()[i] as u32,
@@ -112,15 +112,22 @@ fn read_preload(contents: &Contents) -> Result<Vec<Vec<f64>>, InputError> {
 }
 
 /// The stiffness between the sides at every point; none gives way where the file says nothing of it.
-fn read_stiffness(contents: &Contents, laws: &[Law]) -> Result<Vec<[f64; 2]>, InputError> {
+fn read_stiffness(
+    contents: &Contents,
+    laws: &[Law],
+    axes: &[Vec<[f64; 3]>],
+) -> Result<Vec<[f64; 2]>, InputError> {
     if !contents.has("/contact/stiffness") {
         return Ok(vec![[0.0; 2]; laws.len()]);
     }
     let all = contents.numbers("/contact/stiffness", 0..laws.len())?;
     let (rows, _) = all.all().as_chunks::<2>();
     for (row, (&[normal, tangential], law)) in rows.iter().zip(laws).enumerate() {
-        if law.is_tied() && normal > 0.0 {
-            return Err(all.error(row, "expected 0 at a point of law 3"));
+        if law.is_tied() && axes[row].is_empty() && normal > 0.0 {
+            return Err(all.error(
+                row,
+                "expected 0 at a point of law 3, unless its entries have directions",
+            ));
         }
         if tangential > 0.0 && (normal == 0.0 || !law.has_friction()) {
             let what = "expected a stiffness along tangents only beside one along the normal, of a point with friction";

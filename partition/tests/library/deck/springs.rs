@@ -3,6 +3,27 @@
 use super::refused::refused;
 use super::{CUBES, MODEL, means, read, step};
 
+/// A spring between the nodes 8 and 15.
+fn between(kind: &str, property: &str) -> String {
+    format!("*ELEMENT, TYPE={kind}, ELSET=Link\n21, 8, 15\n*SPRING, ELSET=Link\n{property}\n")
+}
+
+#[test]
+fn springs_between_nodes_pull_along_an_axis_or_their_line() {
+    let pressure = "pressure = [{ on = 'pressure 1', value = 1.0 }]";
+    let ends = "name = 'spring 21', between = ['end of spring 1', 'end of spring 2']";
+    for property in ["40.", "\n40."] {
+        means(
+            &format!("{}{}", between("SPRINGA", property), step(LOAD)),
+            &format!("spring = [{{ {ends}, axial = 40.0 }}]\n{pressure}"),
+        );
+    }
+    means(
+        &format!("{}{}", between("SPRING2", "2, 2\n40."), step(LOAD)),
+        &format!("spring = [{{ {ends}, stiffness = [0.0, 40.0, 0.0] }}]\n{pressure}"),
+    );
+}
+
 const LOAD: &str = "*DLOAD\nUpper, P2, 1.";
 
 fn springs(axis: usize, stiffness: &str) -> String {
@@ -41,8 +62,12 @@ fn springs_to_the_ground_hold_their_nodes_along_an_axis() {
 fn springs_that_arent_supported_are_refused_with_their_line() {
     for (more, expected) in [
         (
-            springs(3, "40.").replace("TYPE=SPRING1", "TYPE=SPRINGA"),
-            "line 52: *SPRING of elements of type SPRINGA isn't supported: they are between two nodes; instead",
+            springs(3, "40.").replace("TYPE=SPRING1", "TYPE=SPRING3"),
+            "line 49: elements of type SPRING3 aren't supported; expected SPRING1, SPRING2 or SPRINGA",
+        ),
+        (
+            between("SPRING2", "1, 2\n5."),
+            "line 52: *SPRING of SPRING2 between different degrees of freedom isn't read",
         ),
         (
             springs(3, "40.").replace("SPRING, ", "SPRING, NONLINEAR, "),
