@@ -258,13 +258,14 @@ class Model:
 
     def coupling(
         self, on: Groups, point: Sequence[float], *, name: str | None = None, kind: str | None = None,
-        force: Sequence[float] | None = None, moment: float | Sequence[float] | None = None, x: float | None = None,
-        y: float | None = None, z: float | None = None, rx: float | None = None, ry: float | None = None,
-        rz: float | None = None,
+        directions: Sequence[Sequence[float]] | None = None, force: Sequence[float] | None = None,
+        moment: float | Sequence[float] | None = None, x: float | None = None, y: float | None = None,
+        z: float | None = None, rx: float | None = None, ry: float | None = None, rz: float | None = None,
     ) -> None:
         """Couples a side, or points, to a reference point, "rigid" or "distributing": forces and moments act there, and
-        displacements and rotations of it may be prescribed."""
-        keys = given(kind=kind, force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
+        displacements and rotations of it may be prescribed. A rigid one may tie nodes along some `directions` alone,
+        which are perpendicular to each other."""
+        keys = given(kind=kind, directions=directions, force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
         entry = self._add("coupling", name=name or f"coupling of {joined(on)}", on=on, point=point, **keys)
         self._calls.add(entry, call("coupling", on, point, name=name, **keys))
 

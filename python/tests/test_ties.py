@@ -116,3 +116,35 @@ def test_a_quarter_of_a_square_does_what_the_others_do():
     u = {(round(x), round(y)): moved for (x, y, _), moved in zip(result.points, result.displacement, strict=True)}
     np.testing.assert_allclose(u[0, 1][:2], [-u[1, 0][1], u[1, 0][0]], atol=1e-10 * abs(u[1, 0]).max())
     assert u[1, 0][1] > 0.0
+
+
+def test_a_spring_between_sides_carries_the_load():
+    model = pulled()
+    model.fix("upper left", x=0.0)
+    model.spring_between("upper bottom", "lower top", stiffness=[0.0, 4e9], name="suspension")
+    with pytest.warns(UserWarning, match="touch without a contact"):
+        result = model.run(progress=False)
+    [spring] = result.report["contacts"]
+    assert spring["kind"] == "spring"
+    np.testing.assert_allclose(spring["force"], [0, -2e6, 0], atol=1e-3)
+    lower = result.nodes <= 16
+    in_joint = result.points[:, 1] == 1.0
+    above, below = (result.displacement[there & in_joint, 1].mean() for there in (~lower, lower))
+    assert above - below == pytest.approx(2e6 / 4e9)
+
+
+def test_a_side_that_follows_along_its_normal_slides():
+    model = Model.from_mesh(two_squares(), plane="strain")
+    for body in ("lower", "upper"):
+        model.body(body, Material(young=200e9, poisson=0.3))
+    model.tie("upper bottom", "lower top", name="weld", tolerance=1e-3)
+    model.fix("lower bottom", y=0.0)
+    model.fix(["lower left", "upper left"], x=0.0)
+    model.coupling("upper top", [0.5, 2.5], directions=[[0.0, 1.0]], force=[0.0, 2e6])
+    result = model.run(progress=False)
+    # Plane strain: what is free to contract does so by ν/(1 − ν) of its stretch.
+    stretch = 2e6 * (1 - 0.3**2) / 200e9
+    # The nodes of the reference point come last.
+    x, y = result.points[:-2, 0], result.points[:-2, 1]
+    expected = np.stack([-0.3 / 0.7 * stretch * x, stretch * y], axis=1)
+    np.testing.assert_allclose(result.displacement[:-2, :2], expected, atol=1e-9 * stretch)

@@ -1,5 +1,7 @@
 //! Couplings of a side to a reference point.
 
+mod partial;
+
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;

@@ -201,6 +201,11 @@ impl Content {
         Ok(())
     }
 
+    /// The orientations, by name in capitals.
+    pub(super) fn orientations(&self) -> &BTreeMap<String, System> {
+        &self.orientations
+    }
+
     /// The axes of an anisotropic section.
     pub(super) fn orientation(
         &self,

@@ -40,6 +40,10 @@ struct Coupling {
     node: u32,
     /// `None` before the keyword that says it.
     kind: Option<Kind>,
+    /// Name of the local system of its displacements, in capitals.
+    orientation: Option<String>,
+    /// The displacements that follow rigidly.
+    follows: [bool; 3],
 }
 
 /// All couplings of a deck.
@@ -79,14 +83,14 @@ impl Couplings {
 
     fn coupling(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
-        if block.parameter("ORIENTATION").is_some() {
-            let message = "*COUPLING with ORIENTATION isn't read; expected degrees of freedom along x, y and z";
-            return Err(source.error(block.place, message));
-        }
         let surface = source.required(block, "SURFACE")?.to_uppercase();
         places.check_surface(block.place, &surface)?;
         let name = block.parameter("CONSTRAINT NAME").unwrap_or("coupling");
-        self.push(places, block, (name, Coupled::Surface(surface)), None)
+        self.push(places, block, (name, Coupled::Surface(surface)), None)?;
+        if let Some(open) = self.all.last_mut() {
+            open.orientation = block.parameter("ORIENTATION").map(str::to_uppercase);
+        }
+        Ok(())
     }
 
     fn rigid_body(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
@@ -146,6 +150,8 @@ impl Couplings {
             coupled,
             node,
             kind,
+            orientation: None,
+            follows: [true; 3],
         });
         Ok(())
     }
@@ -204,16 +210,18 @@ impl Couplings {
             (first..=last).for_each(|freedom| coupled[freedom as usize - 1] = true);
         }
         match kind {
-            Kind::Rigid if !coupled[..places.dim()].iter().all(|&coupled| coupled) => {
+            Kind::Rigid if !coupled[..places.dim()].contains(&true) => {
                 let message = format!(
-                    "*KINEMATIC of some displacements isn't supported; instead couple all, 1 to {}, or hold the others of the \
-                     nodes together by *EQUATION",
+                    "*KINEMATIC of no displacement; expected some of 1 to {}",
                     places.dim()
                 );
                 return Err(source.error(block.place, message));
             }
             // Nodes follow as the point turns, whether their own rotations are named or not: they have none.
-            Kind::Rigid => coupled = [true; FREEDOMS],
+            Kind::Rigid => {
+                open.follows.copy_from_slice(&coupled[..3]);
+                coupled = [true; FREEDOMS];
+            }
             // Forces are always distributed; a rotation that isn't named takes no moment.
             Kind::Distributing => coupled[..3].fill(true),
         }

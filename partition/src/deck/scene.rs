@@ -73,7 +73,7 @@ pub(super) fn text(
     let couplings = content.couplings.in_scene(
         &mut loads.groups,
         (&content.steps.done, thickness),
-        &content.steps.systems,
+        (&content.steps.systems, content.orientations()),
         &mut taken,
     )?;
     let sectors = content.sectors.in_scene(&mut loads.groups, &mut taken)?;

@@ -10,10 +10,12 @@
 //! They are nodes of the body of the side: whatever rigid motion that makes, they go with it.
 
 mod frame;
+mod partial;
 
 use nalgebra::{Matrix3, Vector3};
 
 use self::frame::{Acting, Form, Frame, FrameLoads};
+use self::partial::{NO_INERTIA, Uncoupled};
 use super::loads::surface_load;
 use super::steps::Loads;
 use super::surface::Surface;
@@ -26,9 +28,6 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::coupling::{Coupling, CouplingKind, CouplingLoads};
 use crate::scene::step::{LoadStep, Scale};
-
-/// Inertia about an axis, relative to the largest, that is none.
-const NO_INERTIA: f64 = 1e-12;
 
 /// A coupling on the mesh.
 pub(super) struct CoupledFrame {
@@ -151,12 +150,13 @@ impl CouplingOnMesh<'_> {
         let Some(cell) = mesh.cells.iter().position(of_first) else {
             return Err(self.refused("its nodes belong to no cell of a body"));
         };
-        let mut forms = match self.coupling.kind {
-            CouplingKind::Rigid => self.rigid(&frame, &weights)?,
-            CouplingKind::Distributing => self.distributing(&frame, &weights)?,
+        let mut steps = self.steps();
+        let mut forms = match (self.coupling.kind, &self.coupling.directions[..]) {
+            (CouplingKind::Rigid, []) => self.rigid(&frame, &weights)?,
+            (CouplingKind::Rigid, _) => self.partial(&frame, &weights, &mut steps)?,
+            (CouplingKind::Distributing, _) => self.distributing(&frame, &weights)?,
         };
         forms.extend(frame.rigid());
-        let steps = self.steps();
         let mut points: Vec<ContactPoint<u32>> =
             (forms.iter()).map(|form| frame.point(form, &[])).collect();
         points.extend(frame.turned(&steps));
@@ -266,6 +266,46 @@ impl CouplingOnMesh<'_> {
             })
         };
         Ok(weights.iter().flat_map(of_node).collect())
+    }
+
+    /// The equations of nodes that follow the point along some directions; what else is prescribed there is taken out of the
+    /// `steps`.
+    fn partial(
+        &self,
+        frame: &Frame,
+        weights: &[(u32, f64)],
+        steps: &mut [Acting],
+    ) -> Result<Vec<Form>, InputError> {
+        let mut directions = Vec::new();
+        for direction in &self.coupling.directions {
+            let size = length(direction.value);
+            if size == 0.0 {
+                return Err(
+                    self.refused("a direction of length 0; expected one along which nodes follow")
+                );
+            }
+            directions.push(direction.value.map(|c| c / size));
+        }
+        if partial::are_skew(&directions) {
+            return Err(self.refused("its directions aren't perpendicular; expected ones that are"));
+        }
+        let at = |node: u32| self.mesh.points[node as usize];
+        let places: Vec<[f64; 3]> = weights.iter().map(|&(node, _)| at(node)).collect();
+        let uncoupled = Uncoupled::new(frame, &places, &directions);
+        for acting in steps {
+            let free = uncoupled.free(frame, acting);
+            free.map_err(|why| self.refused(&why))?;
+        }
+        let nodes: Vec<_> = weights.iter().map(|&(node, _)| (node, at(node))).collect();
+        let mut forms = partial::forms(frame, &nodes, &directions);
+        let middle = (weights.iter()).fold([0.0; 3], |sum, &(node, w)| advance(sum, w, at(node)));
+        let inertia = self.inertia(weights, middle)?;
+        let mut means = self.distributing(frame, weights)?;
+        let turns = means.split_off(frame.dim);
+        let arm = difference(frame.origin, middle);
+        let rest = uncoupled.forms(frame, (&means, &turns), &inertia, arm);
+        forms.extend(rest.ok_or_else(|| self.refused("its nodes don't tell how the point turns"))?);
+        Ok(forms)
     }
 
     /// The equations of nodes whose mean motion is that of the point: Σ w u is that of their middle, and Σ w r × u what turns

@@ -21,6 +21,8 @@ pub struct Coupling {
     pub point: ConstantVector,
     /// How they follow.
     pub kind: CouplingKind,
+    /// The directions along which they follow; none where they do along all.
+    pub directions: Vec<ConstantVector>,
     /// Loads and prescribed motions of the point.
     pub loads: CouplingLoads,
 }
@@ -79,7 +81,7 @@ impl Moment {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, on, point, kind, force, moment, x, y, z, rx, ry and rz"
+    expecting = "a table of name, on, point, kind, directions, force, moment, x, y, z, rx, ry and rz"
 )]
 struct CouplingKeys {
     #[serde(deserialize_with = "contact_name")]
@@ -88,6 +90,8 @@ struct CouplingKeys {
     point: ConstantVector,
     #[serde(default)]
     kind: CouplingKind,
+    #[serde(default)]
+    directions: Vec<ConstantVector>,
     force: Option<ConstantVector>,
     moment: Option<Moment>,
     x: Option<Constant>,
@@ -105,6 +109,7 @@ impl From<CouplingKeys> for Coupling {
             on: keys.on,
             point: keys.point,
             kind: keys.kind,
+            directions: keys.directions,
             loads: CouplingLoads {
                 force: keys.force,
                 moment: keys.moment,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::condition::Obstacle;
 use super::contact::{Contact, Partner};
-use super::coupling::COMPONENTS;
+use super::coupling::{COMPONENTS, CouplingKind};
 use super::fault::{Fault, entry};
 use super::material::PlaneState;
 use super::number::ConstantVector;
@@ -152,6 +152,18 @@ impl Scene {
             });
             check(entry("coupling", index, "on"), fault);
             check(entry("coupling", index, "point"), coupling.point.fault(dim));
+            let too_many = || {
+                let is_too_many = coupling.directions.len() > dim;
+                is_too_many.then(|| format!("expected {dim} at most, perpendicular to each other"))
+            };
+            let of_distributing = || {
+                let is_wrong =
+                    coupling.kind == CouplingKind::Distributing && !coupling.directions.is_empty();
+                is_wrong.then(|| "a distributing coupling has none".into())
+            };
+            let fault = (coupling.directions.iter()).find_map(|direction| direction.fault(dim));
+            let fault = fault.or_else(too_many).or_else(of_distributing);
+            check(entry("coupling", index, "directions"), fault);
             if let Some((key, fault)) = coupling.loads.fault(dim) {
                 check(entry("coupling", index, key), Some(fault));
             }

@@ -10,6 +10,7 @@ use crate::deck::place::Places;
 use crate::deck::reference::{AtReference, FREEDOMS};
 use crate::deck::steps::LoadStep;
 use crate::error::InputError;
+use crate::name;
 use crate::scene::coupling::COMPONENTS;
 
 /// A coupling in the words of the scene.
@@ -18,6 +19,8 @@ pub(in crate::deck) struct SceneCoupling {
     on: String,
     point: [f64; 3],
     is_rigid: bool,
+    /// The directions along which nodes follow; none where they do along all.
+    directions: Vec<[f64; 3]>,
     dim: usize,
     /// By step.
     acting: Vec<AtReference>,
@@ -33,17 +36,19 @@ impl Couplings {
         &self,
         groups: &mut Groups,
         (steps, thickness): (&[LoadStep], f64),
-        systems: &BTreeMap<u32, System>,
+        (systems, orientations): (&BTreeMap<u32, System>, &BTreeMap<String, System>),
         names: &mut Names,
     ) -> Result<Vec<SceneCoupling>, InputError> {
         let coupling = |coupling: &Coupling| {
             let on = self.group(groups, coupling, systems)?;
             let acting = coupling.acting(groups, steps, thickness)?;
+            let directions = coupling.directions(groups, orientations)?;
             Ok(SceneCoupling {
                 name: names.unique(&coupling.name),
                 on,
                 point: groups.position(coupling.node),
                 is_rigid: coupling.kind == Some(Kind::Rigid),
+                directions,
                 dim: groups.dim(),
                 acting,
             })
@@ -118,6 +123,46 @@ impl Couplings {
 }
 
 impl Coupling {
+    /// The directions along which its nodes follow, none where these are all, by the `orientations` of the deck.
+    ///
+    /// # Errors
+    /// An orientation that isn't there, or whose axes aren't the same everywhere.
+    fn directions(
+        &self,
+        groups: &Groups,
+        orientations: &BTreeMap<String, System>,
+    ) -> Result<Vec<[f64; 3]>, InputError> {
+        let is_rigid = self.kind == Some(Kind::Rigid);
+        let axes = match &self.orientation {
+            Some(_) if !is_rigid => {
+                let message = "*COUPLING with ORIENTATION isn't read beside *DISTRIBUTING; expected loads along x, y and z";
+                return Err(groups.error(self.place, message));
+            }
+            None => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            Some(name) => match orientations.get(name) {
+                Some(System::Rectangular(axes)) => *axes,
+                found => {
+                    let message = match found {
+                        None => format!("there is no *ORIENTATION '{}'", name::shown(name)),
+                        Some(_) => format!(
+                            "*COUPLING: the orientation {} turns around an axis, which isn't supported; expected a rectangular one",
+                            name::shown(name)
+                        ),
+                    };
+                    return Err(groups.error(self.place, &message));
+                }
+            },
+        };
+        let dim = groups.dim();
+        if self.follows[..dim].iter().all(|&follows| follows) {
+            return Ok(Vec::new());
+        }
+        let followed = axes.into_iter().zip(self.follows).take(dim);
+        Ok(followed
+            .filter_map(|(axis, follows)| follows.then_some(axis))
+            .collect())
+    }
+
     /// What acts on its reference node in every step, per thickness of plane sections.
     fn acting(
         &self,
@@ -153,6 +198,13 @@ impl SceneCoupling {
         document.key("point", vector(&self.point, self.dim));
         if !self.is_rigid {
             document.key("kind", quoted("distributing"));
+        }
+        if !self.directions.is_empty() {
+            let all = self.directions.iter().map(|axis| vector(axis, self.dim));
+            document.key(
+                "directions",
+                format!("[{}]", all.collect::<Vec<_>>().join(", ")),
+            );
         }
         self.acts(0, document);
     }

@@ -43,6 +43,30 @@ fn a_reference_node_is_loaded_and_held_at_its_point() {
 }
 
 #[test]
+fn nodes_may_follow_along_some_axes() {
+    let held = step("*BOUNDARY\n100, 1, 6");
+    let all = "x = 0.0, y = 0.0, z = 0.0, rx = 0.0, ry = 0.0, rz = 0.0";
+    means(
+        &format!("{}{held}", coupling("*KINEMATIC\n1, 1\n3, 3")),
+        &format!(
+            "coupling = [{{ {GRIP}, directions = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], {all} }}]"
+        ),
+    );
+    let axes = "*ORIENTATION, NAME=O\n0., 2., 0., -1., 0., 0.\n";
+    let local = coupling("*KINEMATIC\n2, 2").replace("REF NODE", "ORIENTATION=O, REF NODE");
+    means(
+        &format!("{axes}{local}{held}"),
+        &format!("coupling = [{{ {GRIP}, directions = [[-1.0, 0.0, 0.0]], {all} }}]"),
+    );
+    // All of them are all, whatever the axes.
+    let local = local.replace("2, 2", "1, 3");
+    means(
+        &format!("{axes}{local}{held}"),
+        &format!("coupling = [{{ {GRIP}, {all} }}]"),
+    );
+}
+
+#[test]
 fn forces_are_shared_by_faces_or_in_equal_parts_by_nodes() {
     let dim = |surface: &str, kind: &str| {
         let deck = coupling(kind).replace("SURFACE, NAME=Roof\nUpper, S2", surface);
@@ -121,8 +145,8 @@ fn loads_of_a_reference_node_go_by_steps_and_amplitudes() {
 fn couplings_that_arent_supported_are_refused_with_their_line() {
     for (more, expected) in [
         (
-            coupling("*KINEMATIC\n3, 3"),
-            "line 55: *KINEMATIC of some displacements isn't supported; instead couple all, 1 to 3",
+            coupling("*KINEMATIC\n4, 6"),
+            "line 55: *KINEMATIC of no displacement; expected some of 1 to 3",
         ),
         (
             coupling("*KINEMATIC\n1, 7"),
@@ -130,7 +154,11 @@ fn couplings_that_arent_supported_are_refused_with_their_line() {
         ),
         (
             coupling("*KINEMATIC").replace("REF NODE", "ORIENTATION=O, REF NODE"),
-            "line 54: *COUPLING with ORIENTATION isn't read; expected degrees of freedom along x, y and z",
+            "line 54: there is no *ORIENTATION 'O'",
+        ),
+        (
+            coupling("*DISTRIBUTING\n4, 4").replace("REF NODE", "ORIENTATION=O, REF NODE"),
+            "line 54: *COUPLING with ORIENTATION isn't read beside *DISTRIBUTING",
         ),
         (
             coupling("*KINEMATIC").replace("REF NODE", "INFLUENCE RADIUS=1., REF NODE"),
