@@ -146,6 +146,10 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
             let message = "is a scene already; expected a deck, or --example, beside --write-scene";
             return Err(InputError::new(message).in_file(path).into());
         }
+        if args.write_prints.is_some() {
+            let message = "prints nothing, as a scene; expected a deck beside --write-prints";
+            return Err(InputError::new(message).in_file(path).into());
+        }
         let scene = Scene::read(path)?;
         let stem = path.file_stem().unwrap_or(path.as_os_str());
         let output = output(args, Path::new(stem));

@@ -2,6 +2,7 @@
 
 use super::Catalog;
 use super::law::LawRow;
+use crate::contact_point::ContactPoint;
 use crate::magnitude::short;
 
 impl Catalog {
@@ -40,11 +41,15 @@ impl Catalog {
         (!words.is_empty()).then(|| words.join(", "))
     }
 
-    /// The stiffness of a contact in words, per area; `None` of a rigid one.
+    /// The stiffness of a contact in words, per area, or of a spring; `None` of a rigid one.
     pub fn contact_stiffness(&self, contact: usize) -> Option<String> {
         let points = self.points.iter();
         let of = points.filter(|point| point.contact as usize == contact && point.is_compliant());
-        let unit = format!("{}/{}", self.units.stress(), self.units.length());
+        let per = match of.clone().any(ContactPoint::is_equation) {
+            true => self.units.force(self.dim),
+            false => self.units.stress(),
+        };
+        let unit = format!("{per}/{}", self.units.length());
         let along = |direction: usize| {
             let per_area = of.clone().map(move |p| p.stiffness[direction] / p.area);
             // An area and the same one divided by leave round-off.

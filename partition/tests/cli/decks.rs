@@ -77,6 +77,23 @@ fn a_deck_and_the_scene_that_is_written_of_it_make_the_same_problem() {
 }
 
 #[test]
+fn what_a_deck_prints_is_written_as_json() {
+    let dir = tempfile::tempdir().unwrap();
+    let wanted = DECK.replace("*DLOAD", "*NODE PRINT, NSET=N\nU\n*DLOAD");
+    let deck = wanted.replace("*NODE\n", "*NODE, NSET=N\n");
+    fs::write(dir.path().join("part.inp"), deck).unwrap();
+    let output = program(&["part.inp", "--write-prints", "part.json"], dir.path());
+    assert!(output.status.success(), "{output:?}");
+    let text = fs::read_to_string(dir.path().join("part.json")).unwrap();
+    let prints: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(prints["steps"][0][0]["label"], "U");
+    assert_eq!(prints["nodes"]["N"].as_array().unwrap().len(), 8);
+    fs::write(dir.path().join("scene.toml"), "").unwrap();
+    let output = program(&["scene.toml", "--write-prints", "part.json"], dir.path());
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
 fn a_deck_that_isnt_computed_ends_with_2_and_its_line() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("part.inp");
