@@ -7,6 +7,8 @@ pub mod energy;
 pub mod fixed_active_set;
 mod fixed_conditions;
 mod group_solution;
+mod interface_solve;
+mod law_refinement;
 pub mod minimum_norm;
 pub mod motions;
 pub mod penetration;
@@ -22,6 +24,7 @@ use contact_dd_partition::element::geometry::padded;
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
+use crate::condense::blocks::CondensedBlocks;
 use crate::condense::substitute::Factors;
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, Loads};
@@ -116,6 +119,16 @@ impl DiscreteSolution {
                 }
             },
         );
+    }
+
+    /// Adds changes of the unknowns of blocks of this rank to their displacements.
+    pub fn add(&mut self, condensed: &CondensedBlocks, changes: BTreeMap<usize, Vec<f64>>) {
+        for (b, x) in changes {
+            let block = condensed.blocks.get(&b);
+            if let (Some(of_block), Some(block)) = (self.blocks.get_mut(&b), block) {
+                block.dofs.add_change(&x, &mut of_block.u);
+            }
+        }
     }
 
     /// Tells contact groups what gaps the displacements leave, and blocks what their forces push. Collective.

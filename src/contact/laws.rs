@@ -43,7 +43,7 @@ pub struct Statuses {
 }
 
 /// Jumps and forces of an iterate.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Iterate {
     /// t (m).
     pub jumps: Vec<f64>,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::dependent::DependentConstraints;
 use super::jumps::{JumpOf, defining_conditions};
 use super::law::rest_of_bound;
-use super::status::FixedStatus;
+use super::status::{FixedStatus, LimitState};
 pub use super::tangent::{Beside, TangentialLimit};
 use super::tangent::{ForceBound, TangentialCondition};
 
@@ -283,6 +283,23 @@ impl Limits {
             closed[prescribed.condition] = closed[prescribed.normal] && prescribed.slip == 0.0;
         }
         closed
+    }
+
+    /// The states of the limits where those of all conditions are these.
+    pub fn states(&self, conditions: &[LimitState]) -> Vec<LimitState> {
+        let of_condition = |&(condition, factor): &(usize, f64)| {
+            let LimitState {
+                force,
+                gap,
+                is_closed,
+            } = conditions[condition];
+            LimitState {
+                force: factor * force,
+                gap: gap / factor,
+                is_closed,
+            }
+        };
+        self.tightest.iter().map(of_condition).collect()
     }
 
     /// The limits in the linear problem that has these `conditions`.

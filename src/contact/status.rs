@@ -104,3 +104,24 @@ impl FixedStatus {
         }
     }
 }
+
+/// Where a limit is: what is known of it before its law is solved anew.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LimitState {
+    /// Its force (N/m).
+    pub force: f64,
+    /// What its jump has left, g − t, or the way back to where it stuck (m).
+    pub gap: f64,
+    /// Whether it is closed, or sticks.
+    pub is_closed: bool,
+}
+
+impl LimitState {
+    /// Its status.
+    pub fn status(&self) -> Status {
+        match self.is_closed {
+            true => Status::Closed,
+            false => Status::of_slip(self.force),
+        }
+    }
+}

@@ -12,6 +12,7 @@
 //! D τ ≤ d − D t, stay what they are.
 
 use faer::MatRef;
+use serde::{Deserialize, Serialize};
 
 use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
@@ -22,7 +23,7 @@ use crate::contact::friction::FrictionProblem;
 use crate::contact::laws::Iterate;
 use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::pair::{CondensedContact, PairResponse};
-use crate::contact::status::FixedStatus;
+use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::s_con::{ConState, Expected};
 use crate::schur::local::multiply_add;
 
@@ -58,6 +59,15 @@ pub struct CoupledStep {
     pub contact: ContactSolution,
     /// The conditions of every pair whose status is wrong, where friction kept it from converging.
     pub unsettled: Vec<Vec<usize>>,
+}
+
+/// A change of the jumps of a pair, with the change of its forces, or these themselves.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct PairChange {
+    /// Jumps and forces.
+    pub at: Iterate,
+    /// Which limits are closed, or stick.
+    pub closed: Vec<bool>,
 }
 
 /// The right-hand side after δ is eliminated.
@@ -168,7 +178,7 @@ impl<'a> CoupledContact<'a> {
         loads: &[Vec<f64>],
         statuses: &[Vec<FixedStatus>],
         moves: bool,
-    ) -> (Vec<f64>, Vec<Iterate>) {
+    ) -> (Vec<f64>, Vec<PairChange>) {
         let loads = loads.concat();
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
@@ -187,13 +197,68 @@ impl<'a> CoupledContact<'a> {
             last_patch: &self.interface.last_patch,
         };
         let change = problem.change(&fixed);
-        let pairs = (self.by_pair(&change.jumps).into_iter()).zip(self.by_pair(&change.forces));
+        let closed: Vec<bool> = fixed.iter().map(FixedStatus::is_closed).collect();
         (
             self.change_of_u(r, &condensed, &change.jumps),
-            pairs
-                .map(|(jumps, forces)| Iterate { jumps, forces })
-                .collect(),
+            self.changes(&change, &closed),
         )
+    }
+
+    /// The change of U, and of the jumps of every pair with its forces then, that solves the laws of contact from these `states` of all limits, where `r` on
+    /// Γ and `loads` on the normal jumps are left unbalanced; and whether it does.
+    pub fn solve_laws(
+        &self,
+        r: &[f64],
+        loads: &[Vec<f64>],
+        states: &[Vec<LimitState>],
+    ) -> (Vec<f64>, Vec<PairChange>, bool) {
+        let states = self.side_by_side(states.iter().map(Vec::as_slice));
+        let forces: Vec<f64> = states.iter().map(|state| state.force).collect();
+        let (of_jumps, of_rows) = forces.split_at(self.h.nrows());
+        let mut acting: Vec<f64> = of_jumps.iter().map(|force| -force).collect();
+        let by_rows = self.rows.subtract_transposed(of_rows, &mut acting);
+        let mut scale: Vec<f64> = of_jumps.iter().map(|force| force.abs()).collect();
+        for (i, by_rows) in by_rows {
+            scale[i] += by_rows;
+        }
+        let mut c = loads.concat();
+        for (c, (acting, scale)) in c.iter_mut().zip(acting.iter().zip(&mut scale)) {
+            *scale += c.abs();
+            *c -= acting;
+        }
+        let mut condensed = self.condense(r, c, scale);
+        self.motions.set_load(&mut condensed.c);
+        let gaps: Vec<f64> = states.iter().map(|state| state.gap).collect();
+        let problem = FrictionProblem {
+            contact: ContactProblem {
+                scale: 0.0,
+                ..self.problem(&condensed, &gaps, &[])
+            },
+            tangents: &self.tangents,
+            last_patch: &self.interface.last_patch,
+        };
+        let mut status: Vec<_> = states.iter().map(LimitState::status).collect();
+        let solution = problem.solve(&mut status);
+        let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
+        let change = Iterate {
+            jumps: solution.jumps,
+            forces: solution.forces,
+        };
+        (
+            self.change_of_u(r, &condensed, &change.jumps),
+            self.changes(&change, &closed),
+            solution.converged,
+        )
+    }
+
+    fn changes(&self, all: &Iterate, closed: &[bool]) -> Vec<PairChange> {
+        let pairs = (self.by_pair(&all.jumps).into_iter()).zip(self.by_pair(&all.forces));
+        let pairs = pairs.zip(self.by_pair(closed));
+        let of_pair = |((jumps, forces), closed)| PairChange {
+            at: Iterate { jumps, forces },
+            closed,
+        };
+        pairs.map(of_pair).collect()
     }
 
     fn condense(&self, r: &[f64], mut c: Vec<f64>, mut c_scale: Vec<f64>) -> Condensed {

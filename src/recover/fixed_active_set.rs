@@ -3,28 +3,22 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
 use crate::bddc::solution::Accuracy;
-use crate::bytes::Reals;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::TiedJumps;
 use crate::condense::substitute::Factors;
-use crate::contact::laws::Iterate;
 use crate::contact::limits::Limits;
 use crate::contact::status::FixedStatus;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::balance::Balance;
-use crate::interface::coupled::CoupledContact;
+use crate::interface::coupled::{CoupledContact, PairChange};
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
-use crate::plan::Plan;
 use crate::recover::BlockSolution;
 use crate::recover::motions::Motions;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
-use crate::schur::local::CondensedLoad;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
 use crate::tree::fronts::ActiveSetFronts;
@@ -66,6 +60,8 @@ pub struct FixedActiveSetRoot<'a> {
     pub interface: Option<(&'a Numbering, &'a InterfaceProblem<'a>)>,
     /// Whether the solution is refined: the active sets are right, or nothing changed them any more.
     pub is_refined: bool,
+    /// Whether statuses of contacts with friction cycle.
+    pub cycles: bool,
     /// Whether loads that are round-off of the displacements move what nothing resists.
     pub moves: bool,
 }
@@ -116,6 +112,7 @@ impl<'a> FixedActiveSet<'a> {
             root: on_root.map(|outcome| FixedActiveSetRoot {
                 interface,
                 is_refined: outcome.status == SweepStatus::Converged || outcome.is_settled,
+                cycles: !outcome.unsettled.is_empty(),
                 moves: false,
             }),
             fronts,
@@ -160,7 +157,16 @@ impl<'a> FixedActiveSet<'a> {
         let tied = self.missing_of_ties(&conditions);
         let limits = self.limits(factors.collect_conditions(conditions));
         let condensed = factors.condense(loads, &tied);
-        let (forces_of_clusters, boundaries) = self.solve_interface(&limits, &condensed);
+        let moves = self.root.is_some_and(|root| root.moves);
+        let (changes, boundaries) =
+            self.solve_interface(&limits, &condensed, |coupled, (r, loads), fixed| {
+                coupled.solve_fixed(r, loads, fixed, moves)
+            });
+        let of_cluster = |(p, change): (usize, PairChange)| {
+            let limits = self.step.pairs.get(&p)?.limits();
+            Some((p, limits.forces(&change.at.forces)))
+        };
+        let forces_of_clusters = changes.into_iter().filter_map(of_cluster).collect();
         let (blocks, of_ties) = factors.recover(&condensed, boundaries);
         let mut forces = self.no_forces();
         forces.extend(factors.spread_conditions(forces_of_clusters));
@@ -169,14 +175,14 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// No force at any condition of the contact groups of this rank.
-    fn no_forces(&self) -> BTreeMap<usize, Vec<f64>> {
+    pub fn no_forces(&self) -> BTreeMap<usize, Vec<f64>> {
         let groups = self.context.groups.iter();
         let none = groups.map(|(&g, group)| (g, vec![0.0; group.conditions().count()]));
         none.collect()
     }
 
     /// Missing jumps of ties, where their conditions have these statuses.
-    fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
+    pub fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
         let of_group = |(&g, tied): (&usize, &Vec<(usize, f64)>)| {
             let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
             (g, tied.iter().map(lacks).collect())
@@ -249,56 +255,10 @@ impl<'a> FixedActiveSet<'a> {
         }
         limits
     }
-
-    /// Brings the clusters' loads and limits to the root, and what it answers back: forces of the
-    /// conditions of clusters in contact, and unknowns on the boundary of every cluster's node. Collective.
-    fn solve_interface(
-        &self,
-        limits: &FixedStatuses,
-        condensed: &BTreeMap<usize, CondensedLoad>,
-    ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
-        let plan = self.context.plan;
-        let owners = plan.cluster_owners();
-        let of_cluster = |c: usize| {
-            plan.contact_place(c)
-                .and_then(|p| Some((p, limits.get(&p)?)))
-        };
-        let boundary = |c: usize| {
-            let load = condensed.get(&plan.clusters[c].node);
-            load.map_or(&[][..], CondensedLoad::boundary)
-        };
-        let mut gathered: Vec<ClusterQuestion> = Vec::new();
-        self.context.comm.gather(
-            &owners,
-            |c| ClusterQuestion {
-                limits: of_cluster(c).map(|(_, limits)| limits.clone()),
-                load: boundary(c).to_vec(),
-            },
-            |_, question| gathered.push(question),
-        );
-        let mut answers = self
-            .root
-            .map_or_else(Vec::new, |root| root.solve(plan, gathered));
-        let mut forces = BTreeMap::new();
-        let mut boundaries = BTreeMap::new();
-        self.context.comm.scatter(
-            &owners,
-            |c| std::mem::take(&mut answers[c]),
-            |c, (Reals(of_limits), Reals(x))| {
-                if let Some((p, _)) = of_cluster(c)
-                    && let Some(pair) = self.step.pairs.get(&p)
-                {
-                    forces.insert(p, pair.limits().forces(&of_limits));
-                }
-                boundaries.insert(plan.clusters[c].node, x);
-            },
-        );
-        (forces, boundaries)
-    }
 }
 
 /// Puts the forces at the jumps of ties among those of all conditions, by contact group.
-fn put_tied(
+pub fn put_tied(
     forces: &mut BTreeMap<usize, Vec<f64>>,
     of_jumps: &BTreeMap<usize, Vec<f64>>,
     tied: &TiedJumps,
@@ -325,58 +285,4 @@ fn follow(
         false => tolerance,
     };
     problem.solve(fronts, forces, (tolerance, None), FOLLOWED)
-}
-
-/// Question of the owner of a cluster to the root.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct ClusterQuestion {
-    /// Its limits, where it is in contact.
-    limits: Option<Vec<FixedStatus>>,
-    /// Its load, on normal jumps and traces.
-    #[serde(with = "crate::bytes")]
-    load: Vec<f64>,
-}
-
-/// Forces of the limits of a cluster, and its normal jumps and traces.
-type ClusterAnswer = (Reals, Reals);
-
-impl FixedActiveSetRoot<'_> {
-    /// Answers to all clusters.
-    fn solve(&self, plan: &Plan, gathered: Vec<ClusterQuestion>) -> Vec<ClusterAnswer> {
-        let Some((numbering, problem)) = self.interface else {
-            return Vec::new();
-        };
-        let mut r = vec![0.0; problem.interface.len];
-        let (mut loads, mut fixed) = (Vec::new(), Vec::new());
-        for (question, interface_dofs) in gathered.into_iter().zip(&numbering.interface_dofs) {
-            let mut on_jumps = question.load;
-            let on_traces = on_jumps.split_off(on_jumps.len() - interface_dofs.len());
-            if let Some(of_cluster) = question.limits {
-                fixed.push(of_cluster);
-                loads.push(on_jumps);
-            }
-            for (&i, part) in interface_dofs.iter().zip(on_traces) {
-                r[i as usize] += part;
-            }
-        }
-        let Some(coupled) = CoupledContact::new(problem) else {
-            return vec![ClusterAnswer::default(); numbering.interface_dofs.len()];
-        };
-        let (u, pairs) = coupled.solve_fixed(&r, &loads, &fixed, self.moves);
-        let mut pairs = pairs.into_iter();
-        let answer = |c: usize| {
-            let of_pair = match plan.contact_place(c) {
-                Some(_) => pairs.next(),
-                None => None,
-            };
-            let Iterate {
-                jumps: mut x,
-                forces,
-            } = of_pair.unwrap_or_default();
-            let interface_dofs = numbering.interface_dofs[c].iter();
-            x.extend(interface_dofs.map(|&i| u[i as usize]));
-            (Reals(forces), Reals(x))
-        };
-        (0..numbering.interface_dofs.len()).map(answer).collect()
-    }
 }

@@ -1,6 +1,7 @@
 //! The solution at the conditions of a contact group, and what the laws of contact want to be otherwise there.
 
 use crate::contact::law::{PointLaw, PointState};
+use crate::contact::status::LimitState;
 use crate::fem::contact_group::ContactGroup;
 
 /// The solution at the conditions of a contact group.
@@ -18,6 +19,27 @@ impl GroupSolution {
     /// A point with friction.
     pub fn point(&self, law: &PointLaw) -> PointState {
         law.at(|j| -self.gaps[j], &self.forces, &self.closed)
+    }
+
+    /// The states of all conditions.
+    pub fn states(&self) -> Vec<LimitState> {
+        let all = self.forces.iter().zip(&self.gaps).zip(&self.closed);
+        let state = |((&force, &gap), &is_closed): ((&f64, &f64), &bool)| LimitState {
+            force,
+            gap,
+            is_closed,
+        };
+        all.map(state).collect()
+    }
+
+    /// Takes the forces of conditions that aren't ties, and which are closed.
+    pub fn take(&mut self, group: &ContactGroup, known: Vec<(f64, bool)>) {
+        let all = self.forces.iter_mut().zip(&mut self.closed).zip(known);
+        for (((force, closed), known), condition) in all.zip(group.conditions()) {
+            if !condition.is_tied {
+                (*force, *closed) = known;
+            }
+        }
     }
 
     /// Takes from tangential forces their excess over the bounds.

@@ -35,6 +35,8 @@ const CORRECTION: f64 = 1e-6;
 const MAX_REFINEMENTS: usize = 3;
 /// The same with friction, whose forces follow what presses, and turn in space.
 const MAX_REFINEMENTS_OF_SLIPS: usize = 8;
+/// Most refinements in which the laws of contact are solved for anew.
+const MAX_REFINEMENTS_OF_LAWS: usize = 5;
 /// Most corrections of what sticks and slips.
 const MAX_CORRECTIONS: usize = 20;
 
@@ -68,6 +70,68 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
         best = after;
     }
     best
+}
+
+/// Solves the laws of contact anew for what a solution leaves unbalanced, as long as its certificate falls short and gets
+/// better, and returns it; where that doesn't get there with friction, from where nothing slips, too. Collective.
+pub fn refine_laws(
+    fixed: &FixedActiveSet<'_>,
+    solution: &mut DiscreteSolution,
+    certificate: Certificate,
+) -> Certificate {
+    let mut best = certificate;
+    if !decide(fixed, breaks_laws(&best)) {
+        return best;
+    }
+    laws_from(fixed, solution, &mut best);
+    // What cycles from where it was does so from elsewhere, too.
+    let tries_again = fixed.root.is_some_and(|root| !root.cycles) && breaks_laws(&best);
+    if fixed.context.catalog.has_friction() && decide(fixed, tries_again) {
+        let mut stuck = solution.clone();
+        for _ in 0..MAX_REFINEMENTS {
+            let loads = unbalanced(fixed, &stuck);
+            fixed.hold_slips(&mut stuck, loads);
+        }
+        let mut of_stuck = Certificate {
+            equilibrium: f64::INFINITY,
+            ..best
+        };
+        laws_from(fixed, &mut stuck, &mut of_stuck);
+        if decide(fixed, short_of_laws(&of_stuck) < short_of_laws(&best)) {
+            *solution = stuck;
+            best = of_stuck;
+        }
+    }
+    best
+}
+
+/// Solves the laws of contact anew, and refines, as long as the certificate falls short and gets better. Collective.
+fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: &mut Certificate) {
+    for _ in 0..MAX_REFINEMENTS_OF_LAWS {
+        if !decide(fixed, breaks_laws(best)) {
+            break;
+        }
+        let residuals = unbalanced(fixed, solution);
+        let Some(mut refined) = fixed.solve_laws(solution, residuals) else {
+            break;
+        };
+        let after = refine(fixed, &mut refined);
+        if !decide(fixed, short_of_laws(&after) < short_of_laws(best)) {
+            break;
+        }
+        *solution = refined;
+        *best = after;
+    }
+}
+
+/// Whether a solution isn't the best that is to be had.
+fn breaks_laws(certificate: &Certificate) -> bool {
+    short_of_laws(certificate) > GOOD
+}
+
+/// How far a solution is from balance and from the laws of contact, in the measure of equilibrium.
+fn short_of_laws(certificate: &Certificate) -> f64 {
+    worst(certificate).max(certificate.friction * (GOOD / ASTRAY))
 }
 
 /// Corrects statuses against the laws of contact, as forces are known better after refinement than the sweeps know them,
@@ -234,27 +298,11 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     if context.catalog.dim == 3 && context.catalog.has_friction() {
         solution.share(context, &fixed.step.loads);
     }
-    let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
-    let mut residuals: BTreeMap<usize, Vec<f64>> =
-        solution.blocks.iter().filter_map(residual).collect();
-    let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
-    fixed.free.project(&fixed.context, Field::Summed, fields);
-    let on_unknowns = |(b, residual): (usize, Vec<f64>)| {
-        let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
-        let mut load = vec![0.0; dofs.len()];
-        dofs.add_load(&residual, &mut load);
-        Some((b, load))
-    };
-    let loads = residuals.into_iter().filter_map(on_unknowns).collect();
+    let loads = unbalanced(fixed, solution);
     let forces = solution.groups.iter();
     let forces = forces.map(|(&g, of_group)| (g, of_group.forces.clone()));
     let change = fixed.solve(loads, conditions.clone(), &forces.collect(), CORRECTION);
-    for (b, x) in change.blocks {
-        let block = fixed.condensed.blocks.get(&b);
-        if let (Some(of_block), Some(block)) = (solution.blocks.get_mut(&b), block) {
-            block.dofs.add_change(&x, &mut of_block.u);
-        }
-    }
+    solution.add(fixed.condensed, change.blocks);
     for (g, changes) in change.forces {
         if let Some(of_group) = solution.groups.get_mut(&g) {
             change_forces(
@@ -267,6 +315,25 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
         }
     }
     solution.share(&fixed.context, &fixed.step.loads);
+}
+
+/// The forces that a solution leaves unbalanced on the unknowns of the blocks of this rank, but those that drive free motions. Collective.
+fn unbalanced(
+    fixed: &FixedActiveSet<'_>,
+    solution: &DiscreteSolution,
+) -> BTreeMap<usize, Vec<f64>> {
+    let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
+    let mut residuals: BTreeMap<usize, Vec<f64>> =
+        solution.blocks.iter().filter_map(residual).collect();
+    let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
+    fixed.free.project(&fixed.context, Field::Summed, fields);
+    let on_unknowns = |(b, residual): (usize, Vec<f64>)| {
+        let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
+        let mut load = vec![0.0; dofs.len()];
+        dofs.add_load(&residual, &mut load);
+        Some((b, load))
+    };
+    residuals.into_iter().filter_map(on_unknowns).collect()
 }
 
 /// Which conditions of contact group g have jumps that supports prescribe; in the plane friction doesn't ask.

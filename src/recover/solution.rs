@@ -14,7 +14,7 @@ use crate::recover::minimum_norm::{
     MinimumNorm, friction_limit, remove_free_modes, take_minimum_norm,
 };
 use crate::recover::reactions::reactions;
-use crate::recover::refine::{correct_statuses, refine};
+use crate::recover::refine::{correct_statuses, refine, refine_laws};
 use crate::recover::stress_intensity::stress_intensities;
 use crate::recover::stresses::{Stress, error_estimate, largest_strain, stresses};
 use crate::recover::{DiscreteSolution, displacements};
@@ -72,7 +72,10 @@ impl Solution {
         );
         remove_free_modes(fixed, &mut discrete);
         let certificate = refine(fixed, &mut discrete);
-        let mut certificate = correct_statuses(fixed, &mut discrete, certificate);
+        let mut certificate = match fixed.fronts {
+            None => refine_laws(fixed, &mut discrete, certificate),
+            Some(_) => correct_statuses(fixed, &mut discrete, certificate),
+        };
         let minimum_norm = take_minimum_norm(fixed, analysis, &mut discrete, &mut certificate);
         // A released mode has no stiffness that could be compared.
         let condition = match minimum_norm.has_released_modes {

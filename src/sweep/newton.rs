@@ -45,6 +45,7 @@ impl Sweeps<'_, '_> {
             if !step.contact.converged && coupled.has_friction() {
                 self.outcome.unsettled = step.unsettled;
                 self.outcome.slides = step.contact.slides;
+                self.outcome.is_settled = true;
                 return Ok(self.gave_up(&residual, "statuses of contacts with friction cycle"));
             }
             if !step.contact.converged {

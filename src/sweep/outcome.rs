@@ -69,7 +69,7 @@ pub struct SweepOutcome {
     pub u: Vec<f64>,
     /// Why they ended.
     pub status: SweepStatus,
-    /// Whether they got no further although no status changed any more: refinement may find the rest.
+    /// Whether refinement may find the rest: no status changed any more, or those of friction cycle.
     pub is_settled: bool,
     /// History.
     pub records: Vec<SweepRecord>,

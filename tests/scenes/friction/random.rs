@@ -5,6 +5,7 @@ use proptest::test_runner::RngSeed;
 
 use crate::support::solver::{LIMIT, built};
 use crate::support::stress::draw_frictional;
+use crate::support::stress::space::draw_frictional_in_space;
 use crate::support::stress::trial::{Trial, Verdict};
 
 proptest! {
@@ -42,5 +43,24 @@ fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
         let findings = trial.findings.unwrap();
         assert!(findings.backward_error < 1e-14, "{seed}: {findings:?}");
+    }
+}
+
+/// Given friction far below the forces that bodies are deformed by holds them alone: the sweeps' round-off exceeds it (930013,
+/// 930048), lets blocks drift away (906018) or leaves a cone of friction (930027). The problem is convex and has a solution.
+#[test]
+fn given_friction_that_is_round_off_of_what_deforms_is_solved_for() {
+    let drawn = [
+        draw_frictional(906_018, 12),
+        draw_frictional(930_013, 12),
+        draw_frictional_in_space(930_027, 4),
+        draw_frictional_in_space(930_048, 4),
+    ];
+    for mut drawn in drawn {
+        drawn.ranks = 3;
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
+        assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
+        let findings = trial.findings.unwrap();
+        assert!(findings.backward_error < 1e-14, "{findings:?}");
     }
 }

@@ -170,23 +170,12 @@ impl<'a> Scaled<'a> {
 
     /// b of a point and its derivatives by λ and y.
     fn bound(&self, point: &PointLaw, at: &Central) -> [f64; 3] {
-        let own = &point.bound;
-        let tangential = self.root[point.first];
-        let cohesion = own.cohesion / tangential;
-        let Some(n) = point.normal else {
-            return [if own.only_closed { 0.0 } else { cohesion }, 0.0, 0.0];
-        };
-        let slope = own.coefficient * self.root[n] / tangential;
-        let (force, gap) = (at.forces[n], at.gaps[n]);
-        if !own.only_closed {
-            return [slope * force + cohesion, slope, 0.0];
+        let scales = (point.normal.map(|n| self.root[n]), self.root[point.first]);
+        let own = point.bound.scaled(scales.0, scales.1);
+        match point.normal {
+            Some(n) => own.between(at.forces[n], at.gaps[n]),
+            None => [own.at(0.0, false), 0.0, 0.0],
         }
-        let both = force + gap;
-        [
-            slope * force + cohesion * force / both,
-            slope + cohesion * gap / both / both,
-            -cohesion * force / both / both,
-        ]
     }
 
     /// The mean of λ y and γ b (1 − |ρ|²)/2.

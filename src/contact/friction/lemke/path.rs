@@ -136,11 +136,13 @@ impl Path {
     fn add(&mut self, limit: &TangentialLimit, unit: f64, attempt: usize) {
         let scale = &self.scale;
         let (i, bound) = (limit.limit, limit.bound);
-        let coefficient = (limit.normal).map_or(0.0, |n| bound.coefficient * scale[n] / scale[i]);
-        let cohesion = match bound.only_closed && limit.normal.is_none() {
-            true => 0.0,
-            false => (bound.cohesion / scale[i]).min(MOST_COHESION * unit),
-        };
+        let own = bound.scaled(limit.normal.map(|n| scale[n]), scale[i]);
+        let coefficient = own.coefficient;
+        let cohesion = match limit.normal {
+            Some(_) => own.cohesion,
+            None => own.at(0.0, false),
+        }
+        .min(MOST_COHESION * unit);
         let falls = bound.only_closed && cohesion > 0.0;
         let tangent = Tangent {
             normal: limit.normal,
