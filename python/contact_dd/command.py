@@ -2,6 +2,7 @@
 that adapt."""
 
 import argparse
+import io
 import json
 import signal
 import sys
@@ -54,7 +55,7 @@ def parser() -> argparse.ArgumentParser:
     solved.add_argument("--folder", type=Path, default=Path(), help="of problem file and result (default: this one)")
     solved.set_defaults(command=run)
 
-    what = "Solves a scene for many values of its loads, gaps and friction by the factors of one run; writes tables."
+    what = "Solves a scene for many values of its loads, gaps and friction by the factors of one run: tables, a plot."
     studied = commands.add_parser("study", help="solve for many values of parameters", description=what)
     studied.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene with [[quantity]]")
     studied.add_argument(
@@ -150,6 +151,11 @@ def study(arguments: argparse.Namespace) -> None:
     ):
         write(path)
         print(path)
+    picture = problem.with_suffix(".study.svg")
+    drawn = io.StringIO()
+    table.plot().savefig(drawn, format="svg", metadata={"Date": None})
+    files.write(picture, drawn.getvalue())
+    print(picture)
 
 
 def partitioned(arguments: argparse.Namespace, prints: Path | None = None) -> Path:

@@ -9,13 +9,16 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from contact_dd import errors, files
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # The kinds of parameters, by their numbers in the problem file, that leave all factors as they are.
 VARYING = (0, 2, 4)
@@ -35,6 +38,13 @@ class Study:
     """The kinds of quantities by their names."""
     status: tuple[str, ...]
     """Of every case "converged", "not_converged" or "ill_posed"."""
+
+    def plot(self) -> Figure:
+        """A picture by matplotlib: quantities over the first parameter, a line for each combination of the others."""
+        from contact_dd.drawing.studies import curves
+
+        figure: Figure = curves(self)
+        return figure
 
     def write_csv(self, path: str | Path) -> None:
         """Writes the table as CSV."""

@@ -10,6 +10,7 @@ import pytest
 from test_quantities import pressed
 
 from contact_dd import InputError, Model
+from contact_dd.study import Study
 
 
 def test_a_study_has_the_bits_of_single_runs():
@@ -64,10 +65,25 @@ def test_the_command_writes_tables(tmp_path):
     with h5py.File(path.with_suffix(".h5")) as file:
         assert file["quantities"].asstr()[:].tolist() == rows[0][1:4]
         np.testing.assert_array_equal(file["table"][:], [[float(x) for x in row[1:4]] for row in rows[1:]])
+    assert "<svg" in path.with_suffix(".svg").read_text()
     for wrong in ("friction", "friction=0:1:0.3", "friction=a", "=1"):
         done = study("--vary", wrong)
         assert done.returncode == 2
         assert "expected name=first:last:step" in done.stderr
+
+
+def test_the_plot_has_a_line_for_every_combination_of_what_else_varies():
+    values = np.array([[0.3, 1.0], [0.1, 1.0], [0.2, 2.0], [0.1, 2.0], [0.2, 1.0]])
+    sag = np.array([3.0, 1.0, 4.0, 2.0, np.nan])
+    status = ("converged",) * 4 + ("ill_posed",)
+    table = Study(("friction", "load"), values, {"sag": sag, "grip": 2 * sag}, {}, status)
+    axes = table.plot().axes
+    assert [one.get_ylabel() for one in axes] == ["sag", "grip"]
+    first, second, missing = axes[0].lines
+    np.testing.assert_array_equal(first.get_xydata(), [[0.1, 1.0], [0.2, np.nan], [0.3, 3.0]])
+    np.testing.assert_array_equal(second.get_xydata(), [[0.1, 2.0], [0.2, 4.0]])
+    assert [first.get_label(), second.get_label()] == ["load = 1", "load = 2"]
+    assert missing.get_xdata() == [0.2, 0.2]
 
 
 def test_a_quantity_of_a_crack_tip_is_that_of_the_report(scene):
