@@ -12,7 +12,7 @@ use crate::support::blocks::Blocks;
 use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solids::{between, solid};
-use crate::support::solution::{Solution, datasets, difference};
+use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve, solve_steps};
 use crate::support::sorts::SORTS;
 
@@ -239,18 +239,7 @@ fn ranks_and_solvers_make_no_difference() {
     let steps = Solution::steps(&case.result());
     steps.iter().for_each(Solution::check_certificate);
     assert!(steps[1].slipping() > 0);
-    let direct = case.folder().join("direct.vtkhdf");
-    std::fs::rename(case.result(), &direct).unwrap();
-    let expected = datasets(&direct);
-    for ranks in [2, 3, 4] {
-        let ended = case.run_on(ranks, &[]);
-        assert_eq!(ended.code(), 0, "{}", ended.stderr);
-        assert!(datasets(&case.result()) == expected, "{ranks} ranks");
-    }
-    let ended = case.run(&["--interface", "iterative"]);
-    assert_eq!(ended.code(), 0, "{}", ended.stderr);
-    let (apart, at) = difference(&direct, &case.result());
-    assert!(apart < 1e-8, "{apart:e} in {at}");
+    case.is_the_same_on_all_ranks_and_by_iteration(1e-8);
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::support::blocks::{Blocks, glued, joined};
 use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solids::{moved, solid, turned};
-use crate::support::solution::{Solution, datasets, difference};
+use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve, solve_steps};
 
 const SECTORS: usize = 5;
@@ -117,18 +117,7 @@ fn ranks_and_solvers_make_no_difference() {
     let case = Case::in_clusters(&model(&with_cyclic(WHEEL), wheel(1)), 6, 3);
     let ended = case.run(&[]);
     assert_eq!(ended.code(), 0, "{}", ended.stderr);
-    let direct = case.folder().join("direct.vtkhdf");
-    std::fs::rename(case.result(), &direct).unwrap();
-    let expected = datasets(&direct);
-    for ranks in [2, 3, 4] {
-        let ended = case.run_on(ranks, &[]);
-        assert_eq!(ended.code(), 0, "{}", ended.stderr);
-        assert!(datasets(&case.result()) == expected, "{ranks} ranks");
-    }
-    let ended = case.run(&["--interface", "iterative"]);
-    assert_eq!(ended.code(), 0, "{}", ended.stderr);
-    let (apart, at) = difference(&direct, &case.result());
-    assert!(apart < 1e-8, "{apart:e} in {at}");
+    case.is_the_same_on_all_ranks_and_by_iteration(1e-8);
 }
 
 /// A mesh with another one, whose groups grow the ones of their names.

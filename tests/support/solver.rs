@@ -12,7 +12,7 @@ use contact_dd_partition::problem::Problem;
 use tempfile::TempDir;
 
 use super::process::{Ended, Running};
-use super::solution::Solution;
+use super::solution::{Solution, datasets, difference};
 
 /// Longer than any of these runs takes, on a machine with other work, too.
 pub const LIMIT: Duration = Duration::from_secs(300);
@@ -85,6 +85,23 @@ impl Case {
         let solution = Solution::read(&self.result());
         solution.check_certificate();
         solution
+    }
+
+    /// Fails unless the result is there with the same bits on 2 to 4 ranks, and by the iterative solver up to a `tolerance`.
+    #[track_caller]
+    pub fn is_the_same_on_all_ranks_and_by_iteration(&self, tolerance: f64) {
+        let direct = self.folder().join("direct.vtkhdf");
+        std::fs::rename(self.result(), &direct).unwrap();
+        let expected = datasets(&direct);
+        for ranks in [2, 3, 4] {
+            let ended = self.run_on(ranks, &[]);
+            assert_eq!(ended.code(), 0, "{}", ended.stderr);
+            assert!(datasets(&self.result()) == expected, "{ranks} ranks");
+        }
+        let ended = self.run(&["--interface", "iterative"]);
+        assert_eq!(ended.code(), 0, "{}", ended.stderr);
+        let (apart, at) = difference(&direct, &self.result());
+        assert!(apart < tolerance, "{apart:e} in {at}");
     }
 }
 

@@ -9,7 +9,7 @@ use crate::support::blocks::{Blocks, joined};
 use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solids::{between, solid};
-use crate::support::solution::{Solution, datasets, difference};
+use crate::support::solution::Solution;
 use crate::support::solver::Case;
 
 /// The report's entry of a contact by its name: its kind and its force.
@@ -220,18 +220,7 @@ fn ranks_and_solvers_make_no_difference() {
         .collect();
     // The table can't hold more than its friction.
     assert!(pulls[0] > 0.0 && pulls[1] > pulls[0], "{pulls:?}");
-    let direct = case.folder().join("direct.vtkhdf");
-    std::fs::rename(case.result(), &direct).unwrap();
-    let expected = datasets(&direct);
-    for ranks in [2, 3, 4] {
-        let ended = case.run_on(ranks, &[]);
-        assert_eq!(ended.code(), 0, "{}", ended.stderr);
-        assert!(datasets(&case.result()) == expected, "{ranks} ranks");
-    }
-    let ended = case.run(&["--interface", "iterative"]);
-    assert_eq!(ended.code(), 0, "{}", ended.stderr);
-    let (apart, at) = difference(&direct, &case.result());
-    assert!(apart < 1e-7, "{apart:e} in {at}");
+    case.is_the_same_on_all_ranks_and_by_iteration(1e-7);
 }
 
 /// The force of a spring along x, from the table of its conditions.
