@@ -61,7 +61,8 @@ pub struct CoupledStep {
     pub unsettled: Vec<Vec<usize>>,
 }
 
-/// A change of the jumps of a pair, with the change of its forces, or these themselves.
+/// The change of the jumps of a pair: with that of its forces where statuses are fixed, with the forces after it where laws are
+/// solved.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PairChange {
     /// Jumps and forces.
@@ -204,8 +205,9 @@ impl<'a> CoupledContact<'a> {
         )
     }
 
-    /// The change of U, and of the jumps of every pair with its forces then, that solves the laws of contact from these `states` of all limits, where `r` on
-    /// Γ and `loads` on the normal jumps are left unbalanced; and whether it does.
+    /// The change of U, and that of the jumps of every pair with the forces after it, that solves the laws of contact from these
+    /// `states` of all limits, where `r` on Γ and `loads` on the normal jumps are left unbalanced; and whether it does.
+    /// Round-off is that of the change: the displacements so far are no scale of it.
     pub fn solve_laws(
         &self,
         r: &[f64],
@@ -251,6 +253,7 @@ impl<'a> CoupledContact<'a> {
         )
     }
 
+    /// The part of every pair in a change of all jumps and forces.
     fn changes(&self, all: &Iterate, closed: &[bool]) -> Vec<PairChange> {
         let pairs = (self.by_pair(&all.jumps).into_iter()).zip(self.by_pair(&all.forces));
         let pairs = pairs.zip(self.by_pair(closed));
