@@ -137,7 +137,7 @@ pub fn little_memory(trials: &mut Trials) {
     for ranks in [0, 2] {
         trials.once(&format!("little_memory::on_{ranks}_ranks"), move || {
             let case = Case::of(&built_in_model("granite", 2), 12);
-            let limits = [80, 100, 130, 160, 200].map(|megabytes| {
+            let limits = [80, 100, 130, 160, 180, 200, 240].map(|megabytes| {
                 // The launcher needs more than the limit.
                 let script = format!("ulimit -v {}; exec \"$0\" \"$@\"", megabytes << 10);
                 let mut command = launched(Path::new("sh"), ranks);
@@ -147,8 +147,12 @@ pub fn little_memory(trials: &mut Trials) {
                     .arg(case.problem());
                 let ended = Running::start(&mut command).wait(LIMIT);
                 let said = format!("{megabytes} MB: {}{}", ended.stdout, ended.stderr);
+                // MPI that finds no memory for its own libraries may end by a signal before the program starts.
+                let in_mpi = ["failed to map segment", "mmap(2)"].map(|words| said.contains(words));
+                let aborted = said.contains("memory allocation of");
                 // An abort would be a signal, 128 and more in a launcher's words.
-                assert!(ended.code() < 128, "{said}");
+                let is_told = ended.code() < 128 || in_mpi.contains(&true) && !aborted;
+                assert!(is_told, "{said}");
                 said
             });
             let words = ["out of memory", "of memory, and"];
