@@ -23,7 +23,7 @@ use super::tangent::TangentialLimit;
 pub use super::tangent::{ForceBound, TangentialCondition};
 
 /// Ways of Lemke's path that are tried.
-const ATTEMPTS: usize = 3;
+const ATTEMPTS: usize = 4;
 
 /// The contact problem with friction.
 #[derive(Clone, Copy, Debug)]

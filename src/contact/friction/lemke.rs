@@ -28,7 +28,7 @@ const MOST_LIMITS: usize = 3000;
 /// Pivots between which its round-off may grow, but for that of large problems.
 const MOST_UPDATES: usize = 20;
 /// Pivots, whatever the problem and for each limit.
-const EXCHANGES: usize = 200;
+const EXCHANGES: usize = 2000;
 const EXCHANGES_EACH: usize = 8;
 /// Pivots in a row at one θ: round-off goes round in circles there.
 const STANDS_STILL: usize = 100;

@@ -11,11 +11,11 @@ use crate::contact::tangent::TangentialLimit;
 
 /// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
 /// where it is steep the path ends at the solution, but has further to go.
-const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-8, 1e-10];
-/// Sides in space: b is right to 1/800 and better, near enough to the solution for Newton's method.
-const SIDES: [usize; ATTEMPTS] = [96, 64, 80];
+const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-6, 1e-8, 1e-10];
+/// Sides in space. Their end is nearer to the solution the more there are, but slips that turn go from side to side.
+const SIDES: [usize; ATTEMPTS] = [16, 96, 24, 48];
 /// Part of the angle of a side by which the first is turned: no slip along an axis is along a normal.
-const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63];
+const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
 /// Force, relative to the largest where all is closed, that nothing exceeds: rows that give way would be far away.
 const MOST_COHESION: f64 = 10.0;
 
