@@ -5,7 +5,6 @@ use std::convert::Infallible;
 use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
-use crate::contact::law::PointStatus;
 use crate::contact::laws::{Iterate, LawResidual, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, OnGroups, StepAccuracy, TotalResidual, newton,
