@@ -141,6 +141,7 @@ impl<'a> Contacts<'a> {
         if let Some(friction) = &keys.friction {
             warnings.extend(laws::give_friction(friction, &mut points, &what)?);
         }
+        (points.iter_mut()).for_each(|point| point.is_absolute = keys.absolute);
         if let Some(stiffness) = &keys.stiffness {
             laws::give_stiffness(stiffness, &mut points, &what)?;
             // Its sides overlap where they press.
