@@ -182,10 +182,17 @@ impl<'a> ContactLaws<'a> {
             }
             let here = self.point(point, at, &closed);
             let way = here.way();
+            let force = match own {
+                Status::Parting => here.size().min(point.bound.cohesion),
+                _ => here.bound,
+            };
             let (direction, turning) = match way > 0.0 {
-                true => (here.slip.map(|s| s / way), point.turning(here.bound / way)),
+                true => (here.slip.map(|s| s / way), point.turning(force / way)),
                 false => ([own.sign(), 0.0], 0.0),
             };
+            if own == Status::Parting && way > 0.0 {
+                return PointStatus::Parts { direction, turning };
+            }
             match own.is_closed() && point.prescribed == 0.0 || direction == [0.0; 2] {
                 true => PointStatus::Sticks,
                 false => PointStatus::Slips { direction, turning },

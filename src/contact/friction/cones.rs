@@ -2,7 +2,7 @@
 //!
 //! Semismooth Newton on the laws ([`newton`](crate::contact::newton)), with a dense linear problem for given statuses
 //! ([`linear`]). Where this gets no further, it starts again from near the solution, where an interior-point method leads
-//! ([`interior`]). After that in the plane Lemke's path leads to a solution ([`lemke`](super::lemke)), and viscous resistance to all
+//! ([`interior`]). After that Lemke's path leads to a solution ([`lemke`](super::lemke)), and viscous resistance to all
 //! jumps make the problem easier, the slower things move the less.
 
 mod interior;
@@ -15,7 +15,7 @@ use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::open_factor::scale_of;
 use crate::contact::status::FixedStatus;
-use crate::contact::tangent::{Beside, TangentialLimit};
+use crate::contact::tangent::Beside;
 
 /// What may be missed, relative to the terms of forces, where steps make it no less: round-off of points whose own stiffness is
 /// far above that of others. The certificate has the last word.
@@ -51,12 +51,6 @@ impl Found {
 }
 
 impl FrictionProblem<'_> {
-    /// Whether a point slips in a plane.
-    fn has_cones(&self) -> bool {
-        let beside = |tangent: &TangentialLimit| tangent.beside != Beside::Nothing;
-        self.tangents.iter().any(beside)
-    }
-
     /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
     pub(super) fn solve_cones(&self, status: &mut [Status]) -> ContactSolution {
         let cones = FrictionCones::new(self);

@@ -9,15 +9,19 @@
 //! A. Klarbring, J.-S. Pang, *Existence of solutions to discrete semicoercive frictional contact problems*, SIAM J.
 //! Optim. 8 (1998).
 //!
+//! In space friction has a polygon in the place of the disc, and the end of the path is near the solution.
+//!
 //! Closed rows that depend on each other give way a little. A bound that vanishes as the contact opens, c + μ λ, falls
 //! steeply to 0 with the last of the force: what ends there is about to open.
 
 mod path;
+mod polygon;
 mod responses;
 
 use self::path::{End, Path};
 use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
+use crate::contact::tangent::{Beside, TangentialLimit};
 
 /// Limits up to which the path is followed: its matrix is dense.
 const MOST_LIMITS: usize = 3000;
@@ -33,7 +37,9 @@ impl FrictionProblem<'_> {
     /// The end of the path, and the pivots that it took; `None` where it doesn't get there. Every `attempt` goes
     /// another way.
     pub(super) fn follow(&self, attempt: usize) -> (Option<End>, usize) {
-        if self.contact.bounds.len() > MOST_LIMITS {
+        let is_prescribed =
+            |tangent: &TangentialLimit| matches!(tangent.beside, Beside::Prescribed(_));
+        if self.contact.bounds.len() > MOST_LIMITS || self.tangents.iter().any(is_prescribed) {
             return (None, 0);
         }
         let mut path = Path::new(self, attempt);
@@ -45,19 +51,19 @@ impl FrictionProblem<'_> {
             if pivots % often == often - 1 {
                 path.refresh();
             }
-            if let Some((i, quantity)) = entered {
-                way = path.quantity(i, quantity)[1].signum();
+            if let Some(quantity) = entered {
+                way = path.quantity(quantity)[1].signum();
             }
             match path.next(theta, way, entered) {
-                Some((at, _, _)) if at <= 0.0 => return (Some(path.end()), pivots),
+                Some((at, _)) if at <= 0.0 => return (Some(path.end()), pivots),
                 None if way < 0.0 => return (Some(path.end()), pivots),
-                Some((at, i, quantity)) => {
+                Some((at, quantity)) => {
                     still = if at == theta { still + 1 } else { 0 };
                     if still > STANDS_STILL {
                         return (None, pivots);
                     }
                     theta = at;
-                    entered = Some(path.pivot(theta, i, quantity));
+                    entered = Some(path.pivot(theta, quantity));
                 }
                 None => return (None, pivots),
             }

@@ -136,14 +136,20 @@ impl Points {
                 Beside::Nothing => (0.0, 0.0),
             };
             let normal = tangent.normal.map_or(0.0, |n| forces[n]);
-            let bound = tangent.bound.at(normal, normal > 0.0);
             let (force, own) = (forces[tangent.limit], beyond(tangent.limit));
-            let size = own.hypot(slip);
+            let (size, of_force) = (own.hypot(slip), force.hypot(other));
+            let (least, most) = match tangent.normal {
+                // About to open, with what is left of the cohesion.
+                Some(n) if normal == 0.0 && beyond(n) > -1e-12 => {
+                    (0.0, tangent.bound.at(0.0, true))
+                }
+                _ => [tangent.bound.at(normal, normal > 0.0); 2].into(),
+            };
             worst = worst.max(match tangent.beside {
-                Beside::Prescribed(_) => (force * size - bound * own).abs(),
+                Beside::Prescribed(_) => (force * size - most * own).abs(),
                 _ => {
-                    let opposed = bound * size - force * own - other * slip;
-                    (force.hypot(other) - bound).max(opposed.abs())
+                    let opposed = of_force.max(least) * size - force * own - other * slip;
+                    (of_force - most).max(opposed.abs())
                 }
             });
         }

@@ -33,6 +33,25 @@ fn cohesion_holds_what_is_pressed() {
     }
 }
 
+/// Where it is lost as contacts open, some are about to: pressed by nothing, with a part of it.
+#[test]
+fn cohesion_that_is_lost_as_contacts_open_leaves_a_solution() {
+    let bound = ForceBound {
+        cohesion: 1.5,
+        ..COULOMB
+    };
+    let make: [fn(usize, usize, ForceBound) -> Points; 2] = [Points::new, Points::in_space];
+    for make in make {
+        let mut parting = 0;
+        for seed in 0..120 {
+            let points = make(5 + seed % 12, 17 * seed, bound);
+            let (_, status) = points.solved(&format!("seed {seed}"), 1e-11);
+            parting += usize::from(status.contains(&Status::Parting));
+        }
+        assert!(parting > 5, "{parting}");
+    }
+}
+
 /// Given friction has one solution: that of the least energy, which coordinate descent finds, too.
 #[test]
 fn given_friction_has_the_solution_of_least_energy() {

@@ -54,9 +54,7 @@ impl FrictionCones<'_> {
             return (found, true, false);
         }
         let mut steps = at_once.steps;
-        if !problem.has_cones()
-            && let Some(found) = self.along_lemke_s_path(problem, &mut steps)
-        {
+        if let Some(found) = self.along_lemke_s_path(problem, &mut steps) {
             return (Found { steps, ..found }, true, false);
         }
         match self.regularized(&start, &state, &mut steps) {
@@ -77,16 +75,9 @@ impl FrictionCones<'_> {
             *steps += pivots;
             let Some(end) = end else { continue };
             // Where nothing resists, what slips both ways is between both there, and not just anywhere.
-            let start = self.place(end.jumps, vec![0.0; self.contact.rows.len()]);
+            let start = self.place(end.jumps, end.of_rows);
             let mut state = self.laws.begin(&end.status, &start);
             state.opened.fill(true);
-            for (point, own) in self.laws.points.iter().zip(&mut state.points) {
-                if let (Status::Parting, PointStatus::Slips { direction, turning }) =
-                    (end.status[point.first], *own)
-                {
-                    *own = PointStatus::Parts { direction, turning };
-                }
-            }
             let found = self.newton(&start, &state, STEPS);
             *steps += found.steps;
             if found.converged() {

@@ -1,10 +1,11 @@
-//! The path as it stands: jumps and forces where some quantity of every limit is 0, at θ = 0 and for every unit of θ.
+//! The path as it stands: jumps and forces where as many quantities are 0 as there are limits, at θ = 0 and for every unit of θ.
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
+use super::polygon::{FrictionPolygon, SlipPart};
 use super::responses::{Responses, Terms};
-use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status, TangentialLimit};
+use crate::contact::friction::{FrictionProblem, Status};
 use crate::vector::{axpy, largest};
 
 /// The end of the path.
@@ -12,50 +13,46 @@ pub(in crate::contact::friction) struct End {
     pub status: Vec<Status>,
     /// The jumps there (m).
     pub jumps: Vec<f64>,
+    /// The forces of dependent rows there (N/m).
+    pub of_rows: Vec<f64>,
 }
 
-/// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
-/// where it is steep the path ends at the solution, but has further to go.
-const STEEP: [f64; ATTEMPTS] = [1e-10, 1e-6, 1e-8];
 /// How much closed rows that depend on each other give way.
 const YIELD: f64 = 1e-8;
 /// Stiffness of springs on all jumps, for motions that nothing resists.
 const SPRING: f64 = 1e-10;
-/// Force, relative to the largest where all is closed, that nothing exceeds: rows that give way would be far away.
-const MOST_COHESION: f64 = 10.0;
 
-/// What is 0 at a limit, or may not be negative there.
+/// What is 0 at a limit or a point, or may not be negative there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
-    /// The gap, or the way back to where it sticks.
-    Way,
-    /// The normal force, with what θ adds.
-    Force,
-    /// What a tangential force lacks of the bound in the direction of its sign; the steep one of two or not.
-    Bound { sign: f64, steep: bool },
-    /// The slip in the direction of a sign.
-    Slip(f64),
+    /// The gap of a limit, or its way back to where it sticks.
+    Way(usize),
+    /// The normal force of a limit, with what θ adds.
+    Force(usize),
+    /// What a tangential force lacks of its bound along the normal of a side; the steep one of two bounds or not.
+    Bound {
+        point: usize,
+        side: usize,
+        steep: bool,
+    },
+    /// A part of the slip of a point.
+    Slip { point: usize, part: SlipPart },
 }
 
-/// A tangential limit in the scale of energies.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tangent {
-    normal: Option<usize>,
-    coefficient: f64,
-    cohesion: f64,
-    /// What θ adds to the bound.
-    added: f64,
-    /// How the bound falls to 0 where it does before the contact opens.
-    steep: Option<f64>,
-    /// Whether it vanishes where the contact is open.
-    only_closed: bool,
-    /// Whether it never holds anything.
-    is_free: bool,
+/// Where the tangential force of a point is.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// Within the polygon.
+    Sticks,
+    /// On a side, by the steep bound or not.
+    Side(usize, bool),
+    /// Where two sides meet.
+    Corner([usize; 2], bool),
 }
 
 /// Where the path is: all in the scale of energies.
 pub(super) struct Path {
-    /// The jumps of all limits, then their forces, for a unit of what is 0 at each of the limits.
+    /// The jumps of all limits, then their forces, for a unit of each of the quantities that are 0.
     responses: Responses,
     /// The same where all these are 0: at θ = 0, and for every unit of θ.
     value: [Vec<f64>; 2],
@@ -64,15 +61,17 @@ pub(super) struct Path {
     at_start: Vec<f64>,
     /// Number of independent jumps.
     independent: usize,
-    /// What is 0 at each.
+    /// What is 0: one for a normal limit, as many for a point as it has tangents.
     zero: Vec<Quantity>,
     bounds: Vec<f64>,
     /// What jumps are multiplied by in that scale.
     scale: Vec<f64>,
     /// What θ adds to normal forces.
     added: Vec<f64>,
-    tangents: Vec<Option<Tangent>>,
-    /// The tangential limits of each normal one that vanish with it.
+    points: Vec<FrictionPolygon>,
+    /// The limits that aren't tangential.
+    normals: Vec<usize>,
+    /// The points of each normal limit whose friction vanishes with it.
     of_normal: Vec<Vec<usize>>,
 }
 
@@ -119,87 +118,92 @@ impl Path {
             start,
             at_start,
             independent: m,
-            zero: vec![Quantity::Way; count],
+            zero: (0..count).map(Quantity::Way).collect(),
             bounds,
             added: (0..count).map(|i| unit * spread(i, attempt)).collect(),
-            tangents: vec![None; count],
+            points: Vec::new(),
+            normals: Vec::new(),
             of_normal: vec![Vec::new(); count],
             scale,
         };
+        let mut is_tangential = vec![false; count];
         for limit in problem.tangents {
-            path.add(limit, unit, attempt);
+            is_tangential[limit.limit] = true;
+            let added = [unit, path.added[limit.limit]];
+            let polygon = FrictionPolygon::new(limit, &path.scale, added, attempt);
+            path.points.extend(polygon);
+        }
+        path.normals = (0..count).filter(|&i| !is_tangential[i]).collect();
+        for (i, added) in path.added.iter_mut().enumerate() {
+            *added = if is_tangential[i] { 0.0 } else { *added };
+        }
+        for point in 0..path.points.len() {
+            let polygon = path.points[point];
+            if polygon.is_free {
+                for (side, limit) in polygon.limits().enumerate() {
+                    path.zero[limit] = Quantity::Bound {
+                        point,
+                        side,
+                        steep: false,
+                    };
+                }
+            } else if let (Some(n), true) = (polygon.normal, polygon.only_closed) {
+                path.of_normal[n].push(point);
+            }
         }
         path.refresh();
         path
     }
 
-    fn add(&mut self, limit: &TangentialLimit, unit: f64, attempt: usize) {
-        let scale = &self.scale;
-        let (i, bound) = (limit.limit, limit.bound);
-        let own = bound.scaled(limit.normal.map(|n| scale[n]), scale[i]);
-        let coefficient = own.coefficient;
-        let cohesion = match limit.normal {
-            Some(_) => own.cohesion,
-            None => own.at(0.0, false),
-        }
-        .min(MOST_COHESION * unit);
-        let falls = bound.only_closed && cohesion > 0.0;
-        let tangent = Tangent {
-            normal: limit.normal,
-            coefficient,
-            cohesion,
-            added: if cohesion > 0.0 { self.added[i] } else { 0.0 },
-            steep: falls.then(|| coefficient + cohesion / (STEEP[attempt] * unit)),
-            only_closed: bound.only_closed,
-            is_free: cohesion == 0.0 && coefficient == 0.0,
-        };
-        self.added[i] = 0.0;
-        self.tangents[i] = Some(tangent);
-        if tangent.is_free {
-            let (sign, steep) = (1.0, false);
-            self.zero[i] = Quantity::Bound { sign, steep };
-        } else if let (Some(n), true) = (limit.normal, bound.only_closed) {
-            self.of_normal[n].push(i);
-        }
-    }
-
     /// A quantity as a sum of jumps and forces, and the rest of it.
-    fn terms(&self, i: usize, quantity: Quantity) -> (Terms, [f64; 2]) {
+    fn terms(&self, quantity: Quantity) -> (Terms, [f64; 2]) {
         let count = self.bounds.len();
-        let none = (i, 0.0);
+        let none = (0, 0.0);
         match quantity {
-            Quantity::Way => ([(i, -1.0), none], [self.bounds[i], 0.0]),
-            Quantity::Slip(sign) => ([(i, sign), none], [-sign * self.bounds[i], 0.0]),
-            Quantity::Force => ([(count + i, 1.0), none], [0.0, self.added[i]]),
-            Quantity::Bound { sign, steep } => {
-                let tangent = self.tangents[i].unwrap_or_default();
-                let (share, rest) = match (steep, tangent.steep) {
+            Quantity::Way(i) => ([(i, -1.0), none, none], [self.bounds[i], 0.0]),
+            Quantity::Force(i) => {
+                let own = (count + i, 1.0);
+                ([own, none, none], [0.0, self.added[i]])
+            }
+            Quantity::Slip { point, part } => {
+                let polygon = &self.points[point];
+                let direction = polygon.direction(part);
+                let (mut terms, mut rest) = ([none; 3], 0.0);
+                for (k, limit) in polygon.limits().enumerate() {
+                    let share = direction[k] / polygon.weights[k];
+                    terms[k] = (limit, share);
+                    rest -= share * self.bounds[limit];
+                }
+                (terms, [rest, 0.0])
+            }
+            Quantity::Bound { point, side, steep } => {
+                let polygon = &self.points[point];
+                let (share, mut rest) = match (steep, polygon.steep) {
                     (true, Some(steep)) => (steep, [0.0; 2]),
-                    _ => (tangent.coefficient, [tangent.cohesion, tangent.added]),
+                    _ => (polygon.coefficient, [polygon.cohesion, polygon.added]),
                 };
                 // Steep ones are of the size of the others.
                 let size = share.max(1.0);
-                let own = (count + i, -sign / size);
-                match tangent.normal {
-                    Some(n) => {
-                        let rest = [rest[0], rest[1] + share * self.added[n]];
-                        ([own, (count + n, share / size)], rest.map(|x| x / size))
-                    }
-                    None => ([own, none], rest),
+                let direction = polygon.normal_of(side);
+                let mut terms = [none; 3];
+                for (k, limit) in polygon.limits().enumerate() {
+                    terms[k] = (count + limit, -direction[k] * polygon.weights[k] / size);
                 }
+                if let Some(n) = polygon.normal {
+                    rest[1] += share * self.added[n];
+                    terms[2] = (count + n, share / size);
+                }
+                (terms, rest.map(|x| x / size))
             }
         }
     }
 
     /// Its value at θ = 0, and how it grows with θ.
-    pub(super) fn quantity(&self, i: usize, quantity: Quantity) -> [f64; 2] {
-        let (terms, rest) = self.terms(i, quantity);
+    pub(super) fn quantity(&self, quantity: Quantity) -> [f64; 2] {
+        let (terms, rest) = self.terms(quantity);
         let of = |k: usize| {
-            rest[k]
-                + terms
-                    .iter()
-                    .map(|&(j, c)| c * self.value[k][j])
-                    .sum::<f64>()
+            let terms = terms.iter().map(|&(j, c)| c * self.value[k][j]);
+            rest[k] + terms.sum::<f64>()
         };
         [of(0), of(1)]
     }
@@ -208,27 +212,38 @@ impl Path {
     pub(super) fn refresh(&mut self) {
         let count = self.bounds.len();
         self.value = [self.at_start.clone(), vec![0.0; 2 * count]];
-        let is_given = |i: usize| i < self.independent && self.zero[i] == Quantity::Way;
-        let unknown: Vec<usize> = (0..count).filter(|&i| !is_given(i)).collect();
+        // The jumps that are known, and which quantity says so.
+        let known: Vec<(usize, usize)> = (self.zero.iter().enumerate())
+            .filter_map(|(k, zero)| match *zero {
+                Quantity::Way(i) if i < self.independent => Some((k, i)),
+                _ => None,
+            })
+            .collect();
+        let (mut is_equation, mut is_unknown) = (vec![true; count], vec![true; count]);
+        for &(k, i) in &known {
+            (is_equation[k], is_unknown[i]) = (false, false);
+        }
+        let unknown: Vec<usize> = (0..count).filter(|&i| is_unknown[i]).collect();
+        let equations: Vec<usize> = (0..count).filter(|&k| is_equation[k]).collect();
         // For every quantity that is 0, and for both values.
         let mut change = Mat::zeros(unknown.len(), count + 2);
         let mut matrix = Mat::zeros(unknown.len(), unknown.len());
-        for (k, &i) in unknown.iter().enumerate() {
-            let (terms, _) = self.terms(i, self.zero[i]);
+        for (row, &k) in equations.iter().enumerate() {
+            let (terms, _) = self.terms(self.zero[k]);
             let of = |j: usize| {
-                terms
-                    .iter()
-                    .map(|&(t, c)| c * self.start[(t, j)])
-                    .sum::<f64>()
+                let terms = terms.iter().map(|&(t, c)| c * self.start[(t, j)]);
+                terms.sum::<f64>()
             };
-            (unknown.iter().enumerate()).for_each(|(l, &j)| matrix[(k, l)] = of(j));
-            (0..count)
-                .filter(|&j| is_given(j))
-                .for_each(|j| change[(k, j)] = -of(j));
-            change[(k, i)] = 1.0;
-            let value = self.quantity(i, self.zero[i]);
-            change[(k, count)] = -value[0];
-            change[(k, count + 1)] = -value[1];
+            for (l, &j) in unknown.iter().enumerate() {
+                matrix[(row, l)] = of(j);
+            }
+            for &(column, i) in &known {
+                change[(row, column)] = -of(i);
+            }
+            change[(row, k)] = 1.0;
+            let value = self.quantity(self.zero[k]);
+            change[(row, count)] = -value[0];
+            change[(row, count + 1)] = -value[1];
         }
         matrix.partial_piv_lu().solve_in_place(&mut change);
         let of_unknown = Mat::from_fn(2 * count, unknown.len(), |i, l| self.start[(i, unknown[l])]);
@@ -236,54 +251,102 @@ impl Path {
         for (k, value) in self.value.iter_mut().enumerate() {
             axpy(1.0, all.col_as_slice(count + k), value);
         }
-        for j in (0..count).filter(|&j| is_given(j)) {
-            axpy(1.0, self.start.col_as_slice(j), all.col_as_slice_mut(j));
+        for (column, i) in known {
+            axpy(
+                1.0,
+                self.start.col_as_slice(i),
+                all.col_as_slice_mut(column),
+            );
         }
         all.resize_with(2 * count, count, |_, _| 0.0);
         self.responses = Responses::new(all);
     }
 
-    /// Makes another quantity of limit i 0.
-    fn replace(&mut self, i: usize, quantity: Quantity) {
-        let of_value = self.quantity(i, quantity);
-        let (terms, _) = self.terms(i, quantity);
-        let column = self.responses.pivot(i, terms);
+    /// Makes another quantity 0 in the place of the k-th.
+    fn replace(&mut self, k: usize, quantity: Quantity) {
+        let of_value = self.quantity(quantity);
+        let (terms, _) = self.terms(quantity);
+        let column = self.responses.pivot(k, terms);
         for (value, of_value) in self.value.iter_mut().zip(of_value) {
             axpy(-of_value, column, value);
         }
-        self.zero[i] = quantity;
+        self.zero[k] = quantity;
+    }
+
+    /// Makes these quantities of a point 0, and no others.
+    fn arrange(&mut self, point: usize, wanted: &[Quantity]) {
+        let polygon = self.points[point];
+        for &quantity in wanted {
+            if polygon.limits().any(|k| self.zero[k] == quantity) {
+                continue;
+            }
+            let (terms, _) = self.terms(quantity);
+            let free = polygon
+                .limits()
+                .filter(|&k| !wanted.contains(&self.zero[k]));
+            let pivots = free.map(|k| (k, self.responses.share(k, &terms).abs()));
+            if let Some((k, _)) = pivots.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                self.replace(k, quantity);
+            }
+        }
     }
 
     fn is_open(&self, normal: usize) -> bool {
-        self.zero[normal] == Quantity::Force
+        self.zero[normal] == Quantity::Force(normal)
     }
 
-    /// What may not be negative at limit i.
-    fn bounded(&self, i: usize) -> Vec<Quantity> {
-        let Some(tangent) = self.tangents[i] else {
-            return match self.is_open(i) {
-                true => vec![Quantity::Way],
-                false => vec![Quantity::Force],
-            };
-        };
-        if tangent.is_free || tangent.only_closed && tangent.normal.is_some_and(|n| self.is_open(n))
-        {
-            return Vec::new();
+    /// Whether the friction of a point has vanished with its contact.
+    fn has_opened(&self, polygon: &FrictionPolygon) -> bool {
+        polygon.only_closed && polygon.normal.is_some_and(|n| self.is_open(n))
+    }
+
+    fn place(&self, point: usize) -> Place {
+        let mut sides = Vec::new();
+        for k in self.points[point].limits() {
+            if let Quantity::Bound { side, steep, .. } = self.zero[k] {
+                sides.push((side, steep));
+            }
         }
-        let falls = tangent.steep.is_some();
-        let mut bounded = match self.zero[i] {
-            Quantity::Bound { sign, steep } => {
-                let steep = !steep;
-                vec![Quantity::Slip(sign), Quantity::Bound { sign, steep }]
-            }
-            _ => {
-                let all = [(1.0, false), (-1.0, false), (1.0, true), (-1.0, true)];
-                let bound = |(sign, steep)| Quantity::Bound { sign, steep };
-                all.map(bound).to_vec()
-            }
+        match sides[..] {
+            [(side, steep)] => Place::Side(side, steep),
+            [(a, steep), (b, _)] => Place::Corner([a, b], steep),
+            _ => Place::Sticks,
+        }
+    }
+
+    /// What may not be negative.
+    fn bounded(&self) -> Vec<Quantity> {
+        let of_normal = |&i: &usize| match self.is_open(i) {
+            true => Quantity::Way(i),
+            false => Quantity::Force(i),
         };
-        if !falls {
-            bounded.truncate(bounded.len() / 2);
+        let mut bounded: Vec<Quantity> = self.normals.iter().map(of_normal).collect();
+        for (point, polygon) in self.points.iter().enumerate() {
+            if polygon.is_free || self.has_opened(polygon) {
+                continue;
+            }
+            let falls = polygon.steep.is_some();
+            let bound = |side, steep| Quantity::Bound { point, side, steep };
+            let slip = |part| Quantity::Slip { point, part };
+            match self.place(point) {
+                Place::Sticks => {
+                    bounded.extend(polygon.sides().map(|side| bound(side, false)));
+                    let steep = polygon.sides().filter(|_| falls);
+                    bounded.extend(steep.map(|side| bound(side, true)));
+                }
+                Place::Side(side, steep) => {
+                    bounded.push(slip(SlipPart::Along(side)));
+                    bounded.extend(falls.then(|| bound(side, !steep)));
+                    let beside = polygon.neighbours(side).into_iter();
+                    let beside = beside.filter(|_| !polygon.is_line());
+                    bounded.extend(beside.map(|side| bound(side, steep)));
+                }
+                Place::Corner([a, b], steep) => {
+                    bounded.push(slip(SlipPart::Beside(a, b)));
+                    bounded.push(slip(SlipPart::Beside(b, a)));
+                    bounded.extend(falls.then(|| bound(a, !steep)));
+                }
+            }
         }
         bounded
     }
@@ -293,86 +356,152 @@ impl Path {
         &self,
         theta: f64,
         way: f64,
-        left: Option<(usize, Quantity)>,
-    ) -> Option<(f64, usize, Quantity)> {
-        let mut nearest: Option<(f64, usize, Quantity)> = None;
-        for i in 0..self.bounds.len() {
-            for quantity in self.bounded(i) {
-                let [value, slope] = self.quantity(i, quantity);
-                if slope * way >= 0.0 || slope.is_nan() || left == Some((i, quantity)) {
-                    continue;
-                }
-                // Round-off doesn't turn it back.
-                let at = -value / slope;
-                let at = if way > 0.0 {
-                    at.max(theta)
-                } else {
-                    at.min(theta)
-                };
-                if nearest.is_none_or(|(nearest, _, _)| (at - nearest) * way < 0.0) {
-                    nearest = Some((at, i, quantity));
-                }
+        left: Option<Quantity>,
+    ) -> Option<(f64, Quantity)> {
+        let mut nearest: Option<(f64, Quantity)> = None;
+        for quantity in self.bounded() {
+            let [value, slope] = self.quantity(quantity);
+            if slope * way >= 0.0 || slope.is_nan() || left == Some(quantity) {
+                continue;
+            }
+            // Round-off doesn't turn it back.
+            let at = -value / slope;
+            let at = if way > 0.0 {
+                at.max(theta)
+            } else {
+                at.min(theta)
+            };
+            if nearest.is_none_or(|(nearest, _)| (at - nearest) * way < 0.0) {
+                nearest = Some((at, quantity));
             }
         }
         nearest
     }
 
-    /// Changes the status of limit i, one of whose quantities has become 0; what isn't any more.
-    pub(super) fn pivot(&mut self, theta: f64, i: usize, quantity: Quantity) -> (usize, Quantity) {
-        let was = self.zero[i];
-        let at = |[value, slope]: [f64; 2]| value + theta * slope;
-        // What vanishes with a normal force slips as it opens, and from where it closes towards its slip.
-        if self.tangents[i].is_none() {
-            for k in self.of_normal[i].clone() {
-                let sense = match (quantity, self.zero[k]) {
-                    (Quantity::Force, Quantity::Bound { sign, .. }) => sign,
-                    (Quantity::Force, _) => at(self.quantity(k, Quantity::Force)),
-                    _ => at(self.quantity(k, Quantity::Slip(1.0))),
-                };
-                let right = Quantity::Bound {
-                    sign: sense.signum(),
-                    steep: self.tangents[k].is_some_and(|tangent| tangent.steep.is_some()),
-                };
-                if self.zero[k] != right {
-                    self.replace(k, right);
-                }
-            }
-        }
+    /// Changes a status where this quantity has become 0; what isn't any more.
+    pub(super) fn pivot(&mut self, theta: f64, quantity: Quantity) -> Quantity {
         match quantity {
-            Quantity::Slip(_) => self.replace(i, Quantity::Way),
-            _ => self.replace(i, quantity),
-        }
-        match (was, quantity) {
-            (Quantity::Way, Quantity::Bound { sign, .. }) => (i, Quantity::Slip(sign)),
-            _ => (i, was),
+            Quantity::Way(n) | Quantity::Force(n) => {
+                let was = self.zero[n];
+                for point in self.of_normal[n].clone() {
+                    self.turn(theta, point, quantity);
+                }
+                self.replace(n, quantity);
+                was
+            }
+            Quantity::Bound { point, side, steep } => self.reach(point, side, steep),
+            Quantity::Slip { point, part } => self.leave(point, part),
         }
     }
 
-    /// The statuses and jumps at θ = 0.
-    pub(super) fn end(&self) -> End {
-        let of_limit = |i: usize| match (self.tangents[i], self.zero[i]) {
-            (
-                Some(Tangent {
-                    normal,
-                    only_closed: true,
-                    ..
-                }),
-                _,
-            ) if normal.is_none_or(|n| self.is_open(n)) => Status::Open,
-            (Some(tangent), _) if tangent.is_free => {
-                Status::of_slip(self.quantity(i, Quantity::Slip(1.0))[0])
+    /// What vanishes with a normal force slips as it opens, and from where it closes towards its slip.
+    fn turn(&mut self, theta: f64, point: usize, quantity: Quantity) {
+        let polygon = self.points[point];
+        let count = self.bounds.len();
+        let sides = match (quantity, self.place(point)) {
+            (Quantity::Force(_), Place::Corner(sides, _)) => sides.to_vec(),
+            (Quantity::Force(_), Place::Side(side, _)) if polygon.is_line() => vec![side],
+            (Quantity::Force(_), _) => {
+                polygon.sides_towards(self.vector(theta, point, |k, limit| {
+                    (count + limit, polygon.weights[k], 0.0)
+                }))
             }
-            (Some(Tangent { steep: Some(_), .. }), Quantity::Bound { steep: true, .. }) => {
-                Status::Parting
-            }
-            (_, Quantity::Bound { sign, .. }) => Status::of_slip(sign),
-            (_, Quantity::Force) => Status::Open,
-            _ => Status::Closed,
+            _ => polygon.sides_towards(self.vector(theta, point, |k, limit| {
+                (limit, 1.0 / polygon.weights[k], self.bounds[limit])
+            })),
         };
-        let jumps = self.value[0].iter().zip(&self.scale).take(self.independent);
+        let steep = polygon.steep.is_some();
+        let bound = |side| Quantity::Bound { point, side, steep };
+        let wanted: Vec<Quantity> = sides.into_iter().map(bound).collect();
+        self.arrange(point, &wanted);
+    }
+
+    /// A force or slip of a point at θ: which jump or force of its k-th limit, with what factor, beyond what.
+    fn vector(
+        &self,
+        theta: f64,
+        point: usize,
+        of: impl Fn(usize, usize) -> (usize, f64, f64),
+    ) -> [f64; 2] {
+        let mut vector = [0.0; 2];
+        for (k, limit) in self.points[point].limits().enumerate() {
+            let (j, factor, bound) = of(k, limit);
+            vector[k] = factor * (self.value[0][j] + theta * self.value[1][j] - bound);
+        }
+        vector
+    }
+
+    /// Puts the force of a point on one more side, or on the same one by its other bound.
+    fn reach(&mut self, point: usize, side: usize, steep: bool) -> Quantity {
+        let bound = |side, steep| Quantity::Bound { point, side, steep };
+        let slip = |part| Quantity::Slip { point, part };
+        let across = (!self.points[point].is_line()).then(|| slip(SlipPart::Across(side)));
+        let on_side: Vec<Quantity> = [bound(side, steep)].into_iter().chain(across).collect();
+        let (wanted, left) = match self.place(point) {
+            Place::Sticks => (on_side, slip(SlipPart::Along(side))),
+            Place::Side(was, _) if was == side => (on_side, bound(side, !steep)),
+            Place::Side(was, _) => {
+                let left = slip(SlipPart::Beside(side, was));
+                (vec![bound(was, steep), bound(side, steep)], left)
+            }
+            Place::Corner(sides, _) => {
+                let wanted = sides.map(|side| bound(side, steep)).to_vec();
+                (wanted, bound(side, !steep))
+            }
+        };
+        self.arrange(point, &wanted);
+        left
+    }
+
+    /// Takes the force of a point off the side along whose normal it doesn't slip any more.
+    fn leave(&mut self, point: usize, part: SlipPart) -> Quantity {
+        let steep = match self.place(point) {
+            Place::Side(_, steep) | Place::Corner(_, steep) => steep,
+            Place::Sticks => false,
+        };
+        let bound = |side| Quantity::Bound { point, side, steep };
+        let (side, wanted) = match part {
+            SlipPart::Beside(side, other) => {
+                let part = SlipPart::Across(other);
+                (side, vec![bound(other), Quantity::Slip { point, part }])
+            }
+            SlipPart::Along(side) | SlipPart::Across(side) => {
+                let limits = self.points[point].limits();
+                (side, limits.map(Quantity::Way).collect())
+            }
+        };
+        self.arrange(point, &wanted);
+        bound(side)
+    }
+
+    /// The statuses, jumps and forces at θ = 0.
+    pub(super) fn end(&self) -> End {
+        let of_normal = |i: usize| Status::new(self.is_open(i));
+        let mut status: Vec<Status> = (0..self.bounds.len()).map(of_normal).collect();
+        for (point, polygon) in self.points.iter().enumerate() {
+            let slips = |side: usize| match polygon.is_line() {
+                true => Status::of_slip(polygon.normal_of(side)[0]),
+                false => Status::Slipping,
+            };
+            let own = match self.place(point) {
+                _ if self.has_opened(polygon) => Status::Open,
+                Place::Sticks => Status::Closed,
+                Place::Side(side, _) if polygon.is_line() && polygon.is_free => {
+                    let part = SlipPart::Along(side);
+                    Status::of_slip(self.quantity(Quantity::Slip { point, part })[0])
+                }
+                Place::Side(_, true) | Place::Corner(_, true) => Status::Parting,
+                Place::Side(side, false) | Place::Corner([side, _], false) => slips(side),
+            };
+            polygon.limits().for_each(|i| status[i] = own);
+        }
+        let (m, count) = (self.independent, self.bounds.len());
+        let jumps = self.value[0].iter().zip(&self.scale).take(m);
+        let of_rows = self.value[0][count + m..].iter().zip(&self.scale[m..]);
         End {
-            status: (0..self.bounds.len()).map(of_limit).collect(),
+            status,
             jumps: jumps.map(|(jump, scale)| jump / scale).collect(),
+            of_rows: of_rows.map(|(force, scale)| force * scale).collect(),
         }
     }
 }

@@ -17,8 +17,8 @@ use crate::vector::axpy;
 /// Pivots that are kept apart.
 const MOST_APART: usize = 64;
 
-/// A sum of two jumps and forces, by their number.
-pub(super) type Terms = [(usize, f64); 2];
+/// A sum of three jumps and forces, by their number.
+pub(super) type Terms = [(usize, f64); 3];
 
 /// The columns.
 pub(super) struct Responses {
@@ -56,17 +56,28 @@ impl Responses {
         }
     }
 
-    /// Makes another quantity of limit i 0, and returns its column.
-    pub(super) fn pivot(&mut self, i: usize, terms: Terms) -> &[f64] {
-        if self.pivots.len() == MOST_APART {
-            self.put_together();
-        }
+    /// Column i.
+    fn column(&self, i: usize) -> Vec<f64> {
         let (origin, since) = self.origin(i);
         let mut column = origin.to_vec();
         for pivot in &self.pivots[since..] {
             let share = sum(&pivot.terms, &column);
             axpy(-share, &pivot.column, &mut column);
         }
+        column
+    }
+
+    /// What this sum is for a unit of the i-th quantity.
+    pub(super) fn share(&self, i: usize, terms: &Terms) -> f64 {
+        sum(terms, &self.column(i))
+    }
+
+    /// Makes another quantity 0 in the place of the i-th, and returns its column.
+    pub(super) fn pivot(&mut self, i: usize, terms: Terms) -> &[f64] {
+        if self.pivots.len() == MOST_APART {
+            self.put_together();
+        }
+        let mut column = self.column(i);
         let own = sum(&terms, &column);
         column.iter_mut().for_each(|x| *x /= own);
         self.pivots.push(Pivot {
@@ -124,7 +135,7 @@ mod tests {
         let mut pivots = 0;
         for k in 0..2000 {
             let (i, j) = ((5 * k + k / 7) % count, (11 * k + k / 3) % rows);
-            let terms = [(j, 1.0), ((j + 5) % rows, 0.5)];
+            let terms = [(j, 1.0), ((j + 5) % rows, 0.5), ((j + 3) % rows, 0.2)];
             let share: Vec<f64> = (0..count)
                 .map(|q| sum(&terms, dense.col_as_slice(q)))
                 .collect();

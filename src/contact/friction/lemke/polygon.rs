@@ -1,0 +1,188 @@
+//! Friction of a point on the path: within a polygon, dᵀ λ_t ≤ b for the normals d of its sides, in the place of the disc
+//! |λ_t| ≤ b; along one tangent both are the same.
+//!
+//! D. E. Stewart, J. C. Trinkle, *An implicit time-stepping scheme for rigid body dynamics with inelastic collisions and
+//! Coulomb friction*, Int. J. Numer. Methods Engrg 39 (1996).
+
+use std::f64::consts::TAU;
+
+use crate::contact::friction::ATTEMPTS;
+use crate::contact::tangent::TangentialLimit;
+
+/// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
+/// where it is steep the path ends at the solution, but has further to go.
+const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-8, 1e-10];
+/// Sides in space: b is right to 1/800 and better, near enough to the solution for Newton's method.
+const SIDES: [usize; ATTEMPTS] = [96, 64, 80];
+/// Part of the angle of a side by which the first is turned: no slip along an axis is along a normal.
+const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63];
+/// Force, relative to the largest where all is closed, that nothing exceeds: rows that give way would be far away.
+const MOST_COHESION: f64 = 10.0;
+
+/// The friction of a point, in the scale of energies of its first tangent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FrictionPolygon {
+    /// The limit of its normal jump.
+    pub normal: Option<usize>,
+    /// The limits of its tangential jumps.
+    pub tangents: [Option<usize>; 2],
+    /// What forces of both limits are multiplied by in that scale, and slips divided.
+    pub weights: [f64; 2],
+    /// The coefficient of friction.
+    pub coefficient: f64,
+    /// The bound without normal force.
+    pub cohesion: f64,
+    /// What θ adds to the bound.
+    pub added: f64,
+    /// How the bound falls to 0 where it does before the contact opens.
+    pub steep: Option<f64>,
+    /// Whether it vanishes where the contact is open.
+    pub only_closed: bool,
+    /// Whether it never holds anything.
+    pub is_free: bool,
+    sides: usize,
+    turned: f64,
+}
+
+/// A part of a slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum SlipPart {
+    /// Along the normal of a side.
+    Along(usize),
+    /// Across the normal of a side.
+    Across(usize),
+    /// Along the normal of a side, where the rest is along that of another.
+    Beside(usize, usize),
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+impl FrictionPolygon {
+    /// The polygon of the point whose first tangential limit is this one; `None` where it is the second. `unit` is the
+    /// largest force where all is closed, `added` what θ adds to a given bound.
+    pub(super) fn new(
+        limit: &TangentialLimit,
+        scale: &[f64],
+        [unit, added]: [f64; 2],
+        attempt: usize,
+    ) -> Option<Self> {
+        let (tangents, _) = limit.of_point()?;
+        let (own, bound) = (scale[limit.limit], limit.bound);
+        let scaled = bound.scaled(limit.normal.map(|n| scale[n]), own);
+        let coefficient = scaled.coefficient;
+        let cohesion = match limit.normal {
+            Some(_) => scaled.cohesion,
+            None => scaled.at(0.0, false),
+        }
+        .min(MOST_COHESION * unit);
+        let falls = bound.only_closed && cohesion > 0.0;
+        Some(Self {
+            normal: limit.normal,
+            tangents,
+            weights: tangents.map(|i| i.map_or(1.0, |i| scale[i] / own)),
+            coefficient,
+            cohesion,
+            added: if cohesion > 0.0 { added } else { 0.0 },
+            steep: falls.then(|| coefficient + cohesion / (STEEP[attempt] * unit)),
+            only_closed: bound.only_closed,
+            is_free: cohesion == 0.0 && coefficient == 0.0,
+            sides: tangents[1].map_or(2, |_| SIDES[attempt]),
+            turned: tangents[1].map_or(0.0, |_| TURNED[attempt]),
+        })
+    }
+
+    /// Its tangential limits.
+    pub(super) fn limits(&self) -> impl Iterator<Item = usize> + use<> {
+        self.tangents.into_iter().flatten()
+    }
+
+    /// Whether it is along one tangent alone.
+    pub(super) fn is_line(&self) -> bool {
+        self.tangents[1].is_none()
+    }
+
+    /// Its sides.
+    pub(super) fn sides(&self) -> std::ops::Range<usize> {
+        0..self.sides
+    }
+
+    /// The sides beside one.
+    pub(super) fn neighbours(&self, side: usize) -> [usize; 2] {
+        [self.sides - 1, 1].map(|step| (side + step) % self.sides)
+    }
+
+    /// The normal d of a side.
+    pub(super) fn normal_of(&self, side: usize) -> [f64; 2] {
+        if self.is_line() {
+            return [1.0 - 2.0 * side as f64, 0.0];
+        }
+        let angle = TAU * (side as f64 + self.turned) / self.sides as f64;
+        [angle.cos(), angle.sin()]
+    }
+
+    /// The sides between whose normals a vector is, or the one along which it is on a line.
+    pub(super) fn sides_towards(&self, v: [f64; 2]) -> Vec<usize> {
+        if self.is_line() {
+            return vec![usize::from(v[0] < 0.0)];
+        }
+        let turns = v[1].atan2(v[0]).rem_euclid(TAU) / TAU * self.sides as f64 - self.turned;
+        let first = turns.floor().rem_euclid(self.sides as f64) as usize % self.sides;
+        vec![first, (first + 1) % self.sides]
+    }
+
+    /// The vector whose product with a slip is this part of it.
+    pub(super) fn direction(&self, part: SlipPart) -> [f64; 2] {
+        match part {
+            SlipPart::Along(side) => self.normal_of(side),
+            SlipPart::Across(side) => {
+                let [x, y] = self.normal_of(side);
+                [-y, x]
+            }
+            SlipPart::Beside(side, other) => {
+                let (own, other) = (self.normal_of(side), self.normal_of(other));
+                let size = cross(own, other);
+                [other[1] / size, -other[0] / size]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::friction::points::COULOMB;
+    use crate::contact::tangent::Beside;
+
+    #[test]
+    fn a_slip_is_between_the_normals_that_it_is_a_sum_of() {
+        let limit = TangentialLimit {
+            limit: 1,
+            normal: Some(0),
+            bound: COULOMB,
+            beside: Beside::Limit(2),
+        };
+        for attempt in 0..ATTEMPTS {
+            let polygon = FrictionPolygon::new(&limit, &[1.0; 3], [1.0; 2], attempt).unwrap();
+            for k in 0..1000 {
+                let angle = 0.1 * f64::from(k);
+                let slip = [angle.cos(), angle.sin()];
+                let [a, b] = polygon.sides_towards(slip)[..] else {
+                    panic!("{slip:?}");
+                };
+                let part = |side, other| {
+                    let direction = polygon.direction(SlipPart::Beside(side, other));
+                    direction[0] * slip[0] + direction[1] * slip[1]
+                };
+                let parts = [part(a, b), part(b, a)];
+                assert!(parts.iter().all(|&part| part > -1e-12), "{angle}");
+                let normals = [polygon.normal_of(a), polygon.normal_of(b)];
+                for (axis, slip) in slip.iter().enumerate() {
+                    let sum = parts[0] * normals[0][axis] + parts[1] * normals[1][axis];
+                    assert!((sum - slip).abs() < 1e-12, "{angle}");
+                }
+            }
+        }
+    }
+}
