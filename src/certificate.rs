@@ -20,7 +20,7 @@ use crate::vector::{larger, largest};
 const NO_LOAD: f64 = 1e-12;
 
 /// Moments relative to forces at the rim of the scene below which there are none.
-const SMALL_MOMENT: f64 = 1e-6;
+const SMALL_MOMENT: f64 = 1e-3;
 
 /// Checks of the full discrete problem, all relative to the scale of what they check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]

@@ -30,6 +30,8 @@ pub struct ContactPoint<N> {
     pub gap: f64,
     /// The jump ⟦u⟧ when it came (m), from which its slip counts.
     pub since: [f64; 3],
+    /// Whether its gap is that of the undeformed bodies although it came later.
+    pub is_absolute: bool,
     /// Tributary area, the integral of its shape function (m, in space m²): pressure is force over
     /// area.
     pub area: f64,
@@ -151,6 +153,7 @@ impl<N: Copy> ContactPoint<N> {
             frame: LocalFrame::new(normal),
             gap: 0.0,
             since: [0.0; 3],
+            is_absolute: false,
             area: 0.0,
             position,
             force_point: position,
@@ -249,6 +252,7 @@ impl<N: Copy> ContactPoint<N> {
             frame: self.frame,
             gap: self.gap,
             since: self.since,
+            is_absolute: self.is_absolute,
             area: self.area,
             position: self.position,
             force_point: self.force_point,

@@ -5,22 +5,27 @@
 
 mod amplitude;
 mod axes;
-mod connections;
+mod behavior;
+mod conditions;
 mod contacts;
 mod content;
 mod couplings;
 mod cyclic;
 mod document;
 mod elastic;
+mod equations;
 mod group_load;
 mod groups;
+mod initial;
 mod keyword;
 mod loads;
 mod material;
 mod model_change;
+mod mpc;
 mod pairs;
 mod parameters;
 mod place;
+mod presence;
 mod pretensions;
 pub mod prints;
 mod reference;
@@ -30,6 +35,7 @@ mod springs;
 mod steps;
 mod supports;
 mod table;
+mod ties;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -122,6 +128,7 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
     }
     content.steps.end(&places)?;
     content.check_path(&places)?;
+    content.find_conditions(&places)?;
     if content.steps.done.is_empty() {
         return Err(InputError::new(
             "the deck has no step; expected *STEP with *STATIC, or a scene in TOML whose key 'mesh' names the deck",
@@ -145,9 +152,12 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
         ));
     }
     let (scene, thickness) = scene::text(&mut places, &content, &mut warnings)?;
-    let prints = content
-        .prints
-        .tables(&places, content.steps.done.len(), thickness);
+    let prints = content.prints.tables(
+        &places,
+        content.steps.done.len(),
+        thickness,
+        &content.couplings.nodes(),
+    );
     Ok(Translation {
         scene,
         mesh: abaqus::mesh(&places.deck, warnings)?,

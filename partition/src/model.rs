@@ -38,7 +38,7 @@ mod surface;
 mod touching;
 
 pub use self::initial_stress::InitialStress;
-pub use self::parts::{Contact, Material, Support};
+pub use self::parts::{Contact, Formulation, Material, Support};
 pub use self::springs::SpringBlock;
 pub use self::steps::ModelStep;
 use crate::crack_tip::CrackTip;
@@ -122,7 +122,7 @@ impl Model {
         let topology = Topology::new(&bodies.mesh);
         (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
         adjust::adjust(scene, &mut bodies, &topology, &mut warnings)?;
-        let materials = bodies.with_modes(bodies::materials(scene, plane));
+        let materials = bodies.with_variants(bodies::materials(scene, plane));
         let mut loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
         let springs = springs::Springs::new(scene, &bodies, &topology, loads.names.len())?;
         let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;

@@ -101,15 +101,19 @@ class Model:
     def body(
         self, group: str, material: Material, body_force: Vector | None = None, *,
         initial_stress: Sequence[Number] | None = None, thermal: Thermal | None = None,
+        integration: str | None = None,
     ) -> None:
         """Makes a group of cells a body. `body_force` is a force per volume, `initial_stress` the stress that it has
         without strain (xx, yy, zz, xy in plane strain and around an axis; xx, yy, xy in plane stress; in space xx, yy,
-        zz, yz, xz, xy), `thermal` its expansion by heat."""
+        zz, yz, xz, xy), `thermal` its expansion by heat; "reduced" as `integration` takes two points in each
+        direction in 8-node quadrilaterals and 20-node hexahedra."""
         known: dict[str, dict[str, Any]] = self.scene.setdefault("materials", {})
         keys = given(**asdict(material))
         name = next((name for name, other in known.items() if other == keys), f"material {len(known) + 1}")
         known[name] = keys
-        beside = given(body_force=body_force, initial_stress=initial_stress, thermal=thermal)
+        beside = given(
+            body_force=body_force, initial_stress=initial_stress, thermal=thermal, integration=integration
+        )
         body = self.scene.setdefault("bodies", {})[group] = {"material": name, **beside}
         self._calls.add(body, call("body", group, **beside))
 
@@ -258,14 +262,15 @@ class Model:
 
     def coupling(
         self, on: Groups, point: Sequence[float], *, name: str | None = None, kind: str | None = None,
-        directions: Sequence[Sequence[float]] | None = None, force: Sequence[float] | None = None,
-        moment: float | Sequence[float] | None = None, x: float | None = None, y: float | None = None,
-        z: float | None = None, rx: float | None = None, ry: float | None = None, rz: float | None = None,
+        directions: Sequence[Sequence[float]] | None = None, axis: dict[str, Sequence[float]] | None = None,
+        force: Sequence[float] | None = None, moment: float | Sequence[float] | None = None,
+        x: float | None = None, y: float | None = None, z: float | None = None, rx: float | None = None, ry: float | None = None, rz: float | None = None,
     ) -> None:
         """Couples a side, or points, to a reference point, "rigid" or "distributing": forces and moments act there, and
         displacements and rotations of it may be prescribed. A rigid one may tie nodes along some `directions` alone,
-        which are perpendicular to each other."""
-        keys = given(kind=kind, directions=directions, force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
+        which are perpendicular to each other, or with an `axis` of a "point" and a "direction" radial, around and along it."""
+        of_point = given(force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
+        keys = given(kind=kind, directions=directions, axis=axis) | of_point
         entry = self._add("coupling", name=name or f"coupling of {joined(on)}", on=on, point=point, **keys)
         self._calls.add(entry, call("coupling", on, point, name=name, **keys))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from contact_dd.cells import Cells
 from contact_dd.drawing.conditions import Problem, candidates
-from contact_dd.drawing.integrals import shapes
 from contact_dd.errors import InputError
 from contact_dd.result import Result
 from contact_dd.strains import (
@@ -53,9 +53,12 @@ class Printed:
             self.stiffness = file["materials/stiffness"][:]
             self.out_of_plane = file["materials/out_of_plane"][:] if "out_of_plane" in file["materials"] else None
             self.poisson = file["materials/poisson"][:] if "poisson" in file["materials"] else None
-            modes = file["materials"].get("incompatible_modes")
-            self.has_modes = np.zeros(len(self.stiffness), dtype=bool) if modes is None else modes[:] == 1
-            self.initial = self.problem.stress()
+            self.has_modes, self.is_reduced = (
+                np.zeros(len(self.stiffness), dtype=bool) if found is None else found[:] == 1
+                for found in map(file["materials"].get, ("incompatible_modes", "reduced_integration"))
+            )
+            # In a deck it is the same everywhere in a cell.
+            self.initial = self.problem.mean_stress()
             self.external = self._held(file)
 
     @staticmethod
@@ -77,11 +80,23 @@ class Printed:
         return self._of_elements(label, self.prints["elements"][name])
 
     def _of_nodes(self, label: str, numbers: list[int]) -> Rows:
+        values = self.result.displacement if label == "U" else self.forces * self.prints["thickness"]
         rows = np.searchsorted(self.result.nodes, numbers).clip(max=len(self.result.nodes) - 1)
         is_there = (self.result.nodes[rows] == numbers) & self.problem.is_there[rows]
-        rows, numbers = rows[is_there], [number for number, there in zip(numbers, is_there, strict=True) if there]
-        values = self.result.displacement if label == "U" else self.forces * self.prints["thickness"]
-        return numbers, [None] * len(numbers), values[rows]
+        found = {number: values[row] for number, row, there in zip(numbers, rows, is_there, strict=True) if there}
+        for number in set(numbers) & self._frames.keys():
+            frame = values[self._frames[number]]
+            found[number] = frame[0] if label == "U" else frame.sum(axis=0)
+        numbers = [number for number in numbers if number in found]
+        return numbers, [None] * len(numbers), np.array([found[number] for number in numbers]).reshape(-1, 3)
+
+    @cached_property
+    def _frames(self) -> dict[int, NDArray[np.intp]]:
+        """The rows of the nodes that stand for a reference node, the first of them in its place."""
+        of_cells = np.concatenate([cells.nodes.ravel() for cells in self.result.cells])
+        others = np.setdiff1d(np.arange(len(self.result.nodes)), of_cells)
+        references = self.prints.get("references", [])
+        return dict(zip(references, np.array_split(others, len(references)), strict=True)) if references else {}
 
     def _of_elements(self, label: str, numbers: list[int]) -> Rows:
         tags: list[int] = []
@@ -136,7 +151,7 @@ class Printed:
             strain[bends] += np.einsum("cqvm,cm->cqv", strained.modes[bends], of_modes)
         return strained, strain
 
-    def _stress(self, cells: Cells, at: Floats, strain: Floats) -> Floats:
+    def _stress(self, cells: Cells, strain: Floats) -> Floats:
         """Stresses, XX YY ZZ XY XZ YZ."""
         material = self.result.cell_data["Material"][cells.members]
         voigt = np.einsum("cvw,cqw->cqv", self.stiffness[material], strain)
@@ -144,28 +159,36 @@ class Printed:
         if self.result.plane == "strain" and self.out_of_plane is not None:
             stress[..., 2] = np.einsum("cw,cqw->cq", self.out_of_plane[material], strain)
         if self.initial is not None:
-            stress += np.einsum("qn,cns->cqs", shapes(cells.kind, at)[0], self.initial(cells))[..., OF_STRESS]
+            stress += self.initial[cells.members][:, None, OF_STRESS]
         return stress
 
     def _values(self, label: str, cells: Cells, is_reduced: bool) -> Floats:
         """Values of cells, (cells, points, components)."""
         if label == "EVOL":
-            strained, _ = self._strained(cells, *rule(cells.kind, self.is_around_axis))
+            strained, _ = self._strained(cells, *rule(cells.kind, self.is_around_axis, is_reduced))
             volume: Floats = strained.volume.sum(axis=1)[:, None, None] * self.prints["thickness"]
             return volume
         at, layers = points_of(cells.kind, is_reduced)
         _, strain = self._strained(cells, at, np.ones(len(at)))
-        values = self._stress(cells, at, strain) if label == "S" else components(strain, 0.5)
+        values = self._stress(cells, strain) if label == "S" else components(strain, 0.5)
         return np.tile(values, (1, layers, 1))
+
+    def _by_rule(self) -> Iterator[tuple[Cells, bool]]:
+        """The cells by kind and rule of integration."""
+        for part, cells in enumerate(self.result.cells):
+            is_reduced = self.is_reduced[self.result.cell_data["Material"][cells.members]]
+            for which in (False, True):
+                if len(places := np.flatnonzero(is_reduced == which)):
+                    yield self._cells(part, places.tolist()), which
 
     @cached_property
     def forces(self) -> Floats:
         """Forces on nodes from outside, loads and reactions: what stresses, contacts, ties and springs leave."""
         total = self.external.copy()
-        for cells in self.result.cells:
-            at, weights = rule(cells.kind, self.is_around_axis)
+        for cells, is_reduced in self._by_rule():
+            at, weights = rule(cells.kind, self.is_around_axis, is_reduced)
             strained, strain = self._strained(cells, at, weights)
-            stress = self._stress(cells, at, strain)
+            stress = self._stress(cells, strain)
             order = {3: [0, 1, 3], 4: [0, 1, 2, 3], 6: [0, 1, 2, 5, 4, 3]}[strain.shape[2]]
             force = np.einsum("cq,cqvm,cqv->cm", strained.volume, strained.operator, stress[..., order])
             one = self.problem.one[cells.nodes]

@@ -17,6 +17,8 @@ TRIANGLES, QUADRILATERALS, TETRAHEDRA, HEXAHEDRA = (5, 22), (9, 23, 28), (10, 24
 LINEAR = (5, 9, 10, 12)
 # Kinds of cells with incompatible modes, where their material has them.
 WITH_MODES = (9, 12)
+# Those whose integration is reduced where their material says it.
+WITH_REDUCED = (23, 25)
 
 
 class Strained:
@@ -68,11 +70,11 @@ def amplitudes(at_rule: Strained, stiffness: Floats, u: Floats) -> Floats:
     return found
 
 
-def rule(kind: int, is_around_axis: bool = False) -> tuple[Floats, Floats]:
+def rule(kind: int, is_around_axis: bool = False, is_reduced: bool = False) -> tuple[Floats, Floats]:
     """The points and weights by which the solver integrates the stiffness of such cells."""
     if kind in QUADRILATERALS + HEXAHEDRA:
         dimension = 2 if kind in QUADRILATERALS else 3
-        at, weight = np.polynomial.legendre.leggauss(2 if kind in LINEAR else 3)
+        at, weight = np.polynomial.legendre.leggauss(2 if kind in LINEAR or is_reduced and kind in WITH_REDUCED else 3)
         points = grid((at + 1) / 2, dimension)
         return points, np.prod(grid(weight / 2, dimension), axis=1)
     if kind == 5:

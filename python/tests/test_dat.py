@@ -114,6 +114,29 @@ def test_a_deck_of_the_pages_is_printed(tmp_path, monkeypatch):
     assert len(tables["displacements", "TOP", 2.0]) == 4
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_a_reference_node_has_its_motion_and_its_force(tmp_path, monkeypatch):
+    deck = tmp_path / "part.inp"
+    deck.write_text(
+        f"*NODE, NSET=N\n{HEXAHEDRON}20, 0.5, 0.5, 3\n30, 1, 1, 1\n"
+        "*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+        f"{MATERIAL}*SURFACE, NAME=ROOF\nE, S2\n*COUPLING, CONSTRAINT NAME=C, REF NODE=20, SURFACE=ROOF\n*KINEMATIC\n"
+        "*BOUNDARY\n1, 1, 3\n2, 1, 3\n3, 1, 3\n4, 1, 3\n20, 3, 3, 1e-3\n20, 4, 6\n*NSET, NSET=R\n20\n*STEP\n*STATIC\n"
+        "*CLOAD\n20, 1, 2e3\n*NODE PRINT, NSET=R\nU, RF\n*NODE PRINT, NSET=N, TOTALS=ONLY\nRF\n*NODE PRINT, NSET=N\nU\n"
+        "*END STEP\n"
+    )
+    run(monkeypatch, "run", deck, "--ranks", 1, "--folder", tmp_path)
+    tables = printed(tmp_path / "part.dat")
+    motion, force = tables["displacements", "R", 1.0][0, 1:], tables["forces", "R", 1.0][0, 1:]
+    roof = tables["displacements", "N", 1.0]
+    np.testing.assert_allclose(motion[2], 1e-3, rtol=1e-6)
+    for row in roof[4:8]:
+        np.testing.assert_allclose(row[1:], motion, rtol=1e-5, atol=1e-12)
+    np.testing.assert_allclose(force[:2], [2e3, 0.0], atol=1.0)
+    # What holds the foot balances it.
+    np.testing.assert_allclose(tables["total force", "N", 1.0][0], 0.0, atol=1e-4 * abs(force[2]))
+
+
 def test_times_are_those_of_fortran():
     assert [time_of(time) for time in (0.0, 1.0, 12.5, 0.05)] == [
         " 0.0000000E+00", " 0.1000000E+01", " 0.1250000E+02", " 0.5000000E-01"

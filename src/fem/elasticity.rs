@@ -125,28 +125,29 @@ impl ElementMatrix {
             return self.set_bending(element, points, material);
         }
         let c = &material.stiffness;
+        let rule = stiffness_points(element, material);
         if element.dim() == 3 {
             let c = &c.rows::<6>();
             return match element.nodes() {
-                4 => self.integrate::<3, 6, 4>(4, element, points, c),
-                8 => self.integrate::<3, 6, 8>(8, element, points, c),
-                nodes => self.integrate::<3, 6, MAX_NODES>(nodes, element, points, c),
+                4 => self.integrate::<3, 6, 4>(4, rule, points, c),
+                8 => self.integrate::<3, 6, 8>(8, rule, points, c),
+                nodes => self.integrate::<3, 6, MAX_NODES>(nodes, rule, points, c),
             };
         }
         if c.size() == RING {
             let c = &c.rows::<RING>();
             let nodes = element.nodes();
-            return self.integrate::<2, RING, MAX_PLANE_NODES>(nodes, element, points, c);
+            return self.integrate::<2, RING, MAX_PLANE_NODES>(nodes, rule, points, c);
         }
         let c = &c.rows::<3>();
         // The compiler unrolls what it knows the size of.
         match element.nodes() {
-            3 => self.integrate::<2, 3, MAX_PLANE_NODES>(3, element, points, c),
-            4 => self.integrate::<2, 3, MAX_PLANE_NODES>(4, element, points, c),
-            6 => self.integrate::<2, 3, MAX_PLANE_NODES>(6, element, points, c),
-            8 => self.integrate::<2, 3, MAX_PLANE_NODES>(8, element, points, c),
-            9 => self.integrate::<2, 3, MAX_PLANE_NODES>(9, element, points, c),
-            nodes => self.integrate::<2, 3, MAX_PLANE_NODES>(nodes, element, points, c),
+            3 => self.integrate::<2, 3, MAX_PLANE_NODES>(3, rule, points, c),
+            4 => self.integrate::<2, 3, MAX_PLANE_NODES>(4, rule, points, c),
+            6 => self.integrate::<2, 3, MAX_PLANE_NODES>(6, rule, points, c),
+            8 => self.integrate::<2, 3, MAX_PLANE_NODES>(8, rule, points, c),
+            9 => self.integrate::<2, 3, MAX_PLANE_NODES>(9, rule, points, c),
+            nodes => self.integrate::<2, 3, MAX_PLANE_NODES>(nodes, rule, points, c),
         }
     }
 
@@ -155,14 +156,14 @@ impl ElementMatrix {
     fn integrate<const D: usize, const V: usize, const N: usize>(
         &mut self,
         nodes: usize,
-        element: &ReferenceElement,
+        rule: &[TabulatedPoint],
         points: &[[f64; 3]],
         c: &[[f64; V]; V],
     ) {
         let order = D * nodes;
         self.order = order;
         self.values[..order * order].fill(0.0);
-        for reference in stiffness_points(element, V) {
+        for reference in rule {
             let point = PointGradients::<D, V, N>::new(reference, &points[..nodes]);
             self.add_lower(nodes, &point, c);
         }
@@ -253,28 +254,35 @@ impl ElementMatrix {
         points: &[[f64; 3]],
         material: &Material,
     ) {
+        let rule = stiffness_points(element, material);
         match element.dim() {
             3 => {
                 let c = &material.stiffness.rows::<6>();
-                self.integrate_with_modes::<3, 6, SOLID>(element, points, c);
+                self.integrate_with_modes::<3, 6, SOLID>(element.nodes(), rule, points, c);
             }
             _ => {
                 let c = &material.stiffness.rows::<3>();
-                self.integrate_with_modes::<2, 3, MAX_PLANE_NODES>(element, points, c);
+                self.integrate_with_modes::<2, 3, MAX_PLANE_NODES>(
+                    element.nodes(),
+                    rule,
+                    points,
+                    c,
+                );
             }
         }
     }
 
     fn integrate_with_modes<const D: usize, const V: usize, const N: usize>(
         &mut self,
-        element: &ReferenceElement,
+        nodes: usize,
+        rule: &[TabulatedPoint],
         points: &[[f64; 3]],
         c: &[[f64; V]; V],
     ) {
-        let places = element.nodes() + D;
+        let places = nodes + D;
         self.order = D * places;
         self.values[..self.order * self.order].fill(0.0);
-        for reference in stiffness_points(element, V) {
+        for reference in rule {
             let point = PointGradients::<D, V, N>::new(reference, points);
             self.add_lower(places, &point.with_modes(reference, points), c);
         }

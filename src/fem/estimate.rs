@@ -136,7 +136,7 @@ impl Compliance {
     ) -> CellError {
         let mut sum = CellError::default();
         let components = material.stiffness.size();
-        for reference in stiffness_points(&kind, components) {
+        for reference in stiffness_points(&kind, material) {
             let (strain, weight) = strain(reference, points, u, components);
             let stress = voigt_stress(material, &strain);
             let mut smooth = [0.0; 6];

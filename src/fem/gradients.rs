@@ -14,7 +14,7 @@ use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::geometry::cross;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::element::reference::ReferenceElement;
-use contact_dd_partition::model::Material;
+use contact_dd_partition::model::{Formulation, Material};
 
 /// Most nodes that an element has.
 pub const MAX_NODES: usize = 27;
@@ -36,10 +36,15 @@ pub(super) const fn shear(components: usize, a: usize, b: usize) -> usize {
     }
 }
 
-/// The points at which a cell's stiffness is integrated where a strain has so many components.
-pub fn stiffness_points(element: &ReferenceElement, components: usize) -> &[TabulatedPoint] {
-    match components {
-        RING => element.points_around_axis(),
+/// The points at which a cell's stiffness is integrated in a material.
+pub fn stiffness_points<'a>(
+    element: &'a ReferenceElement,
+    material: &Material,
+) -> &'a [TabulatedPoint] {
+    let reduced = element.reduced_points();
+    match (material.stiffness.size(), reduced) {
+        (_, Some(points)) if material.formulation == Formulation::Reduced => points,
+        (RING, _) => element.points_around_axis(),
         _ => element.stiffness_points(),
     }
 }
@@ -47,7 +52,7 @@ pub fn stiffness_points(element: &ReferenceElement, components: usize) -> &[Tabu
 /// Whether cells of this kind have such modes in a material: linear quadrilaterals and hexahedra, but not around an axis.
 pub fn has_modes(element: &ReferenceElement, material: &Material) -> bool {
     let kind = (element.dim(), element.nodes(), material.stiffness.size());
-    material.has_incompatible_modes && matches!(kind, (2, 4, 3) | (3, 8, 6))
+    material.formulation == Formulation::IncompatibleModes && matches!(kind, (2, 4, 3) | (3, 8, 6))
 }
 
 /// Gradients of the shape functions at a point of an element with up to N nodes in D dimensions, where a strain has V

@@ -181,7 +181,7 @@ impl<'a> TipDisc<'a> {
                 constant: 0.0,
             };
             let mut found: Vec<[OfCell; 2]> = (0..radii).map(|_| [none(), none()]).collect();
-            for point in stiffness_points(&cell.kind, 3) {
+            for point in stiffness_points(&cell.kind, &self.material) {
                 self.add_forces(&local, point, &mut found);
             }
             let rule = (rules.entry(cell.kind.vtk())).or_insert_with(|| cell.kind.tabulate(DEGREE));

@@ -176,7 +176,7 @@ fn is_uniform(kind: ElementKind, material: &Material) -> bool {
 /// modes all of them.
 fn stress_points<'a>(cell: &'a BlockCell<'_>, material: &Material) -> &'a [TabulatedPoint] {
     match has_modes(&cell.kind, material) {
-        true => stiffness_points(&cell.kind, material.stiffness.size()),
+        true => stiffness_points(&cell.kind, material),
         false => cell.kind.stress_points(),
     }
 }
@@ -221,7 +221,7 @@ impl LocalCell {
     fn mean(&self, material: &Material, plane: Option<PlaneState>) -> ([f64; 6], Voigt, f64) {
         let (mut sum, mut strains, mut measure) = ([0.0; 6], [0.0; 6], 0.0);
         let components = material.stiffness.size();
-        for point in stiffness_points(&self.kind, components) {
+        for point in stiffness_points(&self.kind, material) {
             let (strain, weight) = strain(point, &self.points, &self.u, components);
             let sigma = stress(material, plane, &strain);
             axpy(weight, &sigma, &mut sum);

@@ -1,5 +1,6 @@
 //! Decks of Abaqus and CalculiX, solved as they are.
 
+mod conditions;
 mod couplings;
 mod pretension;
 

@@ -33,6 +33,7 @@ mod moving;
 mod obstacles;
 mod pretension;
 mod quantities;
+mod reduced;
 mod redundant;
 mod released_modes;
 mod resultants;

@@ -1,7 +1,9 @@
 //! `*CONTACT PAIR`, `*SURFACE INTERACTION` and what stands behind it, and general contact.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
+use super::behavior::{linear, soft};
 use super::document::Document;
 use super::loads::item;
 use super::place::Places;
@@ -16,6 +18,8 @@ pub(super) struct ContactLaw {
     friction: f64,
     /// Pressure over overclosure; `None` where nothing overlaps.
     stiffness: Option<f64>,
+    /// Shear over the displacement of what sticks, beside it.
+    stick_slope: Option<f64>,
 }
 
 impl ContactLaw {
@@ -24,20 +28,36 @@ impl ContactLaw {
         if self.friction != 0.0 {
             document.key("friction", format!("{:?}", self.friction));
         }
-        if let Some(stiffness) = self.stiffness {
-            document.key("stiffness", format!("{{ normal = {stiffness:?} }}"));
+        let stick_slope = self.stick_slope.filter(|_| self.friction != 0.0);
+        match (self.stiffness, stick_slope) {
+            (None, _) => {}
+            (Some(normal), None) => document.key("stiffness", format!("{{ normal = {normal:?} }}")),
+            (Some(normal), Some(slope)) => document.key(
+                "stiffness",
+                format!("{{ normal = {normal:?}, tangential = {slope:?} }}"),
+            ),
         }
     }
 }
 
-/// An interaction of two surfaces.
-#[derive(Default)]
+/// An interaction of two surfaces, from a step on.
+#[derive(Clone, Default)]
 struct Interaction {
+    /// The step, from 0 on.
+    from: usize,
     law: ContactLaw,
     /// Softness that is taken as hard contact, in words.
     soft: Option<String>,
     /// Whether the sides hang together.
     is_tied: bool,
+}
+
+/// The law of a pair in some steps.
+pub(super) struct LawInSteps {
+    pub(super) law: ContactLaw,
+    /// Whether its sides hang together.
+    pub(super) is_tied: bool,
+    pub(super) steps: Range<usize>,
 }
 
 /// A pair of surfaces, by name in capitals.
@@ -71,7 +91,8 @@ struct General {
 /// All contacts of a deck.
 #[derive(Default)]
 pub(super) struct Contacts {
-    interactions: BTreeMap<String, Interaction>,
+    /// By name, one at least, those of later steps behind.
+    interactions: BTreeMap<String, Vec<Interaction>>,
     /// The interaction that is read, by name in capitals.
     open: Option<String>,
     pub(super) pairs: Vec<Pair>,
@@ -105,39 +126,30 @@ impl Contacts {
             .iter()
             .map(|pair| &pair.interaction)
             .chain(general);
-        let mut laws = named.filter_map(|name| self.interactions.get(name));
+        let mut laws = named
+            .filter_map(|name| self.interactions.get(name))
+            .flatten();
         laws.any(|interaction| interaction.law.friction != 0.0)
     }
 
     /// Reads a block of contacts.
-    pub(super) fn read(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+    pub(super) fn read(
+        &mut self,
+        places: &Places,
+        block: &Block,
+        step: Option<usize>,
+    ) -> Result<(), InputError> {
         let source = places.source;
         match block.keyword.as_str() {
             "SURFACE INTERACTION" => {
                 let name = source.required(block, "NAME")?.to_uppercase();
-                self.interactions
-                    .insert(name.clone(), Interaction::default());
+                let first = vec![Interaction::default()];
+                self.interactions.insert(name.clone(), first);
                 self.open = Some(name);
             }
+            "CHANGE FRICTION" | "CHANGE SURFACE BEHAVIOR" => self.change(places, block, step)?,
             "SURFACE BEHAVIOR" => self.behavior(places, block)?,
-            "FRICTION" => {
-                let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
-                if let Some(key) = refused {
-                    let message = format!(
-                        "*FRICTION with {key} isn't read; expected a coefficient of Coulomb's law"
-                    );
-                    return Err(source.error(block.place, message));
-                }
-                let friction = match block.data.first() {
-                    Some(data) => source.real(
-                        data.place,
-                        item(source, data, 0),
-                        "a coefficient of friction",
-                    )?,
-                    None => 0.0,
-                };
-                self.interaction(places, block)?.law.friction = friction;
-            }
+            "FRICTION" => self.friction(places, block)?,
             "CONTACT PAIR" => self.pairs(places, block)?,
             "CLEARANCE" => self.clearance(places, block)?,
             "CONTACT" => {
@@ -167,6 +179,28 @@ impl Contacts {
         Ok(())
     }
 
+    /// `*FRICTION`: a coefficient, and CalculiX' stick slope.
+    fn friction(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let source = places.source;
+        let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
+        if let Some(key) = refused {
+            let message =
+                format!("*FRICTION with {key} isn't read; expected a coefficient of Coulomb's law");
+            return Err(source.error(block.place, message));
+        }
+        let mut numbers = [0.0; 2];
+        let what = ["a coefficient of friction", "a stick slope"];
+        for (place, number) in numbers.iter_mut().enumerate() {
+            if let Some(data) = block.data.first() {
+                *number = source.real(data.place, item(source, data, place), what[place])?;
+            }
+        }
+        let law = &mut self.interaction(places, block)?.law;
+        law.friction = numbers[0];
+        law.stick_slope = Some(numbers[1]).filter(|&slope| slope > 0.0);
+        Ok(())
+    }
+
     /// `*SURFACE BEHAVIOR`.
     fn behavior(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let law = block.parameter("PRESSURE-OVERCLOSURE").unwrap_or("HARD");
@@ -182,6 +216,33 @@ impl Contacts {
         Ok(())
     }
 
+    /// `*CHANGE FRICTION` and `*CHANGE SURFACE BEHAVIOR`: what follows is the law from a `step` on.
+    fn change(
+        &mut self,
+        places: &Places,
+        block: &Block,
+        step: Option<usize>,
+    ) -> Result<(), InputError> {
+        let source = places.source;
+        let name = source.required(block, "INTERACTION")?.to_uppercase();
+        let message = match (step, self.interactions.get_mut(&name)) {
+            (None, _) => format!(
+                "*{} stands in no step; expected it behind *STEP",
+                block.keyword
+            ),
+            (_, None) => format!("there is no *SURFACE INTERACTION '{}'", name::shown(&name)),
+            (Some(from), Some(all)) => {
+                let before = all.last().cloned().unwrap_or_default();
+                if before.from < from {
+                    all.push(Interaction { from, ..before });
+                }
+                self.open = Some(name);
+                return Ok(());
+            }
+        };
+        Err(source.error(block.place, message))
+    }
+
     /// The interaction to which a block belongs.
     fn interaction(
         &mut self,
@@ -191,7 +252,7 @@ impl Contacts {
         let open = self
             .open
             .as_ref()
-            .and_then(|name| self.interactions.get_mut(name));
+            .and_then(|name| self.interactions.get_mut(name)?.last_mut());
         open.ok_or_else(|| {
             let message = format!(
                 "*{} belongs to nothing; expected *SURFACE INTERACTION before it",
@@ -250,20 +311,22 @@ impl Contacts {
         Ok(())
     }
 
-    /// The law of a pair, and with `warnings` what it was taken for.
-    pub(super) fn law_of(
+    /// The laws of a pair in so many steps, and with `warnings` what they were taken for.
+    pub(super) fn laws_of(
         &self,
         places: &Places,
         pair: &Pair,
+        steps: usize,
         warnings: &mut Vec<String>,
-    ) -> Result<ContactLaw, InputError> {
-        self.law(places, pair.place, &pair.interaction, warnings)
-    }
-
-    /// Whether the sides of a pair hang together.
-    pub(super) fn is_tied(&self, pair: &Pair) -> bool {
-        let interaction = self.interactions.get(&pair.interaction);
-        pair.tied || interaction.is_some_and(|interaction| interaction.is_tied)
+    ) -> Result<Vec<LawInSteps>, InputError> {
+        let all = self.of_name(places, pair.place, &pair.interaction)?;
+        let ends = all.iter().skip(1).map(|next| next.from).chain([steps]);
+        let law = |(of, end): (&Interaction, usize)| LawInSteps {
+            law: of.law_with(warnings),
+            is_tied: pair.tied || of.is_tied,
+            steps: of.from..end,
+        };
+        Ok(all.iter().zip(ends).map(law).collect())
     }
 
     /// The law of general contact; `None` without any.
@@ -275,31 +338,43 @@ impl Contacts {
         let Some(general) = &self.general else {
             return Ok(None);
         };
-        match &general.interaction {
-            Some(name) => self.law(places, general.place, name, warnings).map(Some),
-            None => Ok(Some(ContactLaw::default())),
+        let Some(name) = &general.interaction else {
+            return Ok(Some(ContactLaw::default()));
+        };
+        match self.of_name(places, general.place, name)? {
+            [of] => Ok(Some(of.law_with(warnings))),
+            _ => {
+                let message = "the interaction of *CONTACT changes in a step, which isn't supported; expected one law, or a \
+                               *CONTACT PAIR";
+                Err(places.source.error(general.place, message))
+            }
         }
     }
 
-    fn law(
+    /// The interactions of a name.
+    fn of_name(
         &self,
         places: &Places,
         at: LinePlace,
         name: &str,
-        warnings: &mut Vec<String>,
-    ) -> Result<ContactLaw, InputError> {
-        let Some(interaction) = self.interactions.get(name) else {
-            let message = format!("there is no *SURFACE INTERACTION '{}'", name::shown(name));
-            return Err(places.source.error(at, message));
-        };
-        if let Some(soft) = interaction
-            .soft
-            .as_ref()
-            .filter(|soft| !warnings.contains(soft))
-        {
-            warnings.push(soft.clone());
-        }
-        Ok(interaction.law)
+    ) -> Result<&[Interaction], InputError> {
+        self.interactions
+            .get(name)
+            .map(Vec::as_slice)
+            .ok_or_else(|| {
+                let message = format!("there is no *SURFACE INTERACTION '{}'", name::shown(name));
+                places.source.error(at, message)
+            })
+    }
+}
+
+impl Interaction {
+    /// Its law, and with `warnings` what it is taken for.
+    fn law_with(&self, warnings: &mut Vec<String>) -> ContactLaw {
+        let soft = self.soft.iter().filter(|soft| !warnings.contains(soft));
+        let soft: Vec<String> = soft.cloned().collect();
+        warnings.extend(soft);
+        self.law
     }
 }
 
@@ -321,60 +396,4 @@ fn adjust(places: &Places, block: &Block) -> Result<Option<Adjust>, InputError> 
             Err(source.error(block.place, message))
         }
     }
-}
-
-/// The slope of a linear law of a `*SURFACE BEHAVIOR`.
-fn linear(places: &Places, block: &Block) -> Result<f64, InputError> {
-    let source = places.source;
-    let given = block
-        .data
-        .first()
-        .map(|data| (data.place, item(source, data, 0)));
-    let (place, text) = given.unwrap_or((block.place, ""));
-    let slope = source.real(place, text, "the slope of pressure over overclosure")?;
-    match slope > 0.0 {
-        true => Ok(slope),
-        false => {
-            let message =
-                format!("the slope of pressure over overclosure is {slope}; expected more than 0");
-            Err(source.error(place, message))
-        }
-    }
-}
-
-/// Softness of a `*SURFACE BEHAVIOR` that is taken as hard, in words.
-fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
-    let source = places.source;
-    let law = block
-        .parameter("PRESSURE-OVERCLOSURE")
-        .unwrap_or("HARD")
-        .to_uppercase();
-    let number = |place| {
-        let data = block.data.first();
-        data.map_or("", |data| item(source, data, place)).to_owned()
-    };
-    let softness = match law.as_str() {
-        "HARD" | "LINEAR" => return Ok(None),
-        "EXPONENTIAL" => format!("p0 = {} at no clearance, 0 at {}", number(1), number(0)),
-        "TABULAR" => "a table of pressures over overclosures".into(),
-        "TIED" => {
-            return Ok(Some(format!(
-                "{}: the stiffness {} of what is tied is left out: sides don't move against each other",
-                source.place(block.place),
-                number(0)
-            )));
-        }
-        _ => {
-            let message = format!(
-                "PRESSURE-OVERCLOSURE={} isn't read; expected HARD or LINEAR",
-                name::shown(&law)
-            );
-            return Err(source.error(block.place, message));
-        }
-    };
-    Ok(Some(format!(
-        "{}: the {} law of contact ({softness}) is taken as hard contact, whose sides don't overlap",
-        source.place(block.place),
-        law.to_lowercase()
-    )))
 }

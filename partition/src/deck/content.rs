@@ -4,19 +4,22 @@ use std::collections::BTreeMap;
 
 use super::amplitude::Amplitude;
 use super::axes::{Axes, System};
-use super::connections::Connections;
+use super::conditions::{self, Condition};
 use super::contacts::Contacts;
 use super::couplings::Couplings;
 use super::cyclic::Sectors;
-use super::loads::item;
+use super::equations::Equations;
+use super::initial::Initial;
 use super::material::Material;
-use super::model_change::{self, Change};
+use super::model_change::Changes;
+use super::mpc;
 use super::place::Places;
 use super::pretensions::Pretensions;
 use super::prints::Requests;
 use super::sections::Section;
 use super::springs::Springs;
 use super::steps::Steps;
+use super::ties::Ties;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of, Source};
 use crate::name;
@@ -31,18 +34,20 @@ pub(super) struct Content {
     open: Option<String>,
     orientations: BTreeMap<String, System>,
     pub(super) sections: Vec<Section>,
-    /// Temperatures of nodes at the beginning.
-    pub(super) temperatures: BTreeMap<u32, f64>,
+    pub(super) initial: Initial,
     pub(super) contacts: Contacts,
-    pub(super) connections: Connections,
+    pub(super) ties: Ties,
+    equations: Equations,
+    /// What equations and supports leave that isn't a prescribed displacement.
+    pub(super) conditions: Vec<Condition>,
     pub(super) couplings: Couplings,
     pub(super) springs: Springs,
     pub(super) pretensions: Pretensions,
     pub(super) sectors: Sectors,
     pub(super) prints: Requests,
     pub(super) steps: Steps,
-    /// Pairs that come and go.
-    pub(super) changes: Vec<Change>,
+    /// What comes and goes.
+    pub(super) changes: Changes,
     /// The first step that asks for large displacements.
     pub(super) nlgeom: Option<LinePlace>,
 }
@@ -112,7 +117,7 @@ impl Content {
                     .for_each(|node| _ = self.steps.systems.insert(node, system));
             }
             "SOLID SECTION" => self.sections.push(Section::read(places, block)?),
-            "INITIAL CONDITIONS" => self.initial(places, block)?,
+            "INITIAL CONDITIONS" => self.initial.read(places, block)?,
             "STEP" => {
                 let nlgeom = block.parameter("NLGEOM");
                 if nlgeom.is_some_and(|value| !value.eq_ignore_ascii_case("NO")) {
@@ -127,18 +132,30 @@ impl Content {
             }
             // They have been read before all others.
             "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" | "PRE-TENSION SECTION" => {}
-            "ELEMENT" => self.springs.elements(places, block)?,
-            "SPRING" => self.springs.property(places, block)?,
-            "TIE" | "EQUATION" | "CYCLIC SYMMETRY MODEL" => self.connect(places, block)?,
-            "NODE PRINT" | "EL PRINT" => self.prints.read(places, block, self.steps.number())?,
-            "MODEL CHANGE" => {
-                let step = self.steps.number();
-                let changes = model_change::read(places, block, &self.contacts.pairs, step)?;
-                self.changes.extend(changes);
+            "ELEMENT" => {
+                self.springs.elements(places, block)?;
+                self.equations.elements(places, block)?;
             }
-            _ => self.contacts.read(places, block)?,
+            "SPRING" => self.springs.property(places, block)?,
+            "TIE" | "EQUATION" | "MPC" | "DISTRIBUTING COUPLING" | "CYCLIC SYMMETRY MODEL" => {
+                self.connect(places, block)?;
+            }
+            _ => self.change_or_print(places, block)?,
         }
         Ok(())
+    }
+
+    /// A block of contacts, of what comes and goes, or of tables, which depends on the step that it stands in.
+    fn change_or_print(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
+        let step = self.steps.number();
+        match block.keyword.as_str() {
+            "NODE PRINT" | "EL PRINT" => {
+                let references = self.couplings.nodes();
+                self.prints.read(places, block, step, &references)
+            }
+            "MODEL CHANGE" => (self.changes).read(places, block, &self.contacts.pairs, step),
+            _ => self.contacts.read(places, block, step),
+        }
     }
 
     /// A block of ties, equations and sectors.
@@ -148,7 +165,13 @@ impl Content {
             "TIE" if block.parameter("CYCLIC SYMMETRY").is_some() => {
                 self.sectors.tie(places, block)
             }
-            _ => self.connections.read(places, block),
+            "TIE" => self.ties.read(places, block),
+            "EQUATION" => self.equations.read(places, block),
+            "MPC" => {
+                self.equations.all.extend(mpc::read(places, block)?);
+                Ok(())
+            }
+            _ => self.equations.mean(places, block),
         }
     }
 
@@ -168,6 +191,12 @@ impl Content {
         material.take(source, block)
     }
 
+    /// Finds the conditions between displacements, behind the last block.
+    pub(super) fn find_conditions(&mut self, places: &Places) -> Result<(), InputError> {
+        self.conditions = conditions::all(places, &self.equations.all, &mut self.steps)?;
+        Ok(())
+    }
+
     /// Refuses loads that come on a path which one load step for each step doesn't follow, where friction makes it matter.
     pub(super) fn check_path(&self, places: &Places) -> Result<(), InputError> {
         match self.steps.bend.filter(|_| self.contacts.have_friction()) {
@@ -178,27 +207,6 @@ impl Content {
                  ends at each of its points",
             )),
         }
-    }
-
-    /// `*INITIAL CONDITIONS`: temperatures of nodes.
-    fn initial(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
-        let source = places.source;
-        let kind = source.required(block, "TYPE")?;
-        if !kind.eq_ignore_ascii_case("TEMPERATURE") {
-            let message = format!(
-                "*INITIAL CONDITIONS of TYPE={} isn't supported yet; instead leave it out, convert the deck, and give a body's \
-                 initial_stress in the scene",
-                name::shown(kind)
-            );
-            return Err(source.error(block.place, message));
-        }
-        for data in &block.data {
-            let value = source.real(data.place, item(source, data, 1), "a temperature")?;
-            for node in places.members(data.place, Of::Nodes, item(source, data, 0))? {
-                self.temperatures.insert(node, value);
-            }
-        }
-        Ok(())
     }
 
     /// The orientations, by name in capitals.

@@ -81,6 +81,11 @@ impl Couplings {
         }
     }
 
+    /// The reference nodes, in the order of the couplings.
+    pub(super) fn nodes(&self) -> Vec<u32> {
+        self.all.iter().map(|coupling| coupling.node).collect()
+    }
+
     fn coupling(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         let surface = source.required(block, "SURFACE")?.to_uppercase();

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::place::Places;
+use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Face, LinePlace};
 
@@ -167,6 +168,12 @@ impl<'a, 'b> Groups<'a, 'b> {
     pub(super) fn of_node_surface(&self, surface: &str) -> Option<Vec<u32>> {
         let surface = self.places.deck.node_surfaces.get(surface)?;
         Some(surface.members.list().to_vec())
+    }
+
+    /// Whether a direction points to the outside of a surface of faces, as none does.
+    pub(super) fn points_outward(&self, surface: &str, direction: Option<[f64; 3]>) -> bool {
+        let outward = self.places.deck.outward(surface);
+        direction.is_none_or(|direction| dot(direction, outward) >= 0.0)
     }
 
     /// The group of cells, which are those of the set `word` or some of them.

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 49] = [
+const READ: [&str; 53] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -45,6 +45,7 @@ const READ: [&str; 49] = [
     "CONTACT PROPERTY ASSIGNMENT",
     "TIE",
     "EQUATION",
+    "MPC",
     "COUPLING",
     "KINEMATIC",
     "DISTRIBUTING",
@@ -52,6 +53,9 @@ const READ: [&str; 49] = [
     "SPRING",
     "PRE-TENSION SECTION",
     "CYCLIC SYMMETRY MODEL",
+    "DISTRIBUTING COUPLING",
+    "CHANGE FRICTION",
+    "CHANGE SURFACE BEHAVIOR",
     "MODEL CHANGE",
     "STEP",
     "END STEP",
@@ -106,7 +110,7 @@ const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the answer: what is said of them, and what to do instead.
-const REFUSED: [(&[&str], &str, &str); 20] = [
+const REFUSED: [(&[&str], &str, &str); 19] = [
     (
         &[
             "PLASTIC",
@@ -170,12 +174,7 @@ const REFUSED: [(&[&str], &str, &str); 20] = [
         "give the temperatures that result, by *TEMPERATURE",
     ),
     (
-        &["MPC"],
-        NOT_YET,
-        "write it as *EQUATION, or hold a plane of symmetry by *BOUNDARY",
-    ),
-    (
-        &["KINEMATIC COUPLING", "DISTRIBUTING COUPLING"],
+        &["KINEMATIC COUPLING"],
         "isn't read",
         "give *COUPLING with *KINEMATIC or *DISTRIBUTING",
     ),
@@ -212,8 +211,6 @@ const REFUSED: [(&[&str], &str, &str); 20] = [
     ),
     (
         &[
-            "CHANGE FRICTION",
-            "CHANGE SURFACE BEHAVIOR",
             "CHANGE CONTACT TYPE",
             "CHANGE MATERIAL",
             "CHANGE SOLID SECTION",
@@ -283,7 +280,7 @@ const REFUSED: [(&[&str], &str, &str); 20] = [
     ),
 ];
 
-/// Gives blocks their keywords as the tables here spell them: blanks don't tell keywords apart.
+/// Gives blocks their keywords and parameters as the tables here spell them: blanks don't tell keywords apart.
 pub(super) fn spell(blocks: &mut [Block]) {
     let letters = |word: &str| word.replace(' ', "");
     let refused = REFUSED.iter().flat_map(|(names, ..)| *names);
@@ -293,6 +290,7 @@ pub(super) fn spell(blocks: &mut [Block]) {
         if let Some(word) = known.get(&letters(&block.keyword)) {
             block.keyword = (*word).to_owned();
         }
+        parameters::spell(block);
     }
 }
 

@@ -1,77 +1,132 @@
-//! `*MODEL CHANGE`: pairs of contact that come and go with the steps.
+//! `*MODEL CHANGE`: pairs of contact and elements that come and go with the steps.
 
 use super::contacts::Pair;
-use super::document::{Document, quoted};
 use super::loads::item;
 use super::place::Places;
 use crate::error::InputError;
-use crate::mesh::abaqus::Block;
+use crate::mesh::abaqus::{Block, Of};
 use crate::name;
 
-/// A pair that comes or goes.
-pub(super) struct Change {
+/// Pairs or elements that come or go.
+struct Change {
     /// The step, from 0 on.
     step: usize,
-    /// The pair, by its place among all.
-    pair: usize,
-    /// Whether it is there from then on.
+    of: Changed,
+    /// Whether they are there from then on.
     comes: bool,
 }
 
-/// The changes of a block that stands in a `step`, which has a number where it stands in one.
-///
-/// # Errors
-/// Others than those of pairs, or no such pair.
-pub(super) fn read(
-    places: &Places,
-    block: &Block,
-    pairs: &[Pair],
-    step: Option<usize>,
-) -> Result<Vec<Change>, InputError> {
-    let source = places.source;
-    let Some(step) = step else {
-        let message = "*MODEL CHANGE stands in no step; expected it behind *STEP";
-        return Err(source.error(block.place, message));
-    };
-    let kind = source.required(block, "TYPE")?;
-    if !kind.eq_ignore_ascii_case("CONTACT PAIR") {
-        let message = format!(
-            "*MODEL CHANGE of TYPE={} isn't read; instead leave it out, convert the deck, and say in the scene's [[step]] \
-             what is added and removed",
-            name::shown(kind)
-        );
-        return Err(source.error(block.place, message));
-    }
-    let comes = match ["ADD", "REMOVE"].map(|key| block.parameter(key).is_some()) {
-        [true, false] => true,
-        [false, true] => false,
-        _ => {
-            let message =
-                "*MODEL CHANGE with neither or both of ADD and REMOVE; expected one of them";
-            return Err(source.error(block.place, message));
-        }
-    };
-    let change = |data| {
-        let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
-        let is_it = |pair: &Pair| pair.slave == slave && pair.master == master;
-        let pair = pairs.iter().position(is_it).ok_or_else(|| {
-            let message = "there is no *CONTACT PAIR of this slave and master before this line";
-            source.error(data.place, message)
-        })?;
-        Ok(Change { step, pair, comes })
-    };
-    block.data.iter().map(change).collect()
+/// What comes or goes.
+enum Changed {
+    /// A pair, by its place among all.
+    Pair(usize),
+    /// Elements, ascending.
+    Elements(Vec<u32>),
 }
 
-/// Writes what comes and goes in a step, by the `names` of all pairs.
-pub(super) fn write(changes: &[Change], step: usize, names: &[String], document: &mut Document) {
-    for (key, comes) in [("add", true), ("remove", false)] {
-        let own = changes
-            .iter()
-            .filter(|of| of.step == step && of.comes == comes);
-        let list: Vec<String> = own.map(|of| quoted(&names[of.pair])).collect();
-        if !list.is_empty() {
-            document.key(key, format!("[{}]", list.join(", ")));
+/// All changes of a deck.
+#[derive(Default)]
+pub(super) struct Changes(Vec<Change>);
+
+impl Changes {
+    /// Reads a block that stands in a `step`, which has a number where it stands in one.
+    ///
+    /// # Errors
+    /// Others than those of pairs and elements, or no such pair; elements that come with a strain.
+    pub(super) fn read(
+        &mut self,
+        places: &mut Places,
+        block: &Block,
+        pairs: &[Pair],
+        step: Option<usize>,
+    ) -> Result<(), InputError> {
+        let source = places.source;
+        let refuse = |message: String| Err(source.error(block.place, message));
+        let Some(step) = step else {
+            return refuse("*MODEL CHANGE stands in no step; expected it behind *STEP".into());
+        };
+        let kind = source.required(block, "TYPE")?.to_uppercase();
+        let is_pair = kind == "CONTACT PAIR";
+        if !is_pair && kind != "ELEMENT" {
+            let kind = name::shown(&kind);
+            return refuse(format!(
+                "*MODEL CHANGE of TYPE={kind} isn't read; expected CONTACT PAIR or ELEMENT"
+            ));
         }
+        let comes = match [block.parameter("ADD"), block.parameter("REMOVE")] {
+            [Some(how), None] if !how.eq_ignore_ascii_case("WITH STRAIN") => true,
+            [None, Some(_)] => false,
+            [Some(_), None] => {
+                return refuse(
+                    "*MODEL CHANGE with ADD=WITH STRAIN isn't read; expected ADD: what comes is free of stress".into(),
+                );
+            }
+            _ => {
+                return refuse(
+                    "*MODEL CHANGE with neither or both of ADD and REMOVE; expected one of them"
+                        .into(),
+                );
+            }
+        };
+        let mut elements = Vec::new();
+        for data in &block.data {
+            if !is_pair {
+                for set in source.items(data) {
+                    elements.extend(places.members(data.place, Of::Elements, set)?);
+                }
+                continue;
+            }
+            let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
+            let is_it = |pair: &Pair| pair.slave == slave && pair.master == master;
+            let pair = pairs.iter().position(is_it).ok_or_else(|| {
+                let message = "there is no *CONTACT PAIR of this slave and master before this line";
+                source.error(data.place, message)
+            })?;
+            let of = Changed::Pair(pair);
+            self.0.push(Change { step, of, comes });
+        }
+        elements.sort_unstable();
+        if !elements.is_empty() {
+            let of = Changed::Elements(elements);
+            self.0.push(Change { step, of, comes });
+        }
+        Ok(())
+    }
+
+    /// Whether elements come or go.
+    pub(super) fn have_elements(&self) -> bool {
+        self.0
+            .iter()
+            .any(|change| matches!(change.of, Changed::Elements(_)))
+    }
+
+    /// Whether a pair is there in each of so many steps.
+    pub(super) fn of_pair(&self, pair: usize, steps: usize) -> Vec<bool> {
+        self.course(
+            steps,
+            |of| matches!(of, Changed::Pair(other) if *other == pair),
+        )
+    }
+
+    /// Whether an element is.
+    pub(super) fn of_element(&self, element: u32, steps: usize) -> Vec<bool> {
+        self.course(steps, |of| match of {
+            Changed::Elements(all) => all.binary_search(&element).is_ok(),
+            Changed::Pair(_) => false,
+        })
+    }
+
+    /// Whether what changes concern is there in each of so many steps: at first unless it comes before it goes.
+    fn course(&self, steps: usize, concerns: impl Fn(&Changed) -> bool) -> Vec<bool> {
+        let own: Vec<&Change> = self
+            .0
+            .iter()
+            .filter(|change| concerns(&change.of))
+            .collect();
+        let at_first = own.first().is_none_or(|change| !change.comes);
+        let before = |step: usize| own.iter().rfind(|change| change.step <= step);
+        (0..steps)
+            .map(|step| before(step).map_or(at_first, |change| change.comes))
+            .collect()
     }
 }

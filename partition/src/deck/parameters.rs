@@ -5,15 +5,25 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 34] = [
+const PARAMETERS: [(&str, &[&str]); 38] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
+    ("CHANGE FRICTION", &["INTERACTION"]),
+    ("CHANGE SURFACE BEHAVIOR", &["INTERACTION"]),
+    ("DISTRIBUTING COUPLING", &["ELSET"]),
     ("MATERIAL", &["NAME", "RTOL"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
     ("EXPANSION", &["TYPE", "ZERO"]),
     ("DENSITY", &[]),
     (
         "SOLID SECTION",
-        &["ELSET", "MATERIAL", "ORIENTATION", "CONTROLS", "COMPOSITE"],
+        &[
+            "ELSET",
+            "MATERIAL",
+            "ORIENTATION",
+            "CONTROLS",
+            "COMPOSITE",
+            "OFFSET",
+        ],
     ),
     ("ORIENTATION", &["NAME", "SYSTEM"]),
     ("TRANSFORM", &["NSET", "TYPE"]),
@@ -99,6 +109,7 @@ const PARAMETERS: [(&str, &[&str]); 34] = [
         ],
     ),
     ("EQUATION", &[]),
+    ("MPC", &[]),
     (
         "COUPLING",
         &["CONSTRAINT NAME", "REF NODE", "SURFACE", "ORIENTATION"],
@@ -149,6 +160,19 @@ const PARAMETERS: [(&str, &[&str]); 34] = [
         ],
     ),
 ];
+
+/// Gives parameters their names as they are spelled here: blanks don't tell them apart.
+pub(super) fn spell(block: &mut Block) {
+    let letters = |word: &str| word.replace(' ', "");
+    let known = PARAMETERS.iter().find(|(name, _)| *name == block.keyword);
+    let Some((_, known)) = known else {
+        return;
+    };
+    block.spell_parameters(|name| {
+        let same = known.iter().find(|other| letters(other) == letters(name));
+        same.copied()
+    });
+}
 
 /// Refuses what a keyword says beside them.
 ///

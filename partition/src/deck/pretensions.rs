@@ -146,12 +146,17 @@ impl Section {
         steps: &Steps,
         thickness: f64,
     ) -> Result<Vec<Given>, InputError> {
+        // What is positive pulls where the direction points away from the elements of the surface.
+        let sense = match groups.points_outward(&self.surface, self.direction) {
+            true => 1.0,
+            false => -1.0,
+        };
         let in_step = |step: &LoadStep| {
             let at = step.references.get(&self.node).cloned().unwrap_or_default();
             match at.held[0] {
                 Some(_) if steps.loads.fixed.contains(&self.node) => Given::Lock,
-                Some(length) => Given::Shortening(length),
-                None => Given::Force(at.load[0] / thickness),
+                Some(length) => Given::Shortening(sense * length),
+                None => Given::Force(sense * at.load[0] / thickness),
             }
         };
         let given: Vec<Given> = steps.done.iter().map(in_step).collect();

@@ -27,6 +27,8 @@ pub struct Prints {
     pub elements: BTreeMap<String, Vec<i64>>,
     /// The nodes of these elements.
     pub cells: BTreeMap<i64, Cell>,
+    /// Numbers of the reference nodes of couplings, in the order of those of the scene.
+    pub references: Vec<i64>,
 }
 
 /// A table.
@@ -79,6 +81,7 @@ impl Requests {
         places: &mut Places,
         block: &Block,
         step: Option<usize>,
+        references: &[u32],
     ) -> Result<(), InputError> {
         let source = places.source;
         let of_nodes = block.keyword == "NODE PRINT";
@@ -112,7 +115,7 @@ impl Requests {
                     .insert(format!("*{} without {key}", block.keyword))
             }
             Some(set) => {
-                self.take_set(places, block, &set)?;
+                self.take_set(places, block, &set, references)?;
                 let labels = self.labels(source, block, known);
                 tables.extend(labels.into_iter().map(|label| Table {
                     label,
@@ -129,12 +132,13 @@ impl Requests {
         Ok(())
     }
 
-    /// Takes the members of the set of a block, of nodes those that cells have.
+    /// Takes the members of the set of a block, of nodes those that cells have, and reference nodes.
     fn take_set(
         &mut self,
         places: &mut Places,
         block: &Block,
         set: &str,
+        references: &[u32],
     ) -> Result<(), InputError> {
         let of_nodes = block.keyword == "NODE PRINT";
         let of = if of_nodes { Of::Nodes } else { Of::Elements };
@@ -152,11 +156,12 @@ impl Requests {
             return Ok(());
         }
         let has_cell = places.with_cells();
-        if let Some(&node) = members.iter().find(|&&node| !has_cell[node as usize]) {
+        let moves = |node: &u32| has_cell[*node as usize] || references.contains(node);
+        if let Some(&node) = members.iter().find(|node| !moves(node)) {
             let tag = places.deck.node_tags[node as usize];
             let note = format!("*NODE PRINT of nodes of no solid, such as {tag}");
             self.left_out.insert(note);
-            members.retain(|&node| has_cell[node as usize]);
+            members.retain(moves);
         }
         self.nodes.insert(set.to_owned(), members);
         Ok(())
@@ -190,7 +195,13 @@ impl Requests {
     }
 
     /// The tables at the end of every one of so many steps: those of nodes, or of elements, count until a step has others.
-    pub(super) fn tables(&mut self, places: &Places, steps: usize, thickness: f64) -> Prints {
+    pub(super) fn tables(
+        &mut self,
+        places: &Places,
+        steps: usize,
+        thickness: f64,
+        references: &[u32],
+    ) -> Prints {
         let mut current = [Vec::new(), Vec::new()];
         let of_step = |step: usize| {
             for (of_nodes, tables) in [true, false].into_iter().zip(&mut current) {
@@ -230,6 +241,7 @@ impl Requests {
                 .collect(),
             elements,
             cells,
+            references: references.iter().map(|&node| tag(node)).collect(),
         }
     }
 }

@@ -2,15 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use super::conditions;
 use super::content::Content;
 use super::document::{Document, Linear, Names, quoted};
 use super::elastic::Elastic;
 use super::group_load::{OnGroup, OnGroups};
 use super::groups::Groups;
+use super::initial;
 use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
-use super::model_change;
 use super::place::Places;
+use super::presence::{self, Presence};
 use super::pretensions;
 use super::sections::{self, Body, Section};
 use super::steps::LoadStep;
@@ -58,12 +60,12 @@ pub(super) fn text(
     let sides: Vec<[String; 2]> = (content.contacts.pairs.iter())
         .map(|pair| [&pair.slave, &pair.master].map(|side| loads.groups.of_surface(side)))
         .collect();
-    let ties = content.connections.ties(&mut loads.groups);
-    let equations = (content.connections).equations(&mut loads.groups, &content.steps.systems)?;
+    let ties = content.ties.in_scene(&mut loads.groups);
     let mut taken = Names::default();
     let pairs: Vec<String> = (sides.iter())
         .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
         .collect();
+    let equations = conditions::in_scene(&content.conditions, &mut loads.groups, &mut taken);
     let springs = content.springs.in_scene(
         &mut loads.groups,
         thickness,
@@ -94,17 +96,28 @@ pub(super) fn text(
     }
     let materials = content.materials(source, &bodies, &mut document, plane)?;
     for ((body, name), material) in bodies.iter().zip(&names).zip(&materials) {
-        content.body(source, body, (name, material), dim, &mut document)?;
+        content.body(source, body, (name, material), (dim, plane), &mut document)?;
     }
     for load in &on_groups {
         load.write(0, "", &mut document);
     }
-    content.contact(
+    let mut passing = content.contact(
         places,
         (&sides, &pairs, ties),
         &mut taken,
         (&mut document, warnings),
     )?;
+    passing.extend(
+        equations
+            .iter()
+            .filter_map(conditions::SceneEquation::presence),
+    );
+    passing.extend(
+        bodies
+            .iter()
+            .zip(&names)
+            .filter_map(|(body, name)| body.presence(name)),
+    );
     couplings
         .iter()
         .for_each(|coupling| coupling.write(&mut document));
@@ -118,15 +131,16 @@ pub(super) fn text(
     for equation in &equations {
         equation.write(&mut document);
     }
-    if content.steps.done.len() > 1 || !content.changes.is_empty() {
+    if content.steps.done.len() > 1 || !passing.is_empty() {
         for number in 0..content.steps.done.len() {
             content.step(
                 source,
                 number,
-                (&bodies, &names, &on_groups, &pairs),
+                (&bodies, &names, &on_groups, &passing),
                 dim,
                 &mut document,
             )?;
+            conditions::write_step(&equations, number, &mut document);
             for coupling in &couplings {
                 coupling.write_step(number, &mut document);
             }
@@ -173,8 +187,8 @@ impl Content {
             (self.materials.get(&section.material))
                 .is_some_and(|material| material.expansion != 0.0)
         };
-        let steps = (&self.steps.loads, &self.steps.done[..]);
-        sections::bodies(places, &self.sections, expands, steps, &self.temperatures)
+        let steps = (&self.steps.loads, &self.steps.done[..], &self.changes);
+        sections::bodies(places, &self.sections, expands, steps, &self.initial)
     }
 
     fn material(&self, source: &Source, section: &Section) -> Result<&Material, InputError> {
@@ -231,14 +245,21 @@ impl Content {
         source: &Source,
         body: &Body,
         (name, material): (&str, &str),
-        dim: usize,
+        (dim, plane): (usize, Option<PlaneState>),
         document: &mut Document,
     ) -> Result<(), InputError> {
         document.table(&format!("[bodies.{}]", quoted(name)));
         document.key("material", quoted(material));
+        if body.is_reduced {
+            document.key("integration", quoted("reduced"));
+        }
         if !body.loads.is_empty() {
             let force = self.body_force(source, body, &self.steps.done[0])?;
             document.key("body_force", force.shown(dim));
+        }
+        if body.initial != [0.0; 6] {
+            let stress = initial::in_scene(body.initial, plane);
+            document.key("initial_stress", format!("{stress:?}"));
         }
         if body.warmth.iter().any(|&warmth| warmth != 0.0) {
             let expansion = self
@@ -297,7 +318,7 @@ impl Content {
         &self,
         source: &Source,
         number: usize,
-        (bodies, names, on_groups, pairs): (&[Body], &[String], &[OnGroup], &[String]),
+        (bodies, names, on_groups, passing): (&[Body], &[String], &[OnGroup], &[Presence]),
         dim: usize,
         document: &mut Document,
     ) -> Result<(), InputError> {
@@ -307,7 +328,7 @@ impl Content {
             document.key("name", quoted(name));
         }
         document.key("time", format!("{:?}", step.time));
-        model_change::write(&self.changes, number, pairs, document);
+        presence::write(passing, number, document);
         for list in ["displacement", "pressure", "traction", "force"] {
             let mut of_list = on_groups.iter().filter(|load| load.list == list).peekable();
             let acts = on_groups

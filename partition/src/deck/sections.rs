@@ -2,8 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use super::initial::Initial;
 use super::loads::{Loads, item};
+use super::model_change::Changes;
 use super::place::Places;
+use super::presence::Presence;
 use super::steps::LoadStep;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
@@ -52,6 +55,22 @@ pub(super) struct Body {
     pub(super) loads: BTreeSet<usize>,
     /// Its temperature in every step, above that at the beginning.
     pub(super) warmth: Vec<f64>,
+    /// Whether its elements have a reduced integration.
+    pub(super) is_reduced: bool,
+    /// Their stress before anything acts.
+    pub(super) initial: [f64; 6],
+    /// Whether they are there in every step.
+    steps: Vec<bool>,
+}
+
+impl Body {
+    /// In which steps it is there, where it isn't in all.
+    pub(super) fn presence(&self, name: &str) -> Option<Presence> {
+        self.steps.contains(&false).then(|| Presence {
+            name: name.to_owned(),
+            steps: self.steps.clone(),
+        })
+    }
 }
 
 /// Classes of elements, which become finer with every property that tells them apart.
@@ -68,6 +87,17 @@ impl Classes {
             }
         }
     }
+
+    /// The elements of every class.
+    fn members(&self) -> BTreeMap<u32, Vec<u32>> {
+        let mut members: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (element, class) in (0..).zip(&self.0) {
+            if let Some(class) = class {
+                members.entry(*class).or_default().push(element);
+            }
+        }
+        members
+    }
 }
 
 /// The bodies of a deck.
@@ -78,30 +108,20 @@ pub(super) fn bodies(
     places: &Places,
     sections: &[Section],
     expands: impl Fn(&Section) -> bool,
-    (loads, steps): (&Loads, &[LoadStep]),
-    initial: &BTreeMap<u32, f64>,
+    (loads, steps, changes): (&Loads, &[LoadStep], &Changes),
+    initial: &Initial,
 ) -> Result<Vec<Body>, InputError> {
-    let dim = places.dim();
-    let mut section_of: Vec<Option<u32>> = vec![None; places.deck.elements.len()];
-    for (number, section) in (0..).zip(sections) {
-        for &element in section
-            .elements
-            .iter()
-            .filter(|&&element| places.is_cell(element, dim))
-        {
-            section_of[element as usize] = Some(number);
-        }
-    }
-    let mut elements = 0..section_of.len() as u32;
-    if let Some(bare) =
-        elements.find(|&e| places.is_cell(e, dim) && section_of[e as usize].is_none())
-    {
-        let tag = places.deck.element_tags[bare as usize];
-        return Err(InputError::new(format!(
-            "element {tag} has no *SOLID SECTION; expected one for each element"
-        )));
-    }
+    let section_of = sections_of_elements(places, sections)?;
     let mut classes = Classes(section_of.clone());
+    let is_reduced = |element: u32| {
+        let kind = places.deck.elements.kind(element as usize);
+        places.deck.is_reduced[element as usize] && kind.reduced_points().is_some()
+    };
+    classes.refine(|element| is_reduced(element).into());
+    (0..6).for_each(|k| classes.refine(|element| initial.stress_of(element)[k].to_bits()));
+    let course = |element| changes.of_element(element, steps.len());
+    let changing = (0..steps.len()).filter(|_| changes.have_elements());
+    changing.for_each(|step| classes.refine(|element| course(element)[step].into()));
     let numbers: BTreeSet<usize> = (steps.iter())
         .flat_map(|step| step.bodies.keys().copied())
         .collect();
@@ -122,7 +142,8 @@ pub(super) fn bodies(
                 continue;
             };
             if expands(section) {
-                of_step[element as usize] = warmth_of(places, element, step, initial)?;
+                of_step[element as usize] =
+                    warmth_of(places, element, step, &initial.temperatures)?;
             }
         }
         classes.refine(|element| of_step[element as usize].to_bits());
@@ -133,22 +154,50 @@ pub(super) fn bodies(
             warmth.entry(element).or_default().push(value);
         }
     }
-    let mut members: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for (element, class) in (0..).zip(&classes.0) {
-        if let Some(class) = class {
-            members.entry(*class).or_default().push(element);
-        }
-    }
     let body = |cells: Vec<u32>| {
         let first = cells[0];
         Body {
             section: section_of[first as usize].unwrap_or_default() as usize,
             loads: acting.remove(&first).unwrap_or_default(),
             warmth: warmth.remove(&first).unwrap_or_default(),
+            is_reduced: is_reduced(first),
+            initial: initial.stress_of(first),
+            steps: course(first),
             cells,
         }
     };
-    Ok(members.into_values().map(body).collect())
+    Ok(classes.members().into_values().map(body).collect())
+}
+
+/// The section of every element that is a cell, by its number.
+///
+/// # Errors
+/// A cell without one.
+fn sections_of_elements(
+    places: &Places,
+    sections: &[Section],
+) -> Result<Vec<Option<u32>>, InputError> {
+    let dim = places.dim();
+    let mut section_of: Vec<Option<u32>> = vec![None; places.deck.elements.len()];
+    for (number, section) in (0..).zip(sections) {
+        for &element in section
+            .elements
+            .iter()
+            .filter(|&&element| places.is_cell(element, dim))
+        {
+            section_of[element as usize] = Some(number);
+        }
+    }
+    let mut elements = 0..section_of.len() as u32;
+    if let Some(bare) =
+        elements.find(|&e| places.is_cell(e, dim) && section_of[e as usize].is_none())
+    {
+        let tag = places.deck.element_tags[bare as usize];
+        return Err(InputError::new(format!(
+            "element {tag} has no *SOLID SECTION; expected one for each element"
+        )));
+    }
+    Ok(section_of)
 }
 
 /// The temperature of an element above that at the beginning.

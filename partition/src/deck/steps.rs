@@ -7,10 +7,13 @@ use super::axes::{System, numbers};
 use super::loads::Loads;
 use super::place::Places;
 use super::reference::{AtReference, NodeAxis};
-use super::table::{Amplitudes, Origin, Table};
+use super::table::{Amplitudes, Origin};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 use crate::name;
+
+/// Displacements of nodes along the axes of the scene.
+type Held = BTreeMap<u32, [Option<f64>; 3]>;
 
 /// Loads and supports at the end of a step.
 pub(super) struct LoadStep {
@@ -18,7 +21,9 @@ pub(super) struct LoadStep {
     pub(super) place: LinePlace,
     /// Time since the deck's beginning.
     pub(super) time: f64,
-    pub(super) supports: BTreeMap<u32, [Option<f64>; 3]>,
+    pub(super) supports: Held,
+    /// What is prescribed along local axes that are none of the scene.
+    pub(super) turned: BTreeMap<NodeAxis, f64>,
     pub(super) forces: BTreeMap<u32, [f64; 3]>,
     pub(super) faces: BTreeMap<(u32, usize), f64>,
     pub(super) surfaces: BTreeMap<String, f64>,
@@ -208,14 +213,11 @@ impl Steps {
                 .source
                 .error(open.place, "the step has no *STATIC; expected it"));
         }
-        let start = Moment {
-            in_step: 0.0,
-            total: self.total_time,
+        let at = |in_step: f64| Moment {
+            in_step,
+            total: self.total_time + in_step,
         };
-        let end = Moment {
-            in_step: open.period,
-            total: self.total_time + open.period,
-        };
+        let (start, end) = (at(0.0), at(open.period));
         self.total_time = end.total;
         let loads = &mut self.loads;
         let amplitudes = &self.amplitudes;
@@ -238,12 +240,14 @@ impl Steps {
                     values.partition(|((node, _), _)| loads.references.contains_key(node));
                 (of_references, BTreeMap::from_iter(of_bodies))
             });
+        let (supports, turned) = local.supports(&held);
         self.done.push(LoadStep {
             name: open.name,
             place: open.place,
             time: end.total,
             references: AtReference::all(loaded_references, held_references),
-            supports: local.supports(&loads.supports, &held)?,
+            supports,
+            turned,
             forces: local.forces(&forces),
             faces: loads.faces.at(amplitudes, end),
             surfaces: loads.surfaces.at(amplitudes, end),
@@ -269,17 +273,11 @@ struct Local<'a> {
 }
 
 impl Local<'_> {
-    /// Displacements along the scene's axes.
-    ///
-    /// # Errors
-    /// Some of a node's components are along local axes that aren't those of the scene.
-    fn supports(
-        &self,
-        table: &Table<NodeAxis>,
-        values: &BTreeMap<NodeAxis, f64>,
-    ) -> Result<BTreeMap<u32, [Option<f64>; 3]>, InputError> {
+    /// Displacements along the scene's axes, and those along local axes that are none of them.
+    fn supports(&self, values: &BTreeMap<NodeAxis, f64>) -> (Held, BTreeMap<NodeAxis, f64>) {
         let dim = self.places.dim();
-        let mut by_node: BTreeMap<u32, [Option<f64>; 3]> = BTreeMap::new();
+        let mut by_node = Held::new();
+        let mut turned = BTreeMap::new();
         for (&(node, axis), &value) in values {
             by_node.entry(node).or_default()[axis] = Some(value);
         }
@@ -296,29 +294,17 @@ impl Local<'_> {
                 continue;
             }
             let mut global = [None; 3];
-            for (p, value) in held
-                .iter()
-                .enumerate()
-                .filter_map(|(p, value)| Some((p, (*value)?)))
+            for (p, value) in
+                (held.iter().enumerate()).filter_map(|(p, value)| Some((p, (*value)?)))
             {
-                let Some(i) = (0..3).find(|&i| axes[p][i].abs() > 1.0 - 1e-12) else {
-                    let tag = self.places.deck.node_tags[node as usize];
-                    let message = format!(
-                        "the node {tag} is held along an axis of *TRANSFORM that isn't one of x, y and z, which isn't \
-                         supported; leave it out, convert the deck, and hold the side by [[bilateral]], which is without displacement \
-                         along its normal"
-                    );
-                    let place = table.place(&(node, p));
-                    return Err(match place {
-                        Some(place) => self.places.source.error(place, message),
-                        None => InputError::new(message),
-                    });
-                };
-                global[i] = Some(value * axes[p][i].signum());
+                match (0..3).find(|&i| axes[p][i].abs() > 1.0 - 1e-12) {
+                    Some(i) => global[i] = Some(value * axes[p][i].signum()),
+                    None => _ = turned.insert((node, p), value),
+                }
             }
             *held = global;
         }
-        Ok(by_node)
+        (by_node, turned)
     }
 
     /// Forces along the scene's axes.

@@ -135,6 +135,12 @@ impl ReferenceElement {
         &self.tables().stress
     }
 
+    /// The points at which the stiffness of an 8-node quadrilateral or a 20-node hexahedron is integrated where it is
+    /// reduced: those where its stresses are better than elsewhere. Other kinds have none.
+    pub fn reduced_points(&self) -> Option<&[TabulatedPoint]> {
+        matches!((self.dim(), self.nodes()), (2, 8) | (3, 20)).then(|| self.stress_points())
+    }
+
     /// Points at which the Jacobian is sampled.
     pub(super) fn lattice(&self) -> &Lattice {
         &self.tables().lattice

@@ -48,6 +48,15 @@ pub fn read(path: &Path) -> Result<Mesh, InputError> {
         mut warnings,
         left_out,
     } = Whole::read(&source)?;
+    let is_reduced = (deck.elements.iter().zip(&deck.is_reduced))
+        .any(|((kind, _), is_reduced)| *is_reduced && kind.reduced_points().is_some());
+    if is_reduced {
+        warnings.push(
+            "of the deck's elements those of reduced integration are integrated in full, unless 'integration' of their body \
+             says otherwise"
+                .into(),
+        );
+    }
     if !left_out.is_empty() {
         warnings.push(format!(
             "of the deck the mesh alone is read; left out are {}",

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 
+use super::parts::Formulation;
 use super::{Material, PlaneState, groups};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::{Group, Mesh};
 use crate::scene::Scene;
-use crate::scene::condition::{Body, Names};
+use crate::scene::condition::{Body, Integration, Names};
 use crate::scene::contact::{Contact, Declaration};
 use crate::scene::material::Elasticity;
 use crate::stiffness::Stiffness;
@@ -28,8 +29,9 @@ pub(super) struct Bodies {
     pub mesh: Mesh,
     pub cell_body: Vec<u32>,
     pub cell_material: Vec<u32>,
-    /// The materials of which cells with incompatible modes have one of their own, behind all others.
-    pub with_modes: Vec<u32>,
+    /// The materials of which cells of another formulation have one of their own, from `first_variant` on.
+    pub variants: Vec<(u32, Formulation)>,
+    first_variant: u32,
 }
 
 impl Bodies {
@@ -77,46 +79,71 @@ impl Bodies {
             cell_material: cell_material.collect(),
             mesh,
             cell_body,
-            with_modes: Vec::new(),
+            variants: Vec::new(),
+            first_variant: own.start,
         };
-        if scene.plane == Some(PlaneState::Axisymmetric) && bodies.mesh.has_modes.contains(&true) {
+        let is_around_axis = scene.plane == Some(PlaneState::Axisymmetric);
+        if is_around_axis && bodies.mesh.has_modes.contains(&true) {
             warnings.push(WITHOUT_MODES.into());
-        } else {
-            bodies.name_cells_with_modes(own.start);
         }
+        bodies.name_variants(scene, is_around_axis)?;
         Ok(bodies)
     }
 }
 
 impl Bodies {
-    /// Gives cells with incompatible modes materials of their own, numbered from `first` on.
-    fn name_cells_with_modes(&mut self, first: u32) {
-        let has_modes = self.mesh.cells.iter().zip(&self.mesh.has_modes);
-        let has_modes = has_modes.map(|((kind, _), &has)| {
-            has && matches!(kind, ElementKind::Quad4 | ElementKind::Hexahedron8)
-        });
-        for (material, _) in self
-            .cell_material
-            .iter_mut()
-            .zip(has_modes)
-            .filter(|(_, has)| *has)
-        {
-            let known = self.with_modes.iter().position(|own| own == material);
+    /// Gives cells of another formulation materials of their own, behind all others.
+    ///
+    /// # Errors
+    /// A body of reduced integration none of whose cells has any.
+    fn name_variants(&mut self, scene: &Scene, is_around_axis: bool) -> Result<(), InputError> {
+        let mut reduced: Vec<Option<bool>> = (scene.bodies.values())
+            .map(|body| (body.integration == Integration::Reduced).then_some(false))
+            .collect();
+        for (cell, (kind, _)) in self.mesh.cells.iter().enumerate() {
+            let is_linear = matches!(kind, ElementKind::Quad4 | ElementKind::Hexahedron8);
+            let has_modes = self.mesh.has_modes.get(cell) == Some(&true);
+            let reduced = &mut reduced[self.cell_body[cell] as usize];
+            let formulation = if has_modes && is_linear && !is_around_axis {
+                Formulation::IncompatibleModes
+            } else if reduced.is_some() && kind.reduced_points().is_some() {
+                *reduced = Some(true);
+                Formulation::Reduced
+            } else {
+                continue;
+            };
+            let variant = (self.cell_material[cell], formulation);
+            let known = self.variants.iter().position(|other| *other == variant);
             let place = known.unwrap_or_else(|| {
-                self.with_modes.push(*material);
-                self.with_modes.len() - 1
+                self.variants.push(variant);
+                self.variants.len() - 1
             });
-            *material = first + place as u32;
+            self.cell_material[cell] = self.first_variant + place as u32;
+        }
+        match (reduced.iter().zip(scene.bodies.keys())).find(|(found, _)| **found == Some(false)) {
+            None => Ok(()),
+            Some((_, name)) => Err(InputError::new(format!(
+                "bodies.{name}.integration: no cell of it has a reduced integration; expected quadrilaterals of 8 nodes or \
+                 hexahedra of 20"
+            ))),
         }
     }
 
-    /// All materials: these, and theirs with incompatible modes.
-    pub fn with_modes(&self, mut materials: Vec<Material>) -> Vec<Material> {
-        for &material in &self.with_modes {
+    /// The formulation of a cell.
+    pub fn formulation(&self, cell: usize) -> Formulation {
+        let variant = self.cell_material[cell].checked_sub(self.first_variant);
+        variant.map_or(Formulation::Full, |variant| {
+            self.variants[variant as usize].1
+        })
+    }
+
+    /// All materials: these, and those of cells of another formulation.
+    pub fn with_variants(&self, mut materials: Vec<Material>) -> Vec<Material> {
+        for &(material, formulation) in &self.variants {
             let plain = materials[material as usize].clone();
             materials.push(Material {
-                name: format!("{} with incompatible modes", plain.name),
-                has_incompatible_modes: true,
+                name: format!("{}{}", plain.name, formulation.words()),
+                formulation,
                 ..plain
             });
         }
@@ -223,7 +250,7 @@ fn material(name: &str, elasticity: &Elasticity, plane: Option<PlaneState>) -> M
             Some(PlaneState::Axisymmetric) | None => None,
         },
         poisson,
-        has_incompatible_modes: false,
+        formulation: Formulation::Full,
     }
 }
 

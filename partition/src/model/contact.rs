@@ -141,6 +141,7 @@ impl<'a> Contacts<'a> {
         if let Some(friction) = &keys.friction {
             warnings.extend(laws::give_friction(friction, &mut points, &what)?);
         }
+        (points.iter_mut()).for_each(|point| point.is_absolute = keys.absolute);
         if let Some(stiffness) = &keys.stiffness {
             laws::give_stiffness(stiffness, &mut points, &what)?;
             // Its sides overlap where they press.
@@ -150,8 +151,7 @@ impl<'a> Contacts<'a> {
             warnings.extend(self.interference(&points, &side_a, off, &what));
         }
         let count = points.len();
-        let slack = ROUNDING * self.size;
-        let kept = (self.held).without_prescribed((number, &what), points, slack, self.units)?;
+        let kept = self.without_prescribed((number, &what), points)?;
         if kept.is_empty() {
             warnings.push(format!(
                 "{what}: all its nodes are prescribed; it has no condition"
@@ -168,6 +168,16 @@ impl<'a> Contacts<'a> {
             points: kept,
             probes,
         })
+    }
+
+    /// Points without those that supports hold along the normal.
+    fn without_prescribed(
+        &self,
+        of: (u32, &str),
+        points: Vec<ContactPoint<u32>>,
+    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+        let slack = ROUNDING * self.size;
+        (self.held).without_prescribed(of, points, slack, self.units)
     }
 
     /// The points of side a in front of an obstacle, and its motion.

@@ -15,7 +15,7 @@ mod partial;
 use nalgebra::{Matrix3, Vector3};
 
 use self::frame::{Acting, Form, Frame, FrameLoads};
-use self::partial::{NO_INERTIA, Uncoupled};
+use self::partial::{FollowingNode, NO_INERTIA, Uncoupled};
 use super::loads::surface_load;
 use super::steps::Loads;
 use super::surface::Surface;
@@ -290,14 +290,26 @@ impl CouplingOnMesh<'_> {
             return Err(self.refused("its directions aren't perpendicular; expected ones that are"));
         }
         let at = |node: u32| self.mesh.points[node as usize];
-        let places: Vec<[f64; 3]> = weights.iter().map(|&(node, _)| at(node)).collect();
-        let uncoupled = Uncoupled::new(frame, &places, &directions);
+        let mut nodes = Vec::with_capacity(weights.len());
+        for &(node, _) in weights {
+            let turned = |direction: &[f64; 3]| match &self.coupling.axis {
+                Some(axis) => axis.vector(*direction, at(node)),
+                None => Some(*direction),
+            };
+            // On the axis nothing is radial or around it.
+            let directions = directions.iter().filter_map(turned).collect();
+            nodes.push(FollowingNode {
+                node,
+                place: at(node),
+                directions,
+            });
+        }
+        let uncoupled = Uncoupled::new(frame, &nodes);
         for acting in steps {
             let free = uncoupled.free(frame, acting);
             free.map_err(|why| self.refused(&why))?;
         }
-        let nodes: Vec<_> = weights.iter().map(|&(node, _)| (node, at(node))).collect();
-        let mut forms = partial::forms(frame, &nodes, &directions);
+        let mut forms = partial::forms(frame, &nodes);
         let middle = (weights.iter()).fold([0.0; 3], |sum, &(node, w)| advance(sum, w, at(node)));
         let inertia = self.inertia(weights, middle)?;
         let mut means = self.distributing(frame, weights)?;

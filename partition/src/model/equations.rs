@@ -104,6 +104,7 @@ fn point(
         motion,
         area: 1.0,
         law: Law::Tied,
+        is_absolute: equation.absolute,
         axes: axes.clone(),
         ..ContactPoint::new(entries, axes[0], position, mesh.node_tags[node as usize])
     })

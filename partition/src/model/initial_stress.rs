@@ -130,8 +130,9 @@ impl InitialStress {
             if bodies.cell_body[cell] != body {
                 continue;
             }
+            let formulation = bodies.formulation(cell);
             let rule = (rules.entry(kind))
-                .or_insert_with(|| rule_of_cells(kind, plane, field.is_constant()));
+                .or_insert_with(|| rule_of_cells(kind, formulation, plane, field.is_constant()));
             let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
             for (&node, &x) in nodes.iter().zip(&at) {
                 let key = (node, bodies.cell_material[cell]);

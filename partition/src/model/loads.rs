@@ -142,9 +142,10 @@ fn body_force(
         if bodies.cell_body[cell] != body {
             continue;
         }
+        let formulation = bodies.formulation(cell);
         let rule = rules
             .entry(kind)
-            .or_insert_with(|| rule_of_cells(kind, plane, force.is_constant()));
+            .or_insert_with(|| rule_of_cells(kind, formulation, plane, force.is_constant()));
         let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
         for point in rule.iter() {
             let shape = point.shape.iter();

@@ -99,12 +99,10 @@ fn stiffnesses(scene: &Scene, bodies: &Bodies) -> Vec<Parameter> {
     let mut scene_materials: Vec<Option<usize>> = (0..scene.materials.len()).map(Some).collect();
     let own = scene.bodies.values().filter(|of| of.has_initial_stress());
     scene_materials.extend(own.map(|body| number(&body.material)));
-    let modes = bodies
-        .with_modes
-        .iter()
-        .map(|&of| scene_materials[of as usize]);
-    let modes: Vec<Option<usize>> = modes.collect();
-    scene_materials.extend(modes);
+    let variants = bodies.variants.iter();
+    let variants = variants.map(|&(of, _)| scene_materials[of as usize]);
+    let variants: Vec<Option<usize>> = variants.collect();
+    scene_materials.extend(variants);
     let is_heated = |name: &str| {
         let mut bodies = scene.bodies.values();
         bodies.any(|body| body.material == name && body.thermal.is_some())

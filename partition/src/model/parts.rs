@@ -15,8 +15,31 @@ pub struct Material {
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.
     pub poisson: Option<f64>,
-    /// Whether its 4-node quadrilaterals and 8-node hexahedra have incompatible modes, with which they bend.
-    pub has_incompatible_modes: bool,
+    /// The way in which cells of it are integrated.
+    pub formulation: Formulation,
+}
+
+/// The way in which the stiffness of cells is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulation {
+    /// In full.
+    #[default]
+    Full,
+    /// 4-node quadrilaterals and 8-node hexahedra have incompatible modes, with which they bend.
+    IncompatibleModes,
+    /// 8-node quadrilaterals and 20-node hexahedra are integrated at two points in each direction.
+    Reduced,
+}
+
+impl Formulation {
+    /// The formulation in words, behind the name of a material.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Full => "",
+            Self::IncompatibleModes => " with incompatible modes",
+            Self::Reduced => " with reduced integration",
+        }
+    }
 }
 
 /// One support row: u(node)·direction = value.

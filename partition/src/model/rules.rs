@@ -1,5 +1,6 @@
 //! The quadrature rules by which loads are integrated.
 
+use super::parts::Formulation;
 use crate::element::ElementKind;
 use crate::element::quadrature::TabulatedPoint;
 use crate::scene::material::PlaneState;
@@ -15,12 +16,17 @@ pub(super) fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) 
     }
 }
 
-/// The rule by which a load is integrated over cells.
+/// The rule by which a load is integrated over cells: of reduced ones that of their stiffness.
 pub(super) fn rule_of_cells(
     kind: ElementKind,
+    formulation: Formulation,
     plane: Option<PlaneState>,
     is_constant: bool,
 ) -> Vec<TabulatedPoint> {
+    let reduced = kind.reduced_points();
+    if let Some(points) = reduced.filter(|_| formulation == Formulation::Reduced) {
+        return points.to_vec();
+    }
     let degree = kind.rules().map(|rules| match is_constant {
         true => rules.constant_load,
         false => rules.cubic_load,

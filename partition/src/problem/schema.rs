@@ -13,6 +13,16 @@ use self::Kind::{
 pub use self::counts::Counts;
 pub use self::kind::Kind;
 pub use self::letters::LETTERS;
+use crate::model::Formulation;
+
+/// The datasets that say which materials have another formulation than the full one.
+pub(super) const FORMULATIONS: [(Formulation, &str); 2] = [
+    (
+        Formulation::IncompatibleModes,
+        "/materials/incompatible_modes",
+    ),
+    (Formulation::Reduced, "/materials/reduced_integration"),
+];
 
 /// A dataset.
 #[derive(Debug)]
@@ -130,6 +140,9 @@ pub const FIELDS: &[Field] = &[
     optional("/materials/incompatible_modes", "M", Codes("formulation", 2),
         "1 where the 4-node quadrilaterals and 8-node hexahedra of the material have incompatible modes, 0 where they don't; \
          without it none have"),
+    optional("/materials/reduced_integration", "M", Codes("formulation", 2),
+        "1 where the 8-node quadrilaterals and 20-node hexahedra of the material are integrated at two points in each direction, \
+         0 where at three; without it all are at three"),
     field("/bodies/name", "B", Names,
         "a body is what hangs together through shared nodes, its subdomains through Γ"),
     field("/subdomains/body", "N", Indices("body", 'B'), "body of each subdomain"),
@@ -216,6 +229,9 @@ pub const FIELDS: &[Field] = &[
         "stiffness of what lies between the sides, along the normal and along the tangents, its `area` times the stiffness per \
          area [N/m]; 0 where it is rigid. Along the normal the sides overlap by force over stiffness, along the tangents what \
          sticks is displaced by it. An equation with one along the normal is a spring between points, whose force is its multiplier"),
+    optional("/contact/absolute", "R", Codes("start", 2),
+        "1 where `gap` is that of the undeformed bodies also if the contact comes in a later load step, 0 where it is that of the \
+         bodies as they are then; without it all are 0"),
     optional("/contact/motion", "R, L?, d", Numbers,
         "displacement of the obstacle that the point faces, in every load step [m]; of an equation, along the axis of its first \
          entry, what its value is beyond `gap`; zeros at other points"),

@@ -94,7 +94,9 @@ impl Catalog {
         catalog.keep_points(&points);
         for (point, &j) in catalog.points.iter_mut().zip(&points) {
             point.since = since.get(j).copied().unwrap_or_default();
-            point.gap += dot(point.since, point.normal());
+            if !point.is_absolute {
+                point.gap += dot(point.since, point.normal());
+            }
         }
         // What came later has its gap from the position in which it came, which probes don't know.
         let came = points

@@ -9,7 +9,7 @@ use toml::Value;
 use super::datasets::{Datasets, group, without_nul};
 use super::goals;
 use super::law::LawRow;
-use super::schema::Counts;
+use super::schema::{Counts, FORMULATIONS};
 use super::strings::{type_of, write_strings};
 use super::{
     FORMAT, InitialStress, Problem, Subdomain, SubdomainNode, VERSION, digest, tips, vtkhdf,
@@ -107,11 +107,11 @@ impl Problem {
         }
         let ratios = materials.iter().map(|m| m.poisson.unwrap_or(f64::NAN));
         datasets.put("/materials/poisson", ratios)?;
-        if materials.iter().any(|m| m.has_incompatible_modes) {
-            let modes = materials
-                .iter()
-                .map(|m| i64::from(m.has_incompatible_modes));
-            datasets.put("/materials/incompatible_modes", modes)?;
+        for (formulation, path) in FORMULATIONS {
+            if materials.iter().any(|m| m.formulation == formulation) {
+                let have = materials.iter().map(|m| m.formulation == formulation);
+                datasets.put(path, have.map(i64::from))?;
+            }
         }
 
         let names = catalog.bodies.iter().map(|b| b.name.as_str());
@@ -266,6 +266,12 @@ impl Problem {
         }
         if points().any(ContactPoint::is_compliant) {
             datasets.put("/contact/stiffness", points().flat_map(|p| p.stiffness))?;
+        }
+        if points().any(|p| p.is_absolute) {
+            datasets.put(
+                "/contact/absolute",
+                points().map(|p| i64::from(p.is_absolute)),
+            )?;
         }
         if points().any(|p| !p.motion.is_empty()) {
             let steps = self.catalog.steps.len().max(1);

@@ -68,7 +68,7 @@ impl<'de> Deserialize<'de> for Names {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of material, body_force, initial_stress and thermal"
+    expecting = "a table of material, body_force, initial_stress, thermal and integration"
 )]
 pub struct Body {
     /// Name of its material.
@@ -79,6 +79,20 @@ pub struct Body {
     pub initial_stress: Option<InitialStress>,
     /// Expansion by heat.
     pub thermal: Option<Thermal>,
+    /// The rule by which its quadratic quadrilaterals and hexahedra are integrated.
+    #[serde(default)]
+    pub integration: Integration,
+}
+
+/// The rule by which quadratic quadrilaterals and hexahedra are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Integration {
+    /// At three points in each direction.
+    #[default]
+    Full,
+    /// At two.
+    Reduced,
 }
 
 impl Body {

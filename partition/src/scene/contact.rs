@@ -75,6 +75,8 @@ pub struct Contact {
     pub friction: Option<Friction>,
     /// The stiffness of what lies between the sides; `None` where they don't overlap.
     pub stiffness: Option<ContactStiffness>,
+    /// Whether gaps count from the start, also where it is added in a load step.
+    pub absolute: bool,
     /// Reach of a tie; `None` of sides that may part.
     pub tie: Option<TieReach>,
 }
@@ -155,6 +157,7 @@ impl Between {
             interference: self.interference,
             friction: self.friction.clone(),
             stiffness: self.stiffness.clone(),
+            absolute: false,
             tie: None,
         }
     }
@@ -203,7 +206,7 @@ impl Chosen {
 #[serde(
     deny_unknown_fields,
     expecting = "a table of name, sides or between, within, pairing, gap, adjust, interference, obstacle, motion, friction, \
-                 cohesion, tresca and stiffness"
+                 cohesion, tresca, stiffness and absolute"
 )]
 struct Keys {
     #[serde(deserialize_with = "contact_name")]
@@ -227,6 +230,8 @@ struct Keys {
     #[serde(default, deserialize_with = "friction::bound")]
     tresca: Option<Number>,
     stiffness: Option<ContactStiffness>,
+    #[serde(default)]
+    absolute: bool,
 }
 
 impl Keys {
@@ -244,6 +249,9 @@ impl Keys {
                 "'motion' is of an 'obstacle', which is missing; a body moves by [[displacement]]"
                     .into(),
             );
+        }
+        if self.absolute && self.between.is_some() {
+            return Err("'absolute' is of two sides; expected no 'between' beside it".into());
         }
         if self.within.is_some() && self.between.is_none() && self.sides.is_some() {
             return Err("'within' stands beside 'between', which is missing".into());
@@ -318,6 +326,7 @@ impl TryFrom<Keys> for Declaration {
             interference: keys.interference,
             friction,
             stiffness: keys.stiffness,
+            absolute: keys.absolute,
             tie: None,
         }))
     }

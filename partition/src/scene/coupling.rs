@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::condition::Names;
 use super::contact::contact_name;
 use super::number::{Constant, ConstantVector, OR_IN_SPACE, expected_components};
+use crate::element::geometry::{advance, cross, difference, dot, length};
 
 /// Components of the motion of a reference point, and their keys: translations, then rotations.
 pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
@@ -23,8 +24,44 @@ pub struct Coupling {
     pub kind: CouplingKind,
     /// The directions along which they follow; none where they do along all.
     pub directions: Vec<ConstantVector>,
+    /// The axis around which these turn: they are then radial, around and along it.
+    pub axis: Option<Axis>,
     /// Loads and prescribed motions of the point.
     pub loads: CouplingLoads,
+}
+
+/// An axis through a point.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of point and direction")]
+pub struct Axis {
+    /// The point (m).
+    pub point: ConstantVector,
+    /// Its direction.
+    pub direction: ConstantVector,
+}
+
+impl Axis {
+    /// A vector of radial, hoop and axial components at a place; `None` on the axis, unless it lies along this.
+    pub fn vector(&self, components: [f64; 3], x: [f64; 3]) -> Option<[f64; 3]> {
+        let unit = |v: [f64; 3]| {
+            Some(length(v))
+                .filter(|&size| size > 0.0)
+                .map(|size| v.map(|c| c / size))
+        };
+        let along = unit(self.direction.value)?;
+        let arm = difference(x, self.point.value);
+        let arm = advance(arm, -dot(arm, along), along);
+        if components[..2] == [0.0; 2] {
+            return Some(along.map(|c| components[2] * c));
+        }
+        let radial = unit(arm)?;
+        let parts = components
+            .into_iter()
+            .zip([radial, cross(along, radial), along]);
+        Some(parts.fold([0.0; 3], |sum, (component, axis)| {
+            advance(sum, component, axis)
+        }))
+    }
 }
 
 /// The way in which nodes follow a reference point.
@@ -81,7 +118,7 @@ impl Moment {
 #[derive(Deserialize)]
 #[serde(
     deny_unknown_fields,
-    expecting = "a table of name, on, point, kind, directions, force, moment, x, y, z, rx, ry and rz"
+    expecting = "a table of name, on, point, kind, directions, axis, force, moment, x, y, z, rx, ry and rz"
 )]
 struct CouplingKeys {
     #[serde(deserialize_with = "contact_name")]
@@ -92,6 +129,7 @@ struct CouplingKeys {
     kind: CouplingKind,
     #[serde(default)]
     directions: Vec<ConstantVector>,
+    axis: Option<Axis>,
     force: Option<ConstantVector>,
     moment: Option<Moment>,
     x: Option<Constant>,
@@ -110,6 +148,7 @@ impl From<CouplingKeys> for Coupling {
             point: keys.point,
             kind: keys.kind,
             directions: keys.directions,
+            axis: keys.axis,
             loads: CouplingLoads {
                 force: keys.force,
                 moment: keys.moment,

@@ -18,6 +18,9 @@ pub struct Equation {
     /// The sum (m).
     #[serde(default)]
     pub value: f64,
+    /// Whether displacements count from the start, also where it is added in a load step.
+    #[serde(default)]
+    pub absolute: bool,
 }
 
 /// A multiple of a displacement.

@@ -11,6 +11,7 @@ use super::number::ConstantVector;
 use super::place::Step;
 use super::step::LoadStep;
 use super::{Scene, suggest};
+use crate::element::geometry::length;
 
 impl Scene {
     /// The displacement of every obstacle that ever moves, by the name of its contact, in all load steps (m), or the one that it
@@ -161,6 +162,15 @@ impl Scene {
                     coupling.kind == CouplingKind::Distributing && !coupling.directions.is_empty();
                 is_wrong.then(|| "a distributing coupling has none".into())
             };
+            let axis = coupling.axis.as_ref();
+            let of_axis = axis.and_then(|axis| match coupling.directions[..] {
+                [] => Some("'axis' is of 'directions', which are missing".to_owned()),
+                _ if length(axis.direction.value) == 0.0 => {
+                    Some("its direction has no length".into())
+                }
+                _ => axis.point.fault(dim).or_else(|| axis.direction.fault(dim)),
+            });
+            check(entry("coupling", index, "axis"), of_axis);
             let fault = (coupling.directions.iter()).find_map(|direction| direction.fault(dim));
             let fault = fault.or_else(too_many).or_else(of_distributing);
             check(entry("coupling", index, "directions"), fault);

@@ -34,6 +34,7 @@ impl Tie {
             friction: None,
             motion: None,
             stiffness: None,
+            absolute: false,
             tie: Some(self.reach),
         }
     }

@@ -288,8 +288,12 @@ fn pairs_of_contact_come_and_go() {
         ),
         (change("REMOVE, ADD"), "neither or both of ADD and REMOVE"),
         (
-            change("REMOVE").replace("CONTACT PAIR", "ELEMENT"),
-            "of TYPE=ELEMENT isn't read",
+            change("REMOVE").replace("CONTACT PAIR", "CRACK"),
+            "of TYPE=CRACK isn't read",
+        ),
+        (
+            change("ADD=WITH STRAIN").replace("CONTACT PAIR", "ELEMENT"),
+            "with ADD=WITH STRAIN isn't read",
         ),
     ] {
         let error = read(&deck([&changes, ""])).err().unwrap();

@@ -11,7 +11,9 @@ use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::mesh::topology::Topology;
-use contact_dd_partition::model::{Contact, InitialStress, Material, Model, PlaneState, Support};
+use contact_dd_partition::model::{
+    Contact, Formulation, InitialStress, Material, Model, PlaneState, Support,
+};
 use contact_dd_partition::quantity::Goals;
 use contact_dd_partition::scene::units::Units;
 use contact_dd_partition::solver::SolverSettings;
@@ -145,7 +147,7 @@ fn material(name: &str, out_of_plane: Option<[f64; 3]>, poisson: Option<f64>) ->
         stiffness: [[2.0, 0.5, 0.0], [0.5, 2.0, 0.1], [0.0, 0.1, 1.0]].into(),
         out_of_plane,
         poisson,
-        has_incompatible_modes: false,
+        formulation: Formulation::Full,
     }
 }
 

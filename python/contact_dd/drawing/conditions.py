@@ -175,11 +175,17 @@ class Problem:
         np.add.at(columns, (place, column), shares)
         return Body(rows, columns, np.average(self.result.points[rows], axis=0, weights=columns.sum(axis=1)))
 
-    def stress(self):
-        """Initial stress and that of thermal strain at the nodes of cells; none where there is none."""
+    def mean_stress(self):
+        """The mean of initial stress and that of thermal strain over cells; none where there is none."""
         if "initial_stress" not in self.file or "cell" not in self.file["initial_stress"]:
             return None
-        of_cell = self.of_step(self.file["initial_stress/cell"][:])
+        return self.of_step(self.file["initial_stress/cell"][:])
+
+    def stress(self):
+        """Initial stress and that of thermal strain at the nodes of cells; none where there is none."""
+        of_cell = self.mean_stress()
+        if of_cell is None:
+            return None
         of_point = self.of_step(self.file["initial_stress/node"][:])
         at_rows = np.zeros((len(self.result.nodes), 6))
         at_rows[self.row] = of_point

@@ -3,6 +3,8 @@
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::geometry::cross;
 
+use contact_dd_partition::model::Formulation;
+
 use super::*;
 
 const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
@@ -20,7 +22,7 @@ fn material(dim: usize) -> Material {
         stiffness: if dim == 2 { C.into() } else { solid.into() },
         out_of_plane: Some([0.3, 0.4, 0.5]),
         poisson: None,
-        has_incompatible_modes: false,
+        formulation: Formulation::Full,
     }
 }
 
@@ -177,4 +179,32 @@ fn principal_stresses_and_von_mises_of_known_states() {
         assert!((von_mises(&shear) - 2.0 * 3f64.sqrt()).abs() < 1e-15);
     }
     assert_eq!(von_mises(&[5.0, 5.0, 5.0, 0.0, 0.0, 0.0]), 0.0);
+}
+
+/// Two points in each direction see 3 strains in the plane and 6 in space at each of them, and no more.
+#[test]
+fn a_reduced_integration_leaves_as_many_motions_without_energy_as_it_has_too_few_points() {
+    for kind in cells() {
+        let material = Material {
+            formulation: Formulation::Reduced,
+            ..material(kind.dim())
+        };
+        let mut k = ElementMatrix::default();
+        k.set(&kind, &points(kind), &material);
+        let order = kind.dim() * kind.nodes();
+        let expected = match (kind.dim(), kind.nodes()) {
+            (2, 8) => order - 4 * 3,
+            (3, 20) => order - 8 * 6,
+            (2, _) => 3,
+            _ => 6,
+        };
+        let matrix = DMatrix::from_fn(order, order, |i, j| k.row(i)[j]);
+        let values = matrix.symmetric_eigenvalues();
+        let most = values.max();
+        let free = values
+            .iter()
+            .filter(|value| value.abs() < 1e-10 * most)
+            .count();
+        assert_eq!(free, expected, "{kind:?}");
+    }
 }

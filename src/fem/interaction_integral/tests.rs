@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 
 use contact_dd_partition::crack_tip::FaceFacet;
 use contact_dd_partition::element::Elements;
+use contact_dd_partition::model::Formulation;
 use contact_dd_partition::problem::Subdomain;
 use contact_dd_partition::quantity::NodalShares;
 use nalgebra::Vector2;
@@ -93,7 +94,7 @@ fn material(values: [[f64; 3]; 3]) -> Material {
         stiffness: values.into(),
         out_of_plane: None,
         poisson: None,
-        has_incompatible_modes: false,
+        formulation: Formulation::Full,
     }
 }
 
@@ -172,9 +173,9 @@ fn weights_times_displacements_are_the_integral() {
         cells: Vec::new(),
         nodes: points.map(|x| [x[0], 2.0, 0.0, x[1], 0.0, 0.0]).collect(),
     };
-    for has_incompatible_modes in [false, true] {
+    for formulation in [Formulation::Full, Formulation::IncompatibleModes] {
         let material = Material {
-            has_incompatible_modes,
+            formulation,
             ..orthotropic()
         };
         let disc = TipDisc::new(&tip, &material).unwrap();

@@ -23,6 +23,7 @@ pub fn group(law: Law) -> ContactGroup {
         frame: LocalFrame::new([0.0, 0.0, 1.0]),
         gap: 0.0,
         since: [0.0; 3],
+        is_absolute: false,
         area: 4.0,
         position: [0.0; 3],
         force_point: [0.0; 3],

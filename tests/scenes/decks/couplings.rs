@@ -5,7 +5,7 @@ use crate::support::close::close;
 use crate::support::solution::Solution;
 
 /// A bar of two cubes that share their nodes, held at its foot.
-const BAR: &str = "\
+pub const BAR: &str = "\
 *NODE
  1, 0, 0, 0
  2, 1, 0, 0
@@ -40,7 +40,7 @@ Foot, 1, 3
 
 /// Fails unless nodes of the bar move alike.
 #[track_caller]
-fn same(one: &Solution, other: &Solution, slack: f64) {
+pub fn same(one: &Solution, other: &Solution, slack: f64) {
     let scale = one.largest_displacement();
     for tag in (1..9).chain(15..19) {
         let [u, v] = [one, other].map(|solution| solution.displacement[&tag]);

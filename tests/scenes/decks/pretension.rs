@@ -71,6 +71,13 @@ Ends, 1, 3
         close(bolt["force"].as_f64().unwrap(), force, 1e-10);
         close(bolt["shortening"].as_f64().unwrap(), shortening, 1e-12);
     }
+    // A positive force pulls where the direction points away from the elements of the surface.
+    for (direction, force) in [("0., 0., -1.", "-20."), ("0., 0., 2.", "20.")] {
+        let deck =
+            format!("{BOLT}{direction}\n*STEP\n*STATIC\n*CLOAD\n99, 1, {force}\n*END STEP\n");
+        let bolt = &solved(&deck)[0].report["pretensions"][0];
+        close(bolt["force"].as_f64().unwrap(), 20.0, 1e-10);
+    }
     let shortened = format!("{BOLT}*STEP\n*STATIC\n*BOUNDARY\n99, 1, 1, 0.04\n*END STEP\n");
     let bolt = &solved(&shortened)[0].report["pretensions"][0];
     close(bolt["force"].as_f64().unwrap(), 20.0, 1e-10);

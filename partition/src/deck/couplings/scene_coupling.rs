@@ -9,6 +9,7 @@ use crate::deck::groups::Groups;
 use crate::deck::place::Places;
 use crate::deck::reference::{AtReference, FREEDOMS};
 use crate::deck::steps::LoadStep;
+use crate::element::geometry::difference;
 use crate::error::InputError;
 use crate::name;
 use crate::scene::coupling::COMPONENTS;
@@ -21,6 +22,8 @@ pub(in crate::deck) struct SceneCoupling {
     is_rigid: bool,
     /// The directions along which nodes follow; none where they do along all.
     directions: Vec<[f64; 3]>,
+    /// A point and the direction of the axis around which these turn.
+    axis: Option<([f64; 3], [f64; 3])>,
     dim: usize,
     /// By step.
     acting: Vec<AtReference>,
@@ -41,14 +44,22 @@ impl Couplings {
     ) -> Result<Vec<SceneCoupling>, InputError> {
         let coupling = |coupling: &Coupling| {
             let on = self.group(groups, coupling, systems)?;
-            let acting = coupling.acting(groups, steps, thickness)?;
-            let directions = coupling.directions(groups, orientations)?;
+            let system = coupling.system(groups, orientations)?;
+            let acting = coupling.acting(groups, steps, (thickness, system))?;
+            let directions = coupling.directions(groups, system);
+            let axis = match system {
+                Some(System::Cylindrical(from, to)) if !directions.is_empty() => {
+                    Some((from, difference(to, from)))
+                }
+                _ => None,
+            };
             Ok(SceneCoupling {
                 name: names.unique(&coupling.name),
                 on,
                 point: groups.position(coupling.node),
                 is_rigid: coupling.kind == Some(Kind::Rigid),
                 directions,
+                axis,
                 dim: groups.dim(),
                 acting,
             })
@@ -123,57 +134,68 @@ impl Couplings {
 }
 
 impl Coupling {
-    /// The directions along which its nodes follow, none where these are all, by the `orientations` of the deck.
+    /// Its orientation among those of the deck.
     ///
     /// # Errors
-    /// An orientation that isn't there, or whose axes aren't the same everywhere.
-    fn directions(
+    /// One that isn't there, or of a distributing coupling whose axes aren't the same everywhere.
+    fn system(
         &self,
         groups: &Groups,
         orientations: &BTreeMap<String, System>,
-    ) -> Result<Vec<[f64; 3]>, InputError> {
-        let is_rigid = self.kind == Some(Kind::Rigid);
-        let axes = match &self.orientation {
-            Some(_) if !is_rigid => {
-                let message = "*COUPLING with ORIENTATION isn't read beside *DISTRIBUTING; expected loads along x, y and z";
-                return Err(groups.error(self.place, message));
-            }
-            None => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            Some(name) => match orientations.get(name) {
-                Some(System::Rectangular(axes)) => *axes,
-                found => {
-                    let message = match found {
-                        None => format!("there is no *ORIENTATION '{}'", name::shown(name)),
-                        Some(_) => format!(
-                            "*COUPLING: the orientation {} turns around an axis, which isn't supported; expected a rectangular one",
-                            name::shown(name)
-                        ),
-                    };
-                    return Err(groups.error(self.place, &message));
-                }
-            },
+    ) -> Result<Option<System>, InputError> {
+        let Some(name) = &self.orientation else {
+            return Ok(None);
+        };
+        let message = match orientations.get(name) {
+            Some(System::Cylindrical(..)) if self.kind == Some(Kind::Distributing) => format!(
+                "*COUPLING with *DISTRIBUTING: the orientation {} turns around an axis, which isn't supported; expected a \
+                 rectangular one",
+                name::shown(name)
+            ),
+            Some(system) => return Ok(Some(*system)),
+            None => format!("there is no *ORIENTATION '{}'", name::shown(name)),
+        };
+        Err(groups.error(self.place, &message))
+    }
+
+    /// The directions along which its nodes follow, none where these are all.
+    fn directions(&self, groups: &Groups, system: Option<System>) -> Vec<[f64; 3]> {
+        let axes = match system {
+            Some(System::Rectangular(axes)) => axes,
+            _ => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         };
         let dim = groups.dim();
         if self.follows[..dim].iter().all(|&follows| follows) {
-            return Ok(Vec::new());
+            return Vec::new();
         }
         let followed = axes.into_iter().zip(self.follows).take(dim);
-        Ok(followed
+        followed
             .filter_map(|(axis, follows)| follows.then_some(axis))
-            .collect())
+            .collect()
     }
 
-    /// What acts on its reference node in every step, per thickness of plane sections.
+    /// What acts on its reference node in every step, per thickness of plane sections; of distributing ones along their own axes.
     fn acting(
         &self,
         groups: &Groups,
         steps: &[LoadStep],
-        thickness: f64,
+        (thickness, system): (f64, Option<System>),
     ) -> Result<Vec<AtReference>, InputError> {
         let mut acting: Vec<AtReference> = Vec::new();
         for step in steps {
             let mut at = step.references.get(&self.node).cloned().unwrap_or_default();
             at.load = at.load.map(|load| load / thickness);
+            if let (Some(System::Rectangular(axes)), Some(Kind::Distributing)) = (system, self.kind)
+            {
+                if at.held != [None; FREEDOMS] {
+                    let message = "*COUPLING with ORIENTATION and *DISTRIBUTING isn't read where its reference node is held; \
+                                   expected loads on it, or no orientation";
+                    return Err(groups.error(self.place, message));
+                }
+                let along =
+                    |from: usize, i: usize| (0..3).map(|p| at.load[from + p] * axes[p][i]).sum();
+                at.load = std::array::from_fn(|k| along(k / 3 * 3, k % 3));
+            }
             let held = |at: &AtReference| at.held.map(|value| value.is_some());
             if acting.first().is_some_and(|first| held(first) != held(&at)) {
                 let message = format!(
@@ -204,6 +226,12 @@ impl SceneCoupling {
             document.key(
                 "directions",
                 format!("[{}]", all.collect::<Vec<_>>().join(", ")),
+            );
+        }
+        if let Some((point, direction)) = self.axis {
+            document.key(
+                "axis",
+                format!("{{ point = {point:?}, direction = {direction:?} }}"),
             );
         }
         self.acts(0, document);

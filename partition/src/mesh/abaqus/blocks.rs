@@ -56,6 +56,15 @@ impl Block {
         self.parameters.iter().map(|(name, _)| name.as_str())
     }
 
+    /// Gives parameters the names that `spelled` says.
+    pub(crate) fn spell_parameters<'a>(&mut self, spelled: impl Fn(&str) -> Option<&'a str>) {
+        for (name, _) in &mut self.parameters {
+            if let Some(other) = spelled(name) {
+                *name = other.to_owned();
+            }
+        }
+    }
+
     /// The value of a parameter, empty where it has none.
     pub(crate) fn parameter(&self, name: &str) -> Option<&str> {
         let found = self.parameters.iter().find(|(key, _)| key == name);

@@ -7,6 +7,7 @@ use super::element_type::{self, ElementType};
 use super::notes::Notes;
 use super::sets::Sets;
 use crate::element::Elements;
+use crate::element::geometry::{advance, difference};
 use crate::error::InputError;
 use crate::name;
 
@@ -155,7 +156,7 @@ impl Deck {
             (true, _) => self
                 .taken_as
                 .insert(format!("{} as sides", name.to_uppercase())),
-            (_, Some(plain)) if !found.has_modes => self
+            (_, Some(plain)) if !found.has_modes && !found.has_reduced_points() => self
                 .taken_as
                 .insert(format!("{} as {plain}", name.to_uppercase())),
             _ => false,
@@ -295,6 +296,33 @@ impl Deck {
         }
         self.elements.push(found.kind, nodes);
         Ok(self.push_tag(*tag, found.is_side, (found.has_modes, found.is_reduced)))
+    }
+
+    /// A direction to the outside of a surface of faces: the sum of the ways from the middles of the elements to those of the
+    /// faces.
+    pub(crate) fn outward(&self, surface: &str) -> [f64; 3] {
+        let middle = |nodes: &[u32]| {
+            let points = nodes.iter().map(|&node| self.points[node as usize]);
+            points.fold([0.0; 3], |sum, x| advance(sum, 1.0 / nodes.len() as f64, x))
+        };
+        let faces = self.surfaces.get(surface).map(|set| set.members.list());
+        let way = |face: &Face| {
+            let Face::Of(element, number) = *face else {
+                return None;
+            };
+            let (kind, nodes) = (
+                self.elements.kind(element as usize),
+                self.elements.nodes_of(element as usize),
+            );
+            let corners = element_type::face(kind, number)?.iter().map(|&i| nodes[i]);
+            let corners: Vec<u32> = corners.collect();
+            Some(difference(
+                middle(&corners),
+                middle(&nodes[..kind.corners()]),
+            ))
+        };
+        let ways = faces.into_iter().flatten().filter_map(way);
+        ways.fold([0.0; 3], |sum, way| advance(sum, 1.0, way))
     }
 
     /// Gives the element that was appended last its tag, and says whether it is a side, and whether it has incompatible

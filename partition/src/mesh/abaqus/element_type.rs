@@ -49,6 +49,13 @@ pub(super) struct ElementType {
     pub(super) is_reduced: bool,
 }
 
+impl ElementType {
+    /// Whether its integration is a reduced one that bodies may have.
+    pub(super) fn has_reduced_points(&self) -> bool {
+        self.is_reduced && self.kind.reduced_points().is_some()
+    }
+}
+
 /// The meaning of the type `name`; `None` where it isn't supported.
 pub(super) fn find(name: &str) -> Option<ElementType> {
     let name = name.to_uppercase();

@@ -20,33 +20,39 @@ pub(super) struct Uncoupled {
     pub motions: Vec<[f64; 6]>,
 }
 
-/// The equations of nodes at places that follow the point along `directions` alone.
-pub(super) fn forms(
-    frame: &Frame,
-    nodes: &[(u32, [f64; 3])],
-    directions: &[[f64; 3]],
-) -> Vec<Form> {
-    let of_node = |&(node, x): &(u32, [f64; 3])| {
-        directions.iter().map(move |d| {
+/// A node that follows the point along some directions alone.
+pub(super) struct FollowingNode {
+    pub node: u32,
+    /// Its position (m).
+    pub place: [f64; 3],
+    /// Unit vectors, perpendicular to each other.
+    pub directions: Vec<[f64; 3]>,
+}
+
+/// The equations of nodes that follow the point.
+pub(super) fn forms(frame: &Frame, nodes: &[FollowingNode]) -> Vec<Form> {
+    let mut all = Vec::new();
+    for of in nodes {
+        for d in &of.directions {
             let mut form = Form::new();
-            form.insert(node, *d);
+            form.insert(of.node, *d);
             for (axis, component) in d.iter().enumerate().filter(|(_, c)| **c != 0.0) {
-                frame.add_at(&mut form, x, axis, -component);
+                frame.add_at(&mut form, of.place, axis, -component);
             }
-            form
-        })
-    };
-    nodes.iter().flat_map(of_node).collect()
+            all.push(form);
+        }
+    }
+    all
 }
 
 impl Uncoupled {
-    /// That of nodes at `places` which follow the point along `directions`.
-    pub fn new(frame: &Frame, places: &[[f64; 3]], directions: &[[f64; 3]]) -> Self {
+    /// That of nodes which follow the point.
+    pub fn new(frame: &Frame, nodes: &[FollowingNode]) -> Self {
         let components = components(frame.dim);
         let mut sum = DMatrix::zeros(components.len(), components.len());
-        for x in places {
-            let arm = difference(*x, frame.origin).map(|r| r / frame.size);
-            for d in directions {
+        for of in nodes {
+            let arm = difference(of.place, frame.origin).map(|r| r / frame.size);
+            for d in &of.directions {
                 let turn = cross(arm, *d);
                 let row = [d[0], d[1], d[2], turn[0], turn[1], turn[2]];
                 let row =

@@ -3,7 +3,8 @@
 use super::contents::Contents;
 use super::slice::Slice;
 use crate::error::InputError;
-use crate::model::{Material, PlaneState};
+use crate::model::{Formulation, Material, PlaneState};
+use crate::problem::schema::FORMULATIONS;
 use crate::stiffness::Stiffness;
 
 /// Reads and checks all materials.
@@ -22,7 +23,12 @@ pub(super) fn read(
     };
     let planes = optional("/materials/out_of_plane")?;
     let ratios = optional("/materials/poisson")?;
-    let modes = contents.integers("/materials/incompatible_modes", rows.clone())?;
+    let mut formulations = vec![Formulation::Full; names.len()];
+    for (formulation, path) in FORMULATIONS {
+        let have = contents.integers(path, rows.clone())?;
+        let of_materials = formulations.iter_mut().zip(have.all());
+        (of_materials.filter(|(_, have)| **have == 1)).for_each(|(of, _)| *of = formulation);
+    }
     names
         .into_iter()
         .enumerate()
@@ -39,7 +45,7 @@ pub(super) fn read(
                 stiffness,
                 out_of_plane: out_of_plane.transpose()?.flatten(),
                 poisson: poisson.transpose()?.flatten(),
-                has_incompatible_modes: modes.all().get(m) == Some(&1),
+                formulation: formulations[m],
             })
         })
         .collect()

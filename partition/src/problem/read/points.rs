@@ -31,6 +31,7 @@ pub(super) fn read(
     let normal = numbers("/contact/normal")?.vectors(rows.clone());
     let tag_a = integers("/contact/node_a")?;
     let tag_b = integers("/contact/node_b")?;
+    let absolute = integers("/contact/absolute")?;
     let laws = read_laws(contents)?;
     let mut motion = read_motion(contents)?;
     let mut preload = read_preload(contents)?;
@@ -45,6 +46,7 @@ pub(super) fn read(
         area: area.all()[i],
         force_point: force_point[i],
         tag_b: tag_b.all()[i],
+        is_absolute: absolute.all().get(i) == Some(&1),
         law: laws[i],
         stiffness: stiffness[i],
         motion: std::mem::take(&mut motion[i]),

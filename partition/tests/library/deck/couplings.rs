@@ -157,8 +157,9 @@ fn couplings_that_arent_supported_are_refused_with_their_line() {
             "line 54: there is no *ORIENTATION 'O'",
         ),
         (
-            coupling("*DISTRIBUTING\n4, 4").replace("REF NODE", "ORIENTATION=O, REF NODE"),
-            "line 54: *COUPLING with ORIENTATION isn't read beside *DISTRIBUTING",
+            coupling("*DISTRIBUTING\n4, 4").replace("REF NODE", "ORIENTATION=O, REF NODE")
+                + "*ORIENTATION, NAME=O\n0., 1., 0., -1., 0., 0.\n*BOUNDARY\n100, 4, 4, 0.1\n",
+            "line 54: *COUPLING with ORIENTATION and *DISTRIBUTING isn't read where its reference node is held",
         ),
         (
             coupling("*KINEMATIC").replace("REF NODE", "INFLUENCE RADIUS=1., REF NODE"),

@@ -43,8 +43,12 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 50: an equation between several sets isn't read",
         ),
         (
-            "*MPC\nBEAM, 1, 2",
-            "line 49: *MPC isn't supported yet; instead",
+            "*MPC\nSLIDER, 1, 2",
+            "line 50: *MPC of type SLIDER: isn't read; expected BEAM, STRAIGHT, PLANE or MEANROT, or an *EQUATION",
+        ),
+        (
+            "*MPC\nPLANE, 1, 2, 3",
+            "line 50: *MPC of type PLANE: it has 3 nodes; expected 4 at least",
         ),
         (
             "*KINEMATIC COUPLING, REF NODE=1",
@@ -72,11 +76,19 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         ),
         (
             "*CHANGE FRICTION, INTERACTION=Dry\n*FRICTION\n0.1",
-            "line 49: *CHANGE FRICTION isn't read: laws are the same in all steps here; instead give one for all of them",
+            "line 49: *CHANGE FRICTION stands in no step; expected it behind *STEP",
         ),
         (
-            "*CHANGE SURFACE BEHAVIOR, INTERACTION=Dry\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e6",
-            "line 49: *CHANGE SURFACE BEHAVIOR isn't read: laws are the same in all steps here; instead",
+            "*CHANGE SOLID SECTION, ELSET=All, MATERIAL=Steel",
+            "line 49: *CHANGE SOLID SECTION isn't read: laws are the same in all steps here; instead give one for all of them",
+        ),
+        (
+            "*DISTRIBUTING COUPLING, ELSET=Upper\nTop, 1.",
+            "line 49: *DISTRIBUTING COUPLING: the set Upper has 0 elements of type DCOUP3D; expected one",
+        ),
+        (
+            "*INITIAL CONDITIONS, TYPE=STRESS\n1, 1, 1., 0., 0., 0., 0., 0.\n1, 2, 2., 0., 0., 0., 0., 0.",
+            "line 51: the stress isn't the same at all points of element 1, which isn't supported; instead",
         ),
         (
             "*MODEL CHANGE",
@@ -182,20 +194,16 @@ fn loads_that_arent_read_are_refused_with_their_line() {
     ] {
         refused(&format!("{CUBES}{MODEL}{}", step(more)), expected);
     }
-    let two = [step(LOAD), step("*BOUNDARY\nTop, 1, 1")].concat();
+    let loose = "*NODE\n100, 0., 0., 0.\n*EQUATION\n2\n15, 3, 1., 100, 3, -1.\n";
+    let two = [step(LOAD), step("*BOUNDARY\n100, 3, 3")].concat();
     refused(
-        &format!("{CUBES}{MODEL}{two}"),
-        "line 54: supports come or go in this step, on 4 nodes (Top)",
+        &format!("{CUBES}{MODEL}{loose}{two}"),
+        "line 59: supports of the node 100, which is of no body, come or go in this step",
     );
-    let released = [step(LOAD), step("*BOUNDARY, OP=NEW\nBottom, 3")].concat();
+    let held = "*EQUATION\n1\n100, 3, 1.\n*BOUNDARY\n100, 3, 3, 0.5\n";
     refused(
-        &format!("{CUBES}{MODEL}{released}"),
-        "line 54: supports come or go in this step",
-    );
-    let oblique = "*TRANSFORM, NSET=Top\n1., 1., 0., -1., 1., 0.\n*BOUNDARY\nTop, 1\n";
-    refused(
-        &format!("{CUBES}{MODEL}{oblique}{}", step(LOAD)),
-        "line 52: the node 15 is held along an axis",
+        &format!("{CUBES}{MODEL}*NODE\n100, 0., 0., 0.\n{held}{}", step(LOAD)),
+        "line 52: what holds its nodes contradicts the equation by -5e-1; expected supports that agree with it",
     );
     let up_and_down = "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n";
     let load = step("*DLOAD, AMPLITUDE=A\nUpper, P2, 1.");

@@ -1,0 +1,32 @@
+//! What is there in which steps, in the words of the scene.
+
+use std::collections::BTreeSet;
+
+use super::document::{Document, quoted};
+
+/// A body, contact or equation that isn't there in all steps.
+pub(super) struct Presence {
+    pub(super) name: String,
+    pub(super) steps: Vec<bool>,
+}
+
+/// Writes what comes and goes in a step.
+pub(super) fn write(all: &[Presence], step: usize, document: &mut Document) {
+    for (key, comes) in [("add", true), ("remove", false)] {
+        let changes = |of: &&Presence| match step.checked_sub(1) {
+            Some(before) => of.steps[before] != comes && of.steps[step] == comes,
+            // What is added later isn't there at first.
+            None => !comes && !of.steps.contains(&true),
+        };
+        // Equations share names.
+        let names: BTreeSet<String> = all
+            .iter()
+            .filter(changes)
+            .map(|of| quoted(&of.name))
+            .collect();
+        if !names.is_empty() {
+            let names: Vec<String> = names.into_iter().collect();
+            document.key(key, format!("[{}]", names.join(", ")));
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! `*TIE`.
+
+use super::document::{Document, quoted};
+use super::groups::Groups;
+use super::loads::item;
+use super::place::Places;
+use crate::error::InputError;
+use crate::mesh::abaqus::Block;
+
+/// Parameters of `*TIE` that are something else than sides which hang together.
+const REFUSED: [&str; 3] = ["MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"];
+
+/// A tie of two surfaces, by name in capitals.
+struct Tie {
+    name: String,
+    slave: String,
+    master: String,
+    tolerance: Option<f64>,
+    adjust: bool,
+}
+
+/// All ties of a deck.
+#[derive(Default)]
+pub(super) struct Ties(Vec<Tie>);
+
+/// A tie in the words of the scene: its name, its sides, and what its table says beside them.
+pub(super) struct SceneTie {
+    pub(super) name: String,
+    pub(super) sides: [String; 2],
+    pub(super) tolerance: Option<f64>,
+    pub(super) adjust: bool,
+}
+
+impl Ties {
+    /// Reads a block.
+    pub(super) fn read(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
+        let source = places.source;
+        if let Some(key) = REFUSED.iter().find(|key| block.parameter(key).is_some()) {
+            let message = format!("*TIE with {key} isn't read; expected sides that hang together");
+            return Err(source.error(block.place, message));
+        }
+        let tolerance = block.parameter("POSITION TOLERANCE");
+        let tolerance = tolerance
+            .map(|value| source.real(block.place, value, "a distance"))
+            .transpose()?;
+        let adjust = block.parameter("ADJUST").unwrap_or("YES");
+        for data in &block.data {
+            let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
+            places.check_surface(data.place, &slave)?;
+            places.check_surface(data.place, &master)?;
+            let plain = format!("{slave} on {master}");
+            self.0.push(Tie {
+                name: block.parameter("NAME").map_or(plain, str::to_owned),
+                slave,
+                master,
+                tolerance: tolerance.filter(|&tolerance| tolerance > 0.0),
+                adjust: !adjust.eq_ignore_ascii_case("NO"),
+            });
+        }
+        Ok(())
+    }
+
+    /// The ties, with the groups that their surfaces make.
+    pub(super) fn in_scene(&self, groups: &mut Groups) -> Vec<SceneTie> {
+        let tie = |tie: &Tie| SceneTie {
+            name: tie.name.clone(),
+            sides: [&tie.slave, &tie.master].map(|side| groups.of_surface(side)),
+            tolerance: tie.tolerance,
+            adjust: tie.adjust,
+        };
+        self.0.iter().map(tie).collect()
+    }
+}
+
+impl SceneTie {
+    /// Writes the tie under a `name` that no other has.
+    pub(super) fn write(&self, name: &str, document: &mut Document) {
+        let [slave, master] = &self.sides;
+        document.table("[[tie]]");
+        document.key("name", quoted(name));
+        document.key("sides", format!("[{}, {}]", quoted(slave), quoted(master)));
+        if let Some(tolerance) = self.tolerance {
+            document.key("tolerance", format!("{tolerance:?}"));
+        }
+        if self.adjust {
+            document.key("adjust", "true");
+        }
+    }
+}
