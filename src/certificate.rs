@@ -22,6 +22,11 @@ const NO_LOAD: f64 = 1e-12;
 /// Moments relative to forces at the rim of the scene below which there are none.
 const SMALL_MOMENT: f64 = 1e-3;
 
+/// Bounds of friction relative to contact forces, and to the terms that forces are sums of, below which what friction does
+/// isn't known as well as these are.
+const SMALL_BOUND: f64 = 1e-3;
+const BOUND_OF_TERMS: f64 = 1e-6;
+
 /// Checks of the full discrete problem, all relative to the scale of what they check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certificate {
@@ -45,8 +50,8 @@ pub struct Certificate {
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
     /// The largest of three violations of the law of friction: tangential force beyond the friction cone, over the
-    /// largest contact force; slip of sticking points, over the largest displacement; slip times the misalignment of
-    /// slip and force, over the product of both scales.
+    /// largest bound of friction, or a thousandth of the largest contact force; slip of sticking points, over the largest
+    /// displacement; slip times the misalignment of slip and force, over the product of both scales.
     pub friction: f64,
     /// Slip of sticking points over the largest displacement, one of these three.
     #[serde(skip)]
@@ -141,6 +146,9 @@ pub fn certificate(
         external.moment_scale,
         SMALL_MOMENT * external.force_scale * external.reach,
     );
+    let of_friction = (most.bound.max(SMALL_BOUND * most.contact_force))
+        .max(BOUND_OF_TERMS * most.scale)
+        .min(most.contact_force);
     let drift = ratio(most.astray, most.displacement);
     Certificate {
         equilibrium: ratio(most.residual, most.scale),
@@ -151,9 +159,9 @@ pub fn certificate(
         tension: ratio(most.tension, force_scale),
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
         friction: [
-            ratio(most.beyond_bound, most.contact_force),
+            ratio(most.beyond_bound, of_friction),
             drift,
-            ratio(most.not_opposed, most.contact_force * most.displacement),
+            ratio(most.not_opposed, of_friction * most.displacement),
         ]
         .into_iter()
         .fold(0.0, larger),

@@ -176,6 +176,7 @@ impl Most {
             let (size, way, work) = (slipped.size(), slipped.way(), slipped.work());
             let pressure = point.normal.map_or(0.0, |n| forces[n]);
             most.contact_force = larger(most.contact_force, size);
+            most.bound = larger(most.bound, bound);
             most.beyond_bound = larger(most.beyond_bound, (size - bound).max(0.0));
             most.astray = larger(most.astray, astray);
             let missing = match point.bound.only_closed && pressure <= no_force {

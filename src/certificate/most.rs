@@ -23,6 +23,8 @@ pub struct Most {
     pub load: f64,
     /// Product of contact force and gap (N).
     pub complementarity: f64,
+    /// Bound of a tangential force (N/m).
+    pub bound: f64,
     /// Tangential force beyond its bound (N/m).
     pub beyond_bound: f64,
     /// Way of a point that sticks from where it does (m).
@@ -51,6 +53,7 @@ impl Most {
             external: larger(self.external, other.external),
             load: larger(self.load, other.load),
             complementarity: larger(self.complementarity, other.complementarity),
+            bound: larger(self.bound, other.bound),
             beyond_bound: larger(self.beyond_bound, other.beyond_bound),
             astray: larger(self.astray, other.astray),
             not_opposed: larger(self.not_opposed, other.not_opposed),
