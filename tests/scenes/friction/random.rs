@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 use crate::support::solver::{LIMIT, built};
 use crate::support::stress::draw_frictional;
 use crate::support::stress::space::draw_frictional_in_space;
-use crate::support::stress::trial::{Trial, Verdict};
+use crate::support::stress::trial::{Interface, Trial, Verdict};
 
 proptest! {
     #![proptest_config(ProptestConfig {
@@ -62,5 +62,28 @@ fn given_friction_that_is_round_off_of_what_deforms_is_solved_for() {
         assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
         let findings = trial.findings.unwrap();
         assert!(findings.backward_error < 1e-14, "{findings:?}");
+    }
+}
+
+/// Cohesion that is lost as contacts open leaves points at the verge of opening, which Newton's steps don't find and Lemke's path
+/// does.
+#[test]
+fn cohesion_that_is_lost_as_contacts_open_is_solved_for_in_space() {
+    for seed in [930_030, 961_070] {
+        let mut drawn = draw_frictional_in_space(seed, 4);
+        drawn.ranks = 2;
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
+        assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
+    }
+}
+
+/// Friction far below the forces of an interference fit holds to its own bound, between clusters, too.
+#[test]
+fn given_friction_below_an_interference_fit_keeps_to_its_bound_between_clusters() {
+    for seed in [961_004, 961_060] {
+        let mut drawn = draw_frictional_in_space(seed, 4);
+        drawn.ranks = 2;
+        let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(4));
+        assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
     }
 }

@@ -119,14 +119,13 @@ fn what_friction_holds_far_from_other_contacts_is_solved_as_directly() {
 /// In the middle of load steps, and where an active set leaves combinations of unknowns to neither of two clusters.
 #[test]
 fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
-    // The direct solver doesn't converge with the second one, either.
-    for (drawn, verdict) in [
-        (draw_frictional(685_154, 12), Verdict::Right),
-        (draw_frictional_in_space(910_050, 12), Verdict::NotConverged),
+    for drawn in [
+        draw_frictional(685_154, 12),
+        draw_frictional_in_space(910_050, 12),
     ] {
         let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
         let seed = drawn.seed;
-        assert_eq!(trial.verdict, verdict, "{seed}: {}", trial.reason);
+        assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
         let report = trial.report.unwrap();
         let words = "didn't converge";
         for said in ["warnings", "fallbacks", "interface_choice"] {
