@@ -264,11 +264,13 @@ class Model:
         self, on: Groups, point: Sequence[float], *, name: str | None = None, kind: str | None = None,
         directions: Sequence[Sequence[float]] | None = None, axis: dict[str, Sequence[float]] | None = None,
         force: Sequence[float] | None = None, moment: float | Sequence[float] | None = None,
-        x: float | None = None, y: float | None = None, z: float | None = None, rx: float | None = None, ry: float | None = None, rz: float | None = None,
+        x: float | None = None, y: float | None = None, z: float | None = None, rx: float | None = None,
+        ry: float | None = None, rz: float | None = None,
     ) -> None:
         """Couples a side, or points, to a reference point, "rigid" or "distributing": forces and moments act there, and
         displacements and rotations of it may be prescribed. A rigid one may tie nodes along some `directions` alone,
-        which are perpendicular to each other, or with an `axis` of a "point" and a "direction" radial, around and along it."""
+        which are perpendicular to each other, or with an `axis` of a "point" and a "direction" radial, around and along
+        it."""
         of_point = given(force=force, moment=moment, x=x, y=y, z=z, rx=rx, ry=ry, rz=rz)
         keys = given(kind=kind, directions=directions, axis=axis) | of_point
         entry = self._add("coupling", name=name or f"coupling of {joined(on)}", on=on, point=point, **keys)
