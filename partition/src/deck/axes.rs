@@ -123,7 +123,7 @@ fn unit(vector: Vector) -> Vector {
 }
 
 /// The coordinate axis that is the least along a direction.
-fn least(direction: Vector) -> Vector {
+pub(super) fn least(direction: Vector) -> Vector {
     let mut axis = [0.0; 3];
     let smallest = (0..3).min_by(|&i, &j| direction[i].abs().total_cmp(&direction[j].abs()));
     axis[smallest.unwrap_or_default()] = 1.0;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
 use super::table::{Origin, Table};
-use crate::element::geometry::length;
+use crate::element::geometry::unit;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Data, Of, Source};
 use crate::name;
@@ -203,11 +203,6 @@ impl BodyKind {
             Self::Centrifugal(point, axis) => Self::Centrifugal(point, unit(axis)?),
         })
     }
-}
-
-fn unit(direction: [f64; 3]) -> Option<[f64; 3]> {
-    let norm = length(direction);
-    (norm > 0.0).then(|| direction.map(|component| component / norm))
 }
 
 /// An item of a line of data, empty where there is none.

@@ -1,10 +1,11 @@
 //! `*MPC`: equations between nodes that CalculiX has words for, as small displacements have them.
 
+use super::axes::least;
 use super::equations::Equation;
 use super::loads::item;
 use super::place::Places;
 use super::reference::NodeAxis;
-use crate::element::geometry::{advance, cross, difference, dot, length};
+use crate::element::geometry::{advance, cross, difference, dot, length, unit};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, Of};
 use crate::name;
@@ -178,16 +179,8 @@ fn mean_rotation(at: impl Fn(u32) -> Vector, mut nodes: Vec<u32>) -> Result<Form
 
 /// Two unit vectors across a line and each other; `None` of no length.
 fn across(line: Vector) -> Option<[Vector; 2]> {
-    let thinnest = (0..3).min_by(|&a, &b| line[a].abs().total_cmp(&line[b].abs()))?;
-    let axis = std::array::from_fn(|k| f64::from(u8::from(k == thinnest)));
-    let first = cross(line, axis);
-    let second = cross(line, first);
-    let unit = |v: Vector| {
-        Some(length(v))
-            .filter(|&size| size > 0.0)
-            .map(|size| v.map(|c| c / size))
-    };
-    Some([unit(first)?, unit(second)?])
+    let first = unit(cross(line, least(line)))?;
+    Some([first, unit(cross(line, first))?])
 }
 
 /// The terms along the axes of the plane or of space.

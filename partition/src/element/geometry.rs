@@ -45,6 +45,12 @@ pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// a/|a|; `None` where a has no length.
+pub fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
+    let size = length(a);
+    (size > 0.0).then(|| a.map(|c| c / size))
+}
+
 impl ReferenceElement {
     /// The point x(ξ) = Σ N_i(ξ) x_i of an element with the nodes at `at`, in metres.
     pub fn position(&self, at: &[[f64; 3]], xi: [f64; 3]) -> [f64; 3] {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::condition::Names;
 use super::contact::contact_name;
 use super::number::{Constant, ConstantVector, OR_IN_SPACE, expected_components};
-use crate::element::geometry::{advance, cross, difference, dot, length};
+use crate::element::geometry::{advance, cross, difference, dot, unit};
 
 /// Components of the motion of a reference point, and their keys: translations, then rotations.
 pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
@@ -43,11 +43,6 @@ pub struct Axis {
 impl Axis {
     /// A vector of radial, hoop and axial components at a place; `None` on the axis, unless it lies along this.
     pub fn vector(&self, components: [f64; 3], x: [f64; 3]) -> Option<[f64; 3]> {
-        let unit = |v: [f64; 3]| {
-            Some(length(v))
-                .filter(|&size| size > 0.0)
-                .map(|size| v.map(|c| c / size))
-        };
         let along = unit(self.direction.value)?;
         let arm = difference(x, self.point.value);
         let arm = advance(arm, -dot(arm, along), along);

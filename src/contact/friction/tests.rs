@@ -1,3 +1,5 @@
+use std::f64::consts::PI;
+
 use faer::Mat;
 
 use super::points::{COULOMB, GIVEN, Points};
@@ -276,6 +278,34 @@ fn a_patch_has_the_solution_of_the_whole() {
                     (change - expected).abs() < 1e-10,
                     "{what}: {change} {expected}"
                 );
+            }
+        }
+    }
+}
+
+/// On a side of a polygon of n sides the force is up to π/n off the slip, which a stiffness of 2 and more turns into less than half
+/// of that; in the plane there is nothing between polygons and discs.
+#[test]
+fn lemke_s_path_ends_near_the_solution_the_nearer_the_more_sides_there_are() {
+    let make: [fn(usize, usize, ForceBound) -> Points; 2] = [Points::new, Points::in_space];
+    for (dim, make) in (2..).zip(make) {
+        for seed in 0..60 {
+            let points = make(1 + seed % 12, 29 * seed + 3, [COULOMB, GIVEN][seed % 2]);
+            let (solution, _) = points.solved(&format!("seed {seed}"), 1e-11);
+            let tangents = points.tangents.iter();
+            let forces = tangents.map(|tangent| solution.forces[tangent.limit].powi(2));
+            let force = forces.sum::<f64>().sqrt();
+            for (attempt, sides) in [(0, 16.0), (1, 96.0)] {
+                let (end, pivots) = points.with(|problem| problem.follow(attempt));
+                let jumps = end.map_or_else(Vec::new, |end| end.jumps);
+                assert_eq!(jumps.len(), solution.jumps.len(), "{seed}: {pivots} pivots");
+                let known = solution.jumps.iter().zip(&jumps);
+                let off = known.fold(0.0, |m: f64, (known, t)| m.max((known - t).abs()));
+                let apart = match dim {
+                    2 => 1e-7,
+                    _ => 0.5 * PI / sides * force + 1e-7,
+                };
+                assert!(off < apart, "{dim}, {seed}, {sides}: {off:e}");
             }
         }
     }
