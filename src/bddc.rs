@@ -23,6 +23,8 @@ mod transform;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use self::between::{Between, between};
 use self::classes::{Class, Classes};
 use self::closed::{GroupBetween, Ties};
@@ -50,7 +52,7 @@ pub struct Bddc {
     /// The contact groups between clusters.
     between: Vec<Between>,
     /// The contact groups of this rank, by number.
-    groups: BTreeMap<usize, GroupBetween>,
+    groups: OnGroups<GroupBetween>,
     ties: Ties,
     nodes: SharedNodes,
     classes: Classes,
@@ -79,14 +81,14 @@ impl Bddc {
         let dofs = comm.gathered(&owners, own).into_iter();
         let mut dofs: Vec<Vec<InterfaceDof>> = dofs.flatten().collect();
         comm.broadcast(&mut dofs);
-        let numbers: Vec<usize> = (0..plan.groups.len())
+        let numbers: Vec<GroupId> = (plan.groups.ids())
             .filter(|&g| plan.is_above_merge_roots(plan.groups[g].node))
             .collect();
         let own = numbers
             .iter()
             .filter_map(|g| Some((*g, context.groups.get(g)?)));
         let groups = own.map(|(g, group)| Ok((g, GroupBetween::new(context, g, group)?)));
-        let groups: BTreeMap<usize, GroupBetween> = comm.agree(groups.collect())?;
+        let groups: OnGroups<GroupBetween> = comm.agree(groups.collect())?;
         let group_owners: Vec<usize> = (numbers.iter())
             .map(|&g| plan.node_owners[plan.groups[g].node])
             .collect();
@@ -116,7 +118,7 @@ impl Bddc {
     fn fix_groups(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         let plan = context.plan;
         let mut fixed = Ok(());
@@ -162,7 +164,7 @@ impl Bddc {
         context: &Context<'_>,
         clusters: &BTreeMap<usize, ClusterSchur>,
         touched: &[bool],
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         (spring, renewed): (f64, bool),
     ) -> Result<(), Failure> {
         let Context {
@@ -286,7 +288,7 @@ impl Bddc {
     }
 
     /// Which conditions of contact group g of this rank, between clusters, are open.
-    pub fn open(&self, g: usize) -> Option<&Vec<bool>> {
+    pub fn open(&self, g: GroupId) -> Option<&Vec<bool>> {
         self.groups.get(&g).map(|group| &group.open)
     }
 

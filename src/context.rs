@@ -4,6 +4,7 @@ pub mod hierarchy;
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnGroups;
 use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
@@ -37,7 +38,7 @@ pub struct Context<'a> {
     /// The blocks of this rank, by their number.
     pub blocks: &'a BTreeMap<usize, Block>,
     /// The contact groups of this rank, by their number.
-    pub groups: &'a BTreeMap<usize, ContactGroup>,
+    pub groups: &'a OnGroups<ContactGroup>,
     /// Threads.
     pub par: Par,
     /// The receiver of progress reports.
@@ -66,7 +67,7 @@ pub struct Loads {
     /// On its blocks, by their number.
     pub blocks: BTreeMap<usize, BlockLoads>,
     /// On its contact groups, by their number.
-    pub groups: BTreeMap<usize, GroupLoads>,
+    pub groups: OnGroups<GroupLoads>,
 }
 
 impl Context<'_> {

@@ -14,6 +14,8 @@ use std::collections::BTreeSet;
 
 use contact_dd_partition::hierarchy::choice::{coarse_dofs, iteration_flops};
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::GroupId;
+use contact_dd_partition::numbered::Numbered;
 use contact_dd_partition::problem::Catalog;
 
 use self::assign::assign;
@@ -32,7 +34,7 @@ pub struct Plan {
     /// The hierarchy of the blocks.
     pub tree: Tree,
     /// The contact groups, by ascending nodes of the hierarchy.
-    pub groups: Vec<GroupPlan>,
+    pub groups: Numbered<GroupId, GroupPlan>,
     /// The owner of every node of the hierarchy.
     pub node_owners: Vec<usize>,
     /// The clusters, of which the interface problem is assembled.
@@ -187,16 +189,16 @@ impl Plan {
     }
 
     /// The owner of every group.
-    pub fn group_owners(&self) -> Vec<usize> {
+    pub fn group_owners(&self) -> Numbered<GroupId, usize> {
         let nodes = self.groups.iter().map(|group| group.node);
         nodes.map(|v| self.node_owners[v]).collect()
     }
 
     /// The group of node v of the hierarchy.
-    pub fn group_of(&self, v: usize) -> Option<usize> {
-        self.groups
-            .binary_search_by_key(&v, |group| group.node)
-            .ok()
+    pub fn group_of(&self, v: usize) -> Option<GroupId> {
+        let groups = self.groups.values();
+        let at = groups.binary_search_by_key(&v, |group| group.node);
+        at.ok().map(GroupId::new)
     }
 
     /// Whether node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact
@@ -234,7 +236,7 @@ impl Plan {
         conditions: &[usize],
     ) -> BTreeSet<u32> {
         let groups = &self.clusters[self.contact[p]].groups;
-        let of_group = |&g: &usize| {
+        let of_group = |&g: &GroupId| {
             let points = &self.tree.nodes[self.groups[g].node].points;
             let tangents = |&j: &u32| {
                 let tangents = catalog.points[j as usize].tangents(catalog.dim).len();
@@ -285,7 +287,7 @@ impl Plan {
     }
 
     /// All groups of clusters in contact, cluster by cluster.
-    pub fn groups_by_cluster(&self) -> Vec<usize> {
+    pub fn groups_by_cluster(&self) -> Vec<GroupId> {
         let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|c| c.groups.clone()).collect()
     }

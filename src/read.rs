@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use contact_dd_partition::error::InputError;
+use contact_dd_partition::id::{GroupId, OnGroups};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::consistency::Places;
 use contact_dd_partition::problem::copies::{Disagreement, NodeCopies, OwnNodes};
@@ -65,7 +66,7 @@ pub fn collect_groups(
     catalog: &Catalog,
     plan: &Plan,
     blocks: &BTreeMap<usize, Block>,
-) -> Result<BTreeMap<usize, ContactGroup>, Failure> {
+) -> Result<OnGroups<ContactGroup>, Failure> {
     let mut bounds = BoundingBox::EMPTY;
     blocks
         .values()
@@ -84,7 +85,7 @@ pub fn collect_groups(
             ContactNode::of(block, &catalog.materials, &nodes)
         })
     });
-    let group = |(g, nodes): (usize, Vec<ContactNode>)| -> Result<_, InputError> {
+    let group = |(g, nodes): (GroupId, Vec<ContactNode>)| -> Result<_, InputError> {
         let of_plan = &plan.groups[g];
         let numbers = of_plan.numbers.iter();
         let places = Places {

@@ -21,6 +21,7 @@ pub mod stresses;
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::padded;
+use contact_dd_partition::id::{GroupId, OnGroups};
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
@@ -46,14 +47,14 @@ pub struct BlockSolution {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slips {
     /// Tangential jumps since the bodies were unloaded (m).
-    pub jumps: BTreeMap<usize, Vec<f64>>,
+    pub jumps: OnGroups<Vec<f64>>,
     /// Dissipated work in the load step: force times slip (J, per metre of thickness).
-    pub work: BTreeMap<usize, Vec<f64>>,
+    pub work: OnGroups<Vec<f64>>,
 }
 
 impl Slips {
     /// Jumps and work of a contact group.
-    pub fn of(&self, g: usize) -> (&[f64], &[f64]) {
+    pub fn of(&self, g: GroupId) -> (&[f64], &[f64]) {
         let [jumps, work] = [&self.jumps, &self.work].map(|all| all.get(&g));
         (
             jumps.map_or(&[], Vec::as_slice),
@@ -62,7 +63,7 @@ impl Slips {
     }
 
     /// Counts the work of increments before this one, too.
-    pub fn add_work(&mut self, earlier: &BTreeMap<usize, Vec<f64>>) {
+    pub fn add_work(&mut self, earlier: &OnGroups<Vec<f64>>) {
         for (g, work) in &mut self.work {
             for (work, earlier) in work.iter_mut().zip(earlier.get(g).into_iter().flatten()) {
                 *work += earlier;
@@ -77,12 +78,12 @@ pub struct DiscreteSolution {
     /// On its blocks, by their number.
     pub blocks: BTreeMap<usize, BlockSolution>,
     /// On its contact groups, by their number.
-    pub groups: BTreeMap<usize, GroupSolution>,
+    pub groups: OnGroups<GroupSolution>,
 }
 
 impl DiscreteSolution {
     /// Slips and frictional work where the tangential jumps before the increment were `before` (m).
-    pub fn slips(&self, context: &Context<'_>, before: &BTreeMap<usize, Vec<f64>>) -> Slips {
+    pub fn slips(&self, context: &Context<'_>, before: &OnGroups<Vec<f64>>) -> Slips {
         let mut slips = Slips::default();
         for (&g, solution) in &self.groups {
             let first = context.groups[&g].points.len();
@@ -201,15 +202,15 @@ pub fn substitute_back(
     factors: Factors<'_>,
     step: &StepProblem<'_>,
     boundaries: BTreeMap<usize, Vec<f64>>,
-    conditions: BTreeMap<usize, Vec<(f64, bool)>>,
+    conditions: OnGroups<Vec<(f64, bool)>>,
 ) -> DiscreteSolution {
     // Groups of ties alone are those of no cluster in contact.
     let all = factors.context.groups.iter();
     let none = all.map(|(&g, group)| (g, vec![(0.0, false); group.conditions().count()]));
-    let mut known: BTreeMap<usize, Vec<(f64, bool)>> = none.collect();
+    let mut known: OnGroups<Vec<(f64, bool)>> = none.collect();
     known.extend(conditions);
     let groups = known.into_iter();
-    let of_group = |(g, conditions): (usize, Vec<(f64, bool)>)| {
+    let of_group = |(g, conditions): (GroupId, Vec<(f64, bool)>)| {
         let (forces, closed) = conditions.into_iter().unzip();
         let gaps = Vec::new();
         (
@@ -251,7 +252,7 @@ pub fn substitute_back(
 fn conditions(
     factors: Factors<'_>,
     pairs: &BTreeMap<usize, ContactPair>,
-) -> BTreeMap<usize, Vec<(f64, bool)>> {
+) -> OnGroups<Vec<(f64, bool)>> {
     let of_clusters = pairs.iter().map(|(&p, pair)| {
         let (forces, closed) = pair.conditions();
         (p, forces.into_iter().zip(closed).collect())

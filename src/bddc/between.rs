@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
+use contact_dd_partition::id::GroupId;
+
 use crate::schur::condensed::InterfaceDof;
 
 /// A contact group between clusters.
 #[derive(Debug)]
 pub struct Between {
     /// Its number.
-    pub number: usize,
+    pub number: GroupId,
     /// The rank that owns it.
     pub owner: usize,
     /// Its unknowns, ascending.
@@ -21,7 +23,7 @@ pub struct Between {
 /// and its unknowns.
 pub fn between(
     dofs: &[Vec<InterfaceDof>],
-    groups: impl Iterator<Item = ((usize, usize), Vec<InterfaceDof>)>,
+    groups: impl Iterator<Item = ((GroupId, usize), Vec<InterfaceDof>)>,
 ) -> Vec<Between> {
     let has_some = |c: usize, sought: &[InterfaceDof]| {
         (sought.iter()).any(|dof| dofs[c].binary_search(dof).is_ok())

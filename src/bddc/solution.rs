@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnGroups;
+
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
@@ -9,7 +11,6 @@ use crate::bddc::local::Vectors;
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
@@ -20,9 +21,9 @@ pub struct ClusterLoads<'a> {
     /// Loads on the boundaries of clusters, by node.
     pub clusters: &'a BTreeMap<usize, Vec<f64>>,
     /// The values of the closed jumps of every contact group, and of those of its ties behind all that are unknowns (m).
-    pub prescribed: &'a BTreeMap<usize, Vec<f64>>,
+    pub prescribed: &'a OnGroups<Vec<f64>>,
     /// The forces on the open ones of every group with friction (N/m); others have none.
-    pub forces: &'a BTreeMap<usize, Vec<f64>>,
+    pub forces: &'a OnGroups<Vec<f64>>,
 }
 
 /// Accuracy to which a solution is iterated.
@@ -195,11 +196,7 @@ impl Bddc {
 
     /// Loads on clusters of forces on the jumps of the contact groups of this rank, on all ranks: the first that has
     /// an unknown, and its place there. Collective.
-    fn loads_of(
-        &self,
-        comm: &Comm,
-        forces: &BTreeMap<usize, Vec<f64>>,
-    ) -> Vec<(usize, usize, f64)> {
+    fn loads_of(&self, comm: &Comm, forces: &OnGroups<Vec<f64>>) -> Vec<(usize, usize, f64)> {
         let mut loads = Vec::new();
         comm.gather(
             &self.group_owners(),
@@ -222,11 +219,7 @@ impl Bddc {
     }
 
     /// The constants of tied displacements beside the terms of others, on all ranks. Collective.
-    fn constants(
-        &self,
-        comm: &Comm,
-        values: &BTreeMap<usize, Vec<f64>>,
-    ) -> BTreeMap<InterfaceDof, f64> {
+    fn constants(&self, comm: &Comm, values: &OnGroups<Vec<f64>>) -> BTreeMap<InterfaceDof, f64> {
         let of_group = |i: usize| {
             let number = self.between[i].number;
             self.groups[&number].constants(&values[&number])
@@ -259,7 +252,7 @@ impl Bddc {
             (c, forces)
         });
         let forces: BTreeMap<usize, BTreeMap<InterfaceDof, f64>> = forces.collect();
-        let mut of_groups: BTreeMap<usize, [BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
+        let mut of_groups: OnGroups<[BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
         comm.route(
             ways.iter()
                 .map(|&(i, c)| (self.owners[c], self.between[i].owner)),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -12,7 +13,7 @@ impl Factors<'_> {
     /// Collective; groups by number, clusters by their place among those in contact.
     pub fn collect_conditions<T: Serialize + DeserializeOwned>(
         &self,
-        mut of_groups: BTreeMap<usize, Vec<T>>,
+        mut of_groups: OnGroups<Vec<T>>,
     ) -> BTreeMap<usize, Vec<T>> {
         let plan = self.context.plan;
         let places = self.places();
@@ -29,7 +30,7 @@ impl Factors<'_> {
     pub fn spread_conditions<T: Serialize + DeserializeOwned>(
         &self,
         mut of_clusters: BTreeMap<usize, Vec<T>>,
-    ) -> BTreeMap<usize, Vec<T>> {
+    ) -> OnGroups<Vec<T>> {
         let plan = self.context.plan;
         let places = self.places();
         let mut of_groups = BTreeMap::new();
@@ -50,7 +51,7 @@ impl Factors<'_> {
     }
 
     /// Cluster, by its place among those in contact, and group, cluster by cluster.
-    fn places(&self) -> Vec<(usize, usize)> {
+    fn places(&self) -> Vec<(usize, GroupId)> {
         let plan = self.context.plan;
         let contact = plan.contact.iter().enumerate();
         contact

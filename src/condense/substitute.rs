@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnGroups;
+
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::TiedJumps;
 use crate::context::Context;
@@ -61,7 +63,7 @@ impl Factors<'_> {
         &self,
         loads: &BTreeMap<usize, CondensedLoad>,
         mut boundaries: BTreeMap<usize, Vec<f64>>,
-    ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
+    ) -> (BTreeMap<usize, Vec<f64>>, OnGroups<Vec<f64>>) {
         let (context, condensed) = (&self.context, self.condensed);
         let (mut of_blocks, mut of_ties) = (BTreeMap::new(), BTreeMap::new());
         for v in self.nodes().into_iter().rev() {

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::GroupId;
+
 use crate::bytes::Reals;
 use crate::contact::jumps::{Jumps, NoUnknown};
 use crate::contact::limits::Limits;
@@ -53,7 +55,7 @@ pub enum Direction {
 /// A contact point that nothing can be replaced for.
 pub fn resting_limits(
     context: &Context<'_>,
-    g: usize,
+    g: GroupId,
     group: &ContactGroup,
 ) -> Result<Limits, Failure> {
     let jumps = jumps(context, g, group)?;
@@ -66,7 +68,7 @@ pub fn resting_limits(
 ///
 /// # Errors
 /// A contact point that nothing can be replaced for.
-pub fn jumps(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Jumps, Failure> {
+pub fn jumps(context: &Context<'_>, g: GroupId, group: &ContactGroup) -> Result<Jumps, Failure> {
     let node = &context.plan.tree.nodes[context.plan.groups[g].node];
     group.jumps(&node.eliminated).map_err(|NoUnknown(j)| {
         let number = group.conditions().nth(j).map_or(0, |condition| condition.point);

@@ -1,6 +1,7 @@
 //! Clusters: what the sweeps see as one block.
 
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::GroupId;
 
 /// Most contact conditions in a cluster of several groups: its law is dense.
 const MAX_CONDITIONS: usize = 2_000;
@@ -46,7 +47,7 @@ pub struct ClusterPlan {
     /// The rank that owns the node.
     pub owner: usize,
     /// Its groups, by their place among all of the plan, in the order in which they are merged.
-    pub groups: Vec<usize>,
+    pub groups: Vec<GroupId>,
     /// Number of conditions of its contact points, without those of ties.
     pub conditions: usize,
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
 use contact_dd_partition::problem::SubdomainNode;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -16,10 +17,10 @@ impl Plan {
         &self,
         comm: &Comm,
         say: impl Fn(usize, &[(SubdomainNode, u32)]) -> Vec<T>,
-    ) -> BTreeMap<usize, Vec<T>> {
+    ) -> OnGroups<Vec<T>> {
         let links = self.links();
         let owners = &self.node_owners;
-        let mut arrived: BTreeMap<usize, Vec<T>> = BTreeMap::new();
+        let mut arrived: OnGroups<Vec<T>> = BTreeMap::new();
         comm.route(
             links
                 .iter()
@@ -35,7 +36,7 @@ impl Plan {
     pub fn nodes_to_blocks<T: Clone + Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
-        said: &BTreeMap<usize, Vec<T>>,
+        said: &OnGroups<Vec<T>>,
     ) -> BTreeMap<usize, Vec<(u32, T)>> {
         let links = self.links();
         let owners = &self.node_owners;
@@ -72,7 +73,7 @@ impl Plan {
 
     fn links(&self) -> Vec<Link<'_>> {
         let mut links = Vec::new();
-        for (group, plan) in self.groups.iter().enumerate() {
+        for (group, plan) in self.groups.each() {
             let mut first = 0;
             for nodes in plan.by_subdomain() {
                 links.push(Link {
@@ -90,7 +91,7 @@ impl Plan {
 
 /// Some nodes that a group and a block have.
 struct Link<'a> {
-    group: usize,
+    group: GroupId,
     block: usize,
     /// The group's number of the first one.
     first: usize,

@@ -68,7 +68,7 @@ fn inner(v: usize) -> usize {
 #[test]
 fn contact_points_belong_where_all_that_have_their_nodes_come_together() {
     let plan = Plan::new(&catalog(), 3, Merging::All);
-    let [group] = &plan.groups[..] else {
+    let [group] = plan.groups.values() else {
         panic!("{:?}", plan.groups);
     };
     assert_eq!((group.node, group.nodes.len()), (inner(5), 4));

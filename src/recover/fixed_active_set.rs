@@ -3,6 +3,8 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use crate::bddc::solution::Accuracy;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::TiedJumps;
@@ -51,7 +53,7 @@ pub struct FixedActiveSet<'a> {
 }
 
 /// The fronts of the active set that was found last, and the limits of every contact group of this rank.
-pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a BTreeMap<usize, Limits>);
+pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a OnGroups<Limits>);
 
 /// Parts that the root alone holds.
 #[derive(Clone, Copy)]
@@ -66,8 +68,8 @@ pub struct FixedActiveSetRoot<'a> {
     pub moves: bool,
 }
 
-/// The conditions of contact groups, or the limits of clusters, by their number.
-pub type FixedStatuses = BTreeMap<usize, Vec<FixedStatus>>;
+/// The statuses of the conditions of every contact group of this rank.
+pub type FixedStatuses = OnGroups<Vec<FixedStatus>>;
 
 impl FixedActiveSetRoot<'_> {
     /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
@@ -83,7 +85,7 @@ pub struct Change {
     /// Change of the unknowns of every block.
     pub blocks: BTreeMap<usize, Vec<f64>>,
     /// Change of the forces of every contact group, 0 where open.
-    pub forces: BTreeMap<usize, Vec<f64>>,
+    pub forces: OnGroups<Vec<f64>>,
 }
 
 impl<'a> FixedActiveSet<'a> {
@@ -147,7 +149,7 @@ impl<'a> FixedActiveSet<'a> {
         &self,
         loads: BTreeMap<usize, Vec<f64>>,
         conditions: FixedStatuses,
-        forces: &BTreeMap<usize, Vec<f64>>,
+        forces: &OnGroups<Vec<f64>>,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
@@ -175,7 +177,7 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// No force at any condition of the contact groups of this rank.
-    pub fn no_forces(&self) -> BTreeMap<usize, Vec<f64>> {
+    pub fn no_forces(&self) -> OnGroups<Vec<f64>> {
         let groups = self.context.groups.iter();
         let none = groups.map(|(&g, group)| (g, vec![0.0; group.conditions().count()]));
         none.collect()
@@ -183,7 +185,7 @@ impl<'a> FixedActiveSet<'a> {
 
     /// Missing jumps of ties, where their conditions have these statuses.
     pub fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
-        let of_group = |(&g, tied): (&usize, &Vec<(usize, f64)>)| {
+        let of_group = |(&g, tied): (&GroupId, &Vec<(usize, f64)>)| {
             let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
             (g, tied.iter().map(lacks).collect())
         };
@@ -196,12 +198,12 @@ impl<'a> FixedActiveSet<'a> {
         (fronts, limits): ActiveSetOfStep<'_>,
         loads: BTreeMap<usize, Vec<f64>>,
         conditions: FixedStatuses,
-        forces: &BTreeMap<usize, Vec<f64>>,
+        forces: &OnGroups<Vec<f64>>,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         let tied = self.missing_of_ties(&conditions);
-        let (mut open, mut missing): (BTreeMap<usize, Vec<bool>>, OnJumps) = Default::default();
+        let (mut open, mut missing): (OnGroups<Vec<bool>>, OnJumps) = Default::default();
         let mut laws = Laws::new();
         for (g, of_group) in conditions {
             let fixed = limits[&g].fixed(&of_group);
@@ -245,8 +247,11 @@ impl<'a> FixedActiveSet<'a> {
         Change { blocks, forces }
     }
 
-    /// The limits of every cluster in contact of this rank.
-    fn limits(&self, conditions: FixedStatuses) -> FixedStatuses {
+    /// The statuses of the limits of every cluster in contact of this rank, for those of its conditions.
+    fn limits(
+        &self,
+        conditions: BTreeMap<usize, Vec<FixedStatus>>,
+    ) -> BTreeMap<usize, Vec<FixedStatus>> {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
             if let Some(pair) = self.step.pairs.get(&p) {
@@ -258,11 +263,7 @@ impl<'a> FixedActiveSet<'a> {
 }
 
 /// Puts the forces at the jumps of ties among those of all conditions, by contact group.
-pub fn put_tied(
-    forces: &mut BTreeMap<usize, Vec<f64>>,
-    of_jumps: &BTreeMap<usize, Vec<f64>>,
-    tied: &TiedJumps,
-) {
+pub fn put_tied(forces: &mut OnGroups<Vec<f64>>, of_jumps: &OnGroups<Vec<f64>>, tied: &TiedJumps) {
     for (g, of_jumps) in of_jumps {
         if let Some(forces) = forces.get_mut(g) {
             for (force, (condition, _)) in of_jumps.iter().zip(&tied[g]) {
@@ -278,7 +279,7 @@ fn follow(
     problem: &SlipProblem<'_>,
     tolerance: f64,
 ) -> Result<ActiveSetSolution, Failure> {
-    let at_rest = |(&g, prescribed): (&usize, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
+    let at_rest = |(&g, prescribed): (&GroupId, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
     let forces: OnJumps = problem.prescribed.iter().map(at_rest).collect();
     let tolerance = match problem.context.catalog.has_friction() {
         true => Accuracy::FULL.tolerance,

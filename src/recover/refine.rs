@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use crate::certificate::check::BlockCheck;
 use crate::certificate::most::Most;
 use crate::certificate::shared::at_shared_nodes;
@@ -286,7 +288,7 @@ pub fn correct_once(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution)
 /// springs at the motions' pins would bear it each at one node.
 fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let context = &fixed.context;
-    let prescribed: BTreeMap<usize, Vec<bool>> = (solution.groups.keys())
+    let prescribed: OnGroups<Vec<bool>> = (solution.groups.keys())
         .map(|&g| (g, prescribed(context, g)))
         .collect();
     let conditions: FixedStatuses = (solution.groups.iter_mut())
@@ -337,7 +339,7 @@ fn unbalanced(
 }
 
 /// Which conditions of contact group g have jumps that supports prescribe; in the plane friction doesn't ask.
-fn prescribed(context: &Context<'_>, g: usize) -> Vec<bool> {
+fn prescribed(context: &Context<'_>, g: GroupId) -> Vec<bool> {
     let group = &context.groups[&g];
     let of = match context.catalog.dim == 3 && !group.friction().is_empty() {
         true => jumps(context, g, group).map(|jumps| jumps.of),

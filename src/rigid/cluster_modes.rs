@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::GroupId;
 use faer::Mat;
 use nalgebra::DMatrix;
 
@@ -92,10 +93,10 @@ impl Scene {
     }
 
     /// The numbers of the conditions of these groups.
-    pub fn conditions_of(&self, groups: &[usize]) -> Vec<usize> {
-        let of_group = |&g: &usize| {
-            let first: usize = self.conditions[..g].iter().sum();
-            first..first + self.conditions[g]
+    pub fn conditions_of(&self, groups: &[GroupId]) -> Vec<usize> {
+        let of_group = |&g: &GroupId| {
+            let first: usize = self.conditions[..g.index()].iter().sum();
+            first..first + self.conditions[g.index()]
         };
         groups.iter().flat_map(of_group).collect()
     }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
+use contact_dd_partition::id::OnGroups;
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::{Parameter, ParameterKind};
 use serde::{Deserialize, Serialize};
@@ -105,7 +106,7 @@ impl Cases {
 pub struct Varied {
     catalog: Catalog,
     blocks: BTreeMap<usize, Block>,
-    groups: BTreeMap<usize, ContactGroup>,
+    groups: OnGroups<ContactGroup>,
 }
 
 impl Varied {

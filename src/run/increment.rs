@@ -3,6 +3,8 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnGroups;
+
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
 use crate::comm::ranks::RankSeconds;
@@ -55,7 +57,7 @@ pub struct Increment {
     /// The clusters in contact of this rank.
     pairs: BTreeMap<usize, ContactPair>,
     /// The statuses of the contact groups of this rank, where the tree solves for them.
-    statuses: BTreeMap<usize, Statuses>,
+    statuses: OnGroups<Statuses>,
     /// Outcome of the sweeps; on the root.
     pub outcome: Option<SweepOutcome>,
     /// Solution on the blocks of this rank.
@@ -279,8 +281,8 @@ impl Increments<'_> {
         &self,
         fronts: &RefCell<ActiveSetFronts>,
         step: &StepProblem<'_>,
-        limits: &BTreeMap<usize, Limits>,
-        before: &BTreeMap<usize, Statuses>,
+        limits: &OnGroups<Limits>,
+        before: &OnGroups<Statuses>,
     ) -> Result<Swept, Failure> {
         let (context, log, mut fronts) = (&self.context, self.log, fronts.borrow_mut());
         log.sweeps(true);
@@ -304,7 +306,7 @@ impl Increments<'_> {
         &'a self,
         step: &'a StepProblem<'a>,
         analysis: &'a RigidBodyAnalysis,
-        limits: &'a BTreeMap<usize, Limits>,
+        limits: &'a OnGroups<Limits>,
         outcome: Option<&SweepOutcome>,
     ) -> FixedActiveSet<'a> {
         let Operators {
@@ -365,7 +367,7 @@ impl Increments<'_> {
 }
 
 /// Boundaries of clusters, and forces and closed conditions of contact groups, as the tree has them.
-type InTree = (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<(f64, bool)>>);
+type InTree = (BTreeMap<usize, Vec<f64>>, OnGroups<Vec<(f64, bool)>>);
 
 /// The end of the sweeps, on this rank.
 #[derive(Default)]
@@ -373,7 +375,7 @@ struct Swept {
     /// Their outcome; on the root.
     outcome: Option<SweepOutcome>,
     /// The statuses of the contact groups, where the tree solved for them.
-    statuses: BTreeMap<usize, Statuses>,
+    statuses: OnGroups<Statuses>,
     in_tree: Option<InTree>,
 }
 

@@ -180,8 +180,8 @@ impl Finished {
         let mut kept = self.kept.take().unwrap_or_default();
         let groups = plan.group_owners();
         let pairs = comm.scattered(&plan.contact_owners(), |p| kept.pairs[p].clone());
-        let slips = comm.scattered(&groups, |g| Reals(take(&mut kept.slips[g])));
-        let statuses = comm.scattered(&groups, |g| take(&mut kept.statuses[g]));
+        let slips = comm.scattered(&groups, |g| Reals(take(&mut kept.slips[g.index()])));
+        let statuses = comm.scattered(&groups, |g| take(&mut kept.statuses[g.index()]));
         let statuses = statuses.into_iter();
         let energies = match context.catalog.has_friction() {
             true => comm.scattered(plan.owners(), |b| take(&mut kept.energies[b])),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use contact_dd_partition::id::OnGroups;
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
@@ -43,7 +44,7 @@ pub struct Parts {
     /// The owners of everything.
     pub plan: Plan,
     blocks: BTreeMap<usize, Block>,
-    groups: BTreeMap<usize, ContactGroup>,
+    groups: OnGroups<ContactGroup>,
     costs: Vec<CostEstimate>,
     available: f64,
     /// Why contact conditions are solved for as they are, in words.

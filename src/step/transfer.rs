@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{advance, dot, padded};
+use contact_dd_partition::id::{GroupId, OnGroups};
 use contact_dd_partition::problem::stage::Stage;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 use serde::{Deserialize, Serialize};
@@ -32,7 +33,7 @@ pub struct StageEnd<'a> {
     /// The displacement of every block of this rank, node by node (m).
     pub displacement: &'a BTreeMap<usize, Vec<f64>>,
     /// The tangential jumps of every contact group of this rank (m).
-    pub slips: &'a BTreeMap<usize, Vec<f64>>,
+    pub slips: &'a OnGroups<Vec<f64>>,
     /// The closing motions of bodies.
     pub closing_motions: &'a [Vec<f64>],
 }
@@ -74,7 +75,7 @@ impl StageTransfer {
     pub fn between_sets(
         context: &Context<'_>,
         stage: &Stage<'_>,
-        slips: &BTreeMap<usize, Vec<f64>>,
+        slips: &OnGroups<Vec<f64>>,
         outside: &BTreeMap<usize, [f64; 3]>,
         whole: &Catalog,
     ) -> Self {
@@ -97,7 +98,7 @@ impl StageTransfer {
         if self.since.is_empty() {
             return StepState::default();
         }
-        let of_group = |g: usize| {
+        let of_group = |g: GroupId| {
             let points = &context.plan.tree.nodes[context.plan.groups[g].node].points;
             let of_group = context.groups[&g].points.iter().zip(points);
             let slips =
@@ -169,7 +170,7 @@ fn slips_of_points(
     context: &Context<'_>,
     stage: &Stage<'_>,
     whole: &Catalog,
-    slips: &BTreeMap<usize, Vec<f64>>,
+    slips: &OnGroups<Vec<f64>>,
 ) -> BTreeMap<usize, Vec<f64>> {
     let &Context { comm, plan, .. } = context;
     let mut of_points = BTreeMap::new();

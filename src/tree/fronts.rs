@@ -4,6 +4,7 @@ mod elimination;
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
 use faer::Mat;
 
 use crate::bddc::Bddc;
@@ -48,7 +49,7 @@ pub struct ActiveSetFronts {
     pub(super) merge_roots: BTreeMap<usize, ClusterSchur>,
     replaced: BTreeMap<usize, Vec<Replaced>>,
     /// The dependent rows of every contact group of this rank.
-    rows: BTreeMap<usize, DependentConstraints>,
+    rows: OnGroups<DependentConstraints>,
     spring: f64,
     spare: Spare,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
@@ -114,7 +115,7 @@ impl ActiveSetFronts {
     }
 
     /// Closes those of the slipping `limits` of group g that don't follow from what isn't `open`.
-    pub(super) fn hold(&self, g: usize, limits: impl Iterator<Item = usize>, open: &mut [bool]) {
+    pub(super) fn hold(&self, g: GroupId, limits: impl Iterator<Item = usize>, open: &mut [bool]) {
         let rows = &self.rows[&g];
         for t in limits {
             let follows = !rows.is_empty()
@@ -136,7 +137,7 @@ impl ActiveSetFronts {
     pub fn fix(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         let is_known = self.fronts_known(context);
         self.make(context, open, is_known, false)
@@ -149,7 +150,7 @@ impl ActiveSetFronts {
     pub fn renew(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         match self.bddc.as_ref().is_some_and(Bddc::is_stale) {
             true => self.make(context, open, true, true),
@@ -165,7 +166,7 @@ impl ActiveSetFronts {
     pub fn make_better(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         if let Some(bddc) = self.bddc.as_mut().filter(|bddc| !bddc.is_stale()) {
             bddc.look_deeper();
@@ -176,7 +177,7 @@ impl ActiveSetFronts {
     fn make(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         is_known: bool,
         renewed: bool,
     ) -> Result<(), Failure> {
@@ -194,7 +195,7 @@ impl ActiveSetFronts {
     pub fn release(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<bool, Failure> {
         if self.spring == 0.0 {
             return Ok(false);
@@ -217,7 +218,7 @@ impl ActiveSetFronts {
     fn factorize(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         is_known: bool,
         renewed: bool,
     ) -> Result<(), Failure> {

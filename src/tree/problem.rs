@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use contact_dd_partition::id::OnGroups;
+
 use crate::contact::laws::ContactLaws;
 use crate::contact::limits::Limits;
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnGroups;
+
 use super::fronts::{ActiveSetFront, ActiveSetFronts};
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::context::hierarchy::{Direction, carry};
 use crate::error::Failure;
@@ -62,7 +63,7 @@ impl ActiveSetFronts {
     pub fn solve(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> Result<ActiveSetSolution, Failure> {

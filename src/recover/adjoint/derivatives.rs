@@ -1,5 +1,6 @@
 //! Derivatives of a quantity with respect to the parameters of a scene, from the solution of its transposed problem.
 
+use contact_dd_partition::id::GroupId;
 use contact_dd_partition::quantity::{Parameter, ParameterKind, QuantityKind};
 
 use super::functional::{Functional, MaterialForces};
@@ -107,7 +108,7 @@ impl Sensitivity<'_> {
     }
 
     /// The part of a contact group in a derivative: ν·dg − τ'·dφ.
-    fn of_group(&self, g: usize, parameter: &Parameter) -> f64 {
+    fn of_group(&self, g: GroupId, parameter: &Parameter) -> f64 {
         let (Some(group), Some(of_group)) = (
             self.solved.fixed.context.groups.get(&g),
             self.state.discrete.groups.get(&g),
@@ -235,7 +236,7 @@ impl Sensitivity<'_> {
         [off, size]
     }
 
-    fn reciprocity_of_group(&self, g: usize) -> [f64; 2] {
+    fn reciprocity_of_group(&self, g: GroupId) -> [f64; 2] {
         let fixed = self.solved.fixed;
         let (Some(of_group), Some(state), Some(loads)) = (
             self.solved.solution.discrete.groups.get(&g),

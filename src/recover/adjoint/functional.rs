@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{cross, difference, dot as along};
+use contact_dd_partition::id::{GroupId, OnGroups};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::{Quantity, QuantityKind};
 
@@ -91,9 +92,9 @@ pub struct Functional {
     /// ∂q/∂ρ of every support of the blocks that it depends on.
     pub of_supports: BTreeMap<usize, Vec<f64>>,
     /// ∂q/∂λ of every condition of the contact groups that it depends on.
-    pub of_forces: BTreeMap<usize, Vec<f64>>,
+    pub of_forces: OnGroups<Vec<f64>>,
     /// ∂q/∂g of every condition of the contact groups that it depends on.
-    pub of_gaps: BTreeMap<usize, Vec<f64>>,
+    pub of_gaps: OnGroups<Vec<f64>>,
 }
 
 impl Functional {
@@ -228,11 +229,11 @@ impl Functional {
     fn find_largest(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let contact = quantity.of[0];
-        let pressure = |g: usize, (j, point): (usize, &ContactPoint<u32>)| {
+        let pressure = |g: GroupId, (j, point): (usize, &ContactPoint<u32>)| {
             let force = solved.solution.discrete.groups[&g].forces[j];
             (force / point.area, j, point.tag())
         };
-        let mut largest: Option<(f64, usize, usize, i64)> = None;
+        let mut largest: Option<(f64, GroupId, usize, i64)> = None;
         context.comm.gather(
             &context.plan.group_owners(),
             |g| {
@@ -327,7 +328,7 @@ impl Context<'_> {
     }
 
     /// The sum over all contact groups, in their order; on the root. Collective.
-    pub(super) fn sum_of_groups(&self, of_group: impl FnMut(usize) -> f64) -> f64 {
+    pub(super) fn sum_of_groups(&self, of_group: impl FnMut(GroupId) -> f64) -> f64 {
         let mut sum = 0.0;
         (self.comm).gather(&self.plan.group_owners(), of_group, |_, part: f64| {
             sum += part

@@ -8,6 +8,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::padded;
+use contact_dd_partition::id::OnGroups;
 use contact_dd_partition::model::Support;
 
 use super::functional::Functional;
@@ -36,7 +37,7 @@ const ENOUGH: f64 = 1e-9;
 pub struct TransposedProblem<'a> {
     pub(super) solved: Solved<'a>,
     /// The points that slip.
-    pub slipping: &'a BTreeMap<usize, SlippingPoints>,
+    pub slipping: &'a OnGroups<SlippingPoints>,
     /// The directions in which slips were looked into.
     pub(super) directions: &'a RefCell<Vec<Direction>>,
     /// The nodes of the hierarchy that have nodes of contact points, with all above them.
@@ -60,10 +61,7 @@ impl<'a> TransposedProblem<'a> {
     pub fn new(
         solved: Solved<'a>,
         functional: &Functional,
-        (slipping, directions): (
-            &'a BTreeMap<usize, SlippingPoints>,
-            &'a RefCell<Vec<Direction>>,
-        ),
+        (slipping, directions): (&'a OnGroups<SlippingPoints>, &'a RefCell<Vec<Direction>>),
     ) -> Self {
         let context = &solved.fixed.context;
         let mut loads = Loads::default();

@@ -1,7 +1,6 @@
 //! The elimination of the fronts that a change of the active set touches, children before parents.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{GroupId, OnGroups};
 use faer::Mat;
 
 use super::{ActiveSetFront, ActiveSetFronts};
@@ -39,11 +38,11 @@ impl ActiveSetFronts {
     pub(super) fn touched(
         &self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         is_known: bool,
     ) -> Vec<bool> {
         let Context { comm, plan, .. } = *context;
-        let changed = |g: usize| {
+        let changed = |g: GroupId| {
             let front = self
                 .fronts
                 .get(&plan.groups[g].node)
@@ -65,7 +64,7 @@ impl ActiveSetFronts {
     pub(super) fn eliminate(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         touched: &[bool],
     ) -> Result<(), Failure> {
         let mut result = Ok(());
@@ -94,7 +93,7 @@ impl ActiveSetFronts {
         &mut self,
         context: &Context<'_>,
         v: usize,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<Option<Condensed>, Failure> {
         let Context { plan, par, .. } = *context;
         let node = &plan.tree.nodes[v];
@@ -104,7 +103,7 @@ impl ActiveSetFronts {
         };
         let none = Vec::new();
         let replaced = self.replaced.get(&v).unwrap_or(&none);
-        let of_group = |g: usize| FrontJumps::new(&self.rows[&g], &open[&g]);
+        let of_group = |g: GroupId| FrontJumps::new(&self.rows[&g], &open[&g]);
         let jumps = plan.group_of(v).map(of_group).unwrap_or_default();
         let own = OwnJumps {
             replaced: &jumps.replaced(replaced),
