@@ -23,7 +23,8 @@ mod transform;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 
 use self::between::{Between, between};
 use self::classes::{Class, Classes};
@@ -73,7 +74,7 @@ impl Bddc {
     /// A contact point that nothing can be replaced for.
     pub fn new(
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
+        clusters: &OnTreeNodes<ClusterSchur>,
     ) -> Result<Self, Failure> {
         let Context { comm, plan, .. } = *context;
         let owners = plan.owners_of(&plan.merge_roots);
@@ -162,8 +163,8 @@ impl Bddc {
     pub fn fix(
         &mut self,
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
-        touched: &[bool],
+        clusters: &OnTreeNodes<ClusterSchur>,
+        touched: &Numbered<TreeNodeId, bool>,
         open: &OnGroups<Vec<bool>>,
         (spring, renewed): (f64, bool),
     ) -> Result<(), Failure> {
@@ -232,7 +233,7 @@ impl Bddc {
     fn classify(
         &mut self,
         context: &Context<'_>,
-        touched: &[bool],
+        touched: &Numbered<TreeNodeId, bool>,
         renewed: bool,
     ) -> (Classes, Vec<bool>) {
         let Context { comm, plan, .. } = *context;

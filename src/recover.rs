@@ -21,7 +21,7 @@ pub mod stresses;
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::padded;
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnTreeNodes};
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
@@ -76,7 +76,7 @@ impl Slips {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscreteSolution {
     /// On its blocks, by their number.
-    pub blocks: BTreeMap<usize, BlockSolution>,
+    pub blocks: OnBlocks<BlockSolution>,
     /// On its contact groups, by their number.
     pub groups: OnGroups<GroupSolution>,
 }
@@ -123,7 +123,7 @@ impl DiscreteSolution {
     }
 
     /// Adds changes of the unknowns of blocks of this rank to their displacements.
-    pub fn add(&mut self, condensed: &CondensedBlocks, changes: BTreeMap<usize, Vec<f64>>) {
+    pub fn add(&mut self, condensed: &CondensedBlocks, changes: OnBlocks<Vec<f64>>) {
         for (b, x) in changes {
             let block = condensed.blocks.get(&b);
             if let (Some(of_block), Some(block)) = (self.blocks.get_mut(&b), block) {
@@ -164,8 +164,8 @@ impl DiscreteSolution {
 
 /// The displacement of every block, node by node.
 pub fn displacements(
-    solutions: &BTreeMap<usize, BlockSolution>,
-) -> impl Iterator<Item = (usize, &[f64])> {
+    solutions: &OnBlocks<BlockSolution>,
+) -> impl Iterator<Item = (BlockId, &[f64])> {
     solutions.iter().map(|(&b, solution)| (b, &solution.u[..]))
 }
 
@@ -177,7 +177,7 @@ pub fn recover(
     root: Option<(&[f64], &[Vec<u32>])>,
 ) -> DiscreteSolution {
     let Context { comm, plan, .. } = factors.context;
-    let mut boundaries: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    let mut boundaries: OnTreeNodes<Vec<f64>> = BTreeMap::new();
     comm.scatter(
         &plan.cluster_owners(),
         |c| {
@@ -201,7 +201,7 @@ pub fn recover(
 pub fn substitute_back(
     factors: Factors<'_>,
     step: &StepProblem<'_>,
-    boundaries: BTreeMap<usize, Vec<f64>>,
+    boundaries: OnTreeNodes<Vec<f64>>,
     conditions: OnGroups<Vec<(f64, bool)>>,
 ) -> DiscreteSolution {
     // Groups of ties alone are those of no cluster in contact.
@@ -223,7 +223,7 @@ pub fn substitute_back(
         )
     };
     let (blocks, of_ties) = factors.recover(&step.condensed, boundaries);
-    let of_block = |(b, x): (usize, Vec<f64>)| {
+    let of_block = |(b, x): (BlockId, Vec<f64>)| {
         let dofs = &factors.condensed.blocks.get(&b)?.dofs;
         let u = step.prescribed.get(&b)?.displacement(dofs, &x);
         let pushes = Vec::new();

@@ -7,6 +7,8 @@ pub mod working_set;
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{OnBlocks, OnTreeNodes};
+
 use crate::certificate::scales::Scales;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
 use crate::condense::clusters::make_load_exact;
@@ -34,11 +36,11 @@ pub struct StepProblem<'a> {
     /// The loads on its blocks and contact groups.
     pub loads: Loads,
     /// Displacements that supports prescribe in them.
-    pub prescribed: BTreeMap<usize, Prescribed>,
+    pub prescribed: OnBlocks<Prescribed>,
     /// The jumps of ties.
     pub tied: TiedJumps,
     /// The condensed load of every node of the hierarchy.
-    pub condensed: BTreeMap<usize, CondensedLoad>,
+    pub condensed: OnTreeNodes<CondensedLoad>,
     /// ϑ: the clusters in contact, by their place among those.
     pub pairs: BTreeMap<usize, ContactPair>,
     /// S_0 U + S_CON(U) = F; on the root.
@@ -95,9 +97,9 @@ impl<'a> Loading<'a> {
     fn condense(
         &self,
         loads: &Loads,
-        prescribed: &BTreeMap<usize, Prescribed>,
+        prescribed: &OnBlocks<Prescribed>,
         tied: &TiedJumps,
-    ) -> (BTreeMap<usize, CondensedLoad>, f64) {
+    ) -> (OnTreeNodes<CondensedLoad>, f64) {
         let Context {
             comm,
             catalog,
@@ -116,8 +118,7 @@ impl<'a> Loading<'a> {
             condensed: self.factors,
             only: None,
         };
-        let of_blocks: BTreeMap<usize, Vec<f64>> =
-            loads.blocks.iter().filter_map(of_block).collect();
+        let of_blocks: OnBlocks<Vec<f64>> = loads.blocks.iter().filter_map(of_block).collect();
         let own = of_blocks.values().map(|load| largest(load));
         let largest_loads = comm.collect(&own.fold(0.0, f64::max)).into_iter();
         let largest_load = largest_loads.fold(0.0, f64::max);
@@ -128,7 +129,7 @@ impl<'a> Loading<'a> {
     fn pairs(
         &self,
         mut limits: BTreeMap<usize, Limits>,
-        loads: &BTreeMap<usize, CondensedLoad>,
+        loads: &OnTreeNodes<CondensedLoad>,
         mut before: StepState,
     ) -> BTreeMap<usize, ContactPair> {
         let plan = self.context.plan;
@@ -155,7 +156,7 @@ impl<'a> Loading<'a> {
     fn assemble(
         &self,
         pairs: &BTreeMap<usize, ContactPair>,
-        loads: &BTreeMap<usize, CondensedLoad>,
+        loads: &OnTreeNodes<CondensedLoad>,
         elsewhere: f64,
     ) -> Option<InterfaceProblem<'a>> {
         let Context { comm, plan, .. } = self.context;

@@ -53,8 +53,20 @@ macro_rules! ids {
 }
 
 ids! {
+    /// A block: a subdomain, by its place in the problem file.
+    BlockId, OnBlocks;
+    /// A node of the [hierarchy](crate::hierarchy::tree::Tree): the blocks by their number, then the inner nodes, children
+    /// before parents.
+    TreeNodeId, OnTreeNodes;
     /// A contact group: the contact points of one node of the hierarchy. By ascending nodes, of those that have some.
     GroupId, OnGroups;
+}
+
+impl From<BlockId> for TreeNodeId {
+    /// The leaf of the hierarchy that the block is.
+    fn from(block: BlockId) -> Self {
+        Self(block.0)
+    }
 }
 
 #[cfg(test)]

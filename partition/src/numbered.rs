@@ -3,8 +3,11 @@
 use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
+use serde::{Deserialize, Serialize};
+
 /// A value for each of the numbers 0, 1, … of a sort `I`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Numbered<I, T> {
     values: Vec<T>,
     of: PhantomData<I>,
@@ -69,14 +72,19 @@ impl<I, T> Numbered<I, T> {
         self.values.len()
     }
 
-    /// The next number's value.
-    pub fn push(&mut self, value: T) {
-        self.values.push(value);
+    /// The same value for each of these numbers.
+    pub fn like<U: Clone>(&self, value: U) -> Numbered<I, U> {
+        vec![value; self.len()].into()
     }
 
     /// The values alone, in the order of the numbers.
     pub fn values(&self) -> &[T] {
         &self.values
+    }
+
+    /// The values alone, in the order of the numbers, to be changed.
+    pub fn iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
+        self.values.iter_mut()
     }
 
     /// The values alone, in the order of the numbers.
@@ -86,6 +94,12 @@ impl<I, T> Numbered<I, T> {
 }
 
 impl<I: From<usize>, T> Numbered<I, T> {
+    /// Gives the next number a value, and returns it.
+    pub fn push(&mut self, value: T) -> I {
+        self.values.push(value);
+        I::from(self.values.len() - 1)
+    }
+
     /// All numbers, ascending.
     pub fn ids(
         &self,

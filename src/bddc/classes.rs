@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::disjoint_sets::DisjointSets;
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::TreeNodeId;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
@@ -92,7 +93,7 @@ impl Classes {
     }
 
     /// The lowest node above all clusters of each class, where clusters are the `nodes` of a tree.
-    pub fn homes(&self, tree: &Tree, nodes: &[usize]) -> Vec<usize> {
+    pub fn homes(&self, tree: &Tree, nodes: &[TreeNodeId]) -> Vec<TreeNodeId> {
         let home = |class: &Class| {
             let first = nodes[class.clusters[0]];
             let clusters = class.clusters.iter().map(|&c| nodes[c]);

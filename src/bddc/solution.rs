@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::OnGroups;
+use contact_dd_partition::id::{OnGroups, OnTreeNodes};
 
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
@@ -19,7 +19,7 @@ use crate::schur::condensed::InterfaceDof;
 #[derive(Clone, Copy, Debug)]
 pub struct ClusterLoads<'a> {
     /// Loads on the boundaries of clusters, by node.
-    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    pub clusters: &'a OnTreeNodes<Vec<f64>>,
     /// The values of the closed jumps of every contact group, and of those of its ties behind all that are unknowns (m).
     pub prescribed: &'a OnGroups<Vec<f64>>,
     /// The forces on the open ones of every group with friction (N/m); others have none.
@@ -32,7 +32,7 @@ pub struct Accuracy<'a> {
     /// Bound of the error in the energy norm, relative to that of the solution, about.
     pub tolerance: f64,
     /// The unknowns of every cluster, by its node, in a solution that isn't far.
-    pub start: Option<&'a BTreeMap<usize, Vec<f64>>>,
+    pub start: Option<&'a OnTreeNodes<Vec<f64>>>,
 }
 
 impl Accuracy<'_> {
@@ -47,7 +47,7 @@ impl Accuracy<'_> {
 #[derive(Debug, Default)]
 pub struct BddcSolution {
     /// The unknowns of every cluster, by its node.
-    pub clusters: BTreeMap<usize, Vec<f64>>,
+    pub clusters: OnTreeNodes<Vec<f64>>,
     /// The jumps and forces of every contact group between clusters; no force where open.
     pub groups: OnGroups<Iterate>,
     /// The forces at the jumps of their ties.
@@ -63,7 +63,7 @@ impl Bddc {
     pub fn solve(
         &self,
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
+        clusters: &OnTreeNodes<ClusterSchur>,
         loads: ClusterLoads<'_>,
         accuracy: Accuracy,
     ) -> BddcSolution {
@@ -131,7 +131,7 @@ impl Bddc {
     fn iterate(
         &self,
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
+        clusters: &OnTreeNodes<ClusterSchur>,
         b: Vectors,
         accuracy: Accuracy,
     ) -> (Vectors, usize, bool) {
@@ -155,7 +155,7 @@ impl Bddc {
     }
 
     /// The shared unknowns of clusters whose unknowns, by node, are `known`. Collective.
-    fn start(&self, comm: &Comm, known: &BTreeMap<usize, Vec<f64>>, plan: &Plan) -> Vectors {
+    fn start(&self, comm: &Comm, known: &OnTreeNodes<Vec<f64>>, plan: &Plan) -> Vectors {
         let classes = &self.classes.list;
         let ends: Vec<(usize, usize)> = (classes.iter().enumerate())
             .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))

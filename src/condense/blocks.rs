@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use contact_dd_partition::id::{OnBlocks, OnTreeNodes};
+
 use crate::comm::clock::Times;
 use crate::contact::limits::Limits;
 use crate::fem::assembly::Spring;
@@ -37,9 +39,9 @@ pub struct ContactCluster {
 #[derive(Debug, Default)]
 pub struct CondensedBlocks {
     /// Blocks, by their number.
-    pub blocks: BTreeMap<usize, CondensedBlock>,
+    pub blocks: OnBlocks<CondensedBlock>,
     /// The merge at every inner node of the hierarchy.
-    pub merges: BTreeMap<usize, Merge>,
+    pub merges: OnTreeNodes<Merge>,
     /// T: the clusters without contact, by their place among all.
     pub linear: BTreeMap<usize, Condensed>,
     /// ϑ: the clusters in contact, by their place among those.

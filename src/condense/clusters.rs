@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use contact_dd_partition::id::OnTreeNodes;
 use faer::Mat;
 
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
@@ -17,7 +18,7 @@ pub fn take_clusters(
     plan: &Plan,
     modes: &BTreeMap<usize, RigidModes>,
     mut limits: BTreeMap<usize, Limits>,
-    mut merged: BTreeMap<usize, Condensed>,
+    mut merged: OnTreeNodes<Condensed>,
     condensed: &mut CondensedBlocks,
 ) {
     for (c, cluster) in plan.clusters.iter().enumerate() {

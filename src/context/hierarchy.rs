@@ -1,8 +1,6 @@
 //! Messages along the hierarchy, and the jumps of the contact groups at its nodes.
 
-use std::collections::BTreeMap;
-
-use contact_dd_partition::id::GroupId;
+use contact_dd_partition::id::{GroupId, OnTreeNodes, TreeNodeId};
 
 use crate::bytes::Reals;
 use crate::contact::jumps::{Jumps, NoUnknown};
@@ -15,10 +13,10 @@ use crate::fem::contact_group::ContactGroup;
 /// Collective.
 pub fn carry(
     context: &Context<'_>,
-    v: usize,
-    parent: Option<usize>,
+    v: TreeNodeId,
+    parent: Option<TreeNodeId>,
     mut vector: Option<Vec<f64>>,
-    into: &mut BTreeMap<usize, Vec<f64>>,
+    into: &mut OnTreeNodes<Vec<f64>>,
     direction: Direction,
 ) {
     let Context { comm, plan, .. } = *context;

@@ -3,7 +3,8 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 
 use crate::bddc::solution::Accuracy;
 use crate::condense::blocks::CondensedBlocks;
@@ -49,7 +50,7 @@ pub struct FixedActiveSet<'a> {
     /// The fronts above all contact, where they are eliminated for every active set anew.
     pub fronts: Option<ActiveSetOfStep<'a>>,
     /// The nodes of the hierarchy on which loads act and of which solutions are wanted, as [`Factors`] have them.
-    pub only: Option<&'a [bool]>,
+    pub only: Option<&'a Numbered<TreeNodeId, bool>>,
 }
 
 /// The fronts of the active set that was found last, and the limits of every contact group of this rank.
@@ -83,7 +84,7 @@ impl FixedActiveSetRoot<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct Change {
     /// Change of the unknowns of every block.
-    pub blocks: BTreeMap<usize, Vec<f64>>,
+    pub blocks: OnBlocks<Vec<f64>>,
     /// Change of the forces of every contact group, 0 where open.
     pub forces: OnGroups<Vec<f64>>,
 }
@@ -132,7 +133,7 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// Balance of forces at the nodes of block b of this rank; `None` for another rank's.
-    pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
+    pub fn balance(&self, b: BlockId, solution: &BlockSolution) -> Option<Balance> {
         Some(Balance::new(
             self.context.blocks.get(&b)?,
             self.step.loads.blocks.get(&b)?,
@@ -147,7 +148,7 @@ impl<'a> FixedActiveSet<'a> {
     /// presses, in their directions; an iterative solver goes as far as the `tolerance`. Collective.
     pub fn solve(
         &self,
-        loads: BTreeMap<usize, Vec<f64>>,
+        loads: OnBlocks<Vec<f64>>,
         conditions: FixedStatuses,
         forces: &OnGroups<Vec<f64>>,
         tolerance: f64,
@@ -196,7 +197,7 @@ impl<'a> FixedActiveSet<'a> {
     fn solve_by_fronts(
         &self,
         (fronts, limits): ActiveSetOfStep<'_>,
-        loads: BTreeMap<usize, Vec<f64>>,
+        loads: OnBlocks<Vec<f64>>,
         conditions: FixedStatuses,
         forces: &OnGroups<Vec<f64>>,
         tolerance: f64,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnTreeNodes;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -33,13 +34,13 @@ impl FixedActiveSet<'_> {
     pub fn solve_interface<S: Clone + Serialize + DeserializeOwned>(
         &self,
         limits: &BTreeMap<usize, Vec<S>>,
-        condensed: &BTreeMap<usize, CondensedLoad>,
+        condensed: &OnTreeNodes<CondensedLoad>,
         solve: impl FnOnce(
             &CoupledContact<'_>,
             InterfaceLoad<'_>,
             &[Vec<S>],
         ) -> (Vec<f64>, Vec<PairChange>),
-    ) -> (BTreeMap<usize, PairChange>, BTreeMap<usize, Vec<f64>>) {
+    ) -> (BTreeMap<usize, PairChange>, OnTreeNodes<Vec<f64>>) {
         let plan = self.context.plan;
         let owners = plan.cluster_owners();
         let boundary = |c: usize| {

@@ -12,13 +12,15 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnBlocks;
+
 use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::coupled::{CoupledContact, PairChange};
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses, put_tied};
 use crate::recover::{DiscreteSolution, GroupSolution};
 
 /// Numbers on all unknowns of every block of this rank.
-type OnUnknowns = BTreeMap<usize, Vec<f64>>;
+type OnUnknowns = OnBlocks<Vec<f64>>;
 
 impl FixedActiveSet<'_> {
     /// The solution whose contact laws are solved for anew from `before`, under these `loads` that it leaves on the unknowns of

@@ -203,7 +203,7 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     let mut largest: f64 = 0.0;
     comm.gather(
-        plan.owners(),
+        &plan.owners(),
         |b| largest_entry(&solution.blocks[&b].u),
         |_, of_block| largest = largest.max(of_block),
     );

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::{dot, length};
+use contact_dd_partition::id::{BlockId, OnBlocks};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidMotions;
@@ -169,14 +170,14 @@ fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
 /// The displacement of every block, node by node: that of its solution and the bodies' closing motions.
 pub fn with_closing_motions<'a>(
     context: &Context<'_>,
-    solutions: impl Iterator<Item = (usize, &'a [f64])>,
+    solutions: impl Iterator<Item = (BlockId, &'a [f64])>,
     analysis: &RigidBodyAnalysis,
-) -> BTreeMap<usize, Vec<f64>> {
+) -> OnBlocks<Vec<f64>> {
     let (dim, stays) = (
         context.catalog.dim,
         analysis.longest_closing_motion() == 0.0,
     );
-    let of_block = |(b, u): (usize, &[f64])| {
+    let of_block = |(b, u): (BlockId, &[f64])| {
         let block = context.blocks.get(&b)?;
         let mut u = u.to_vec();
         if stays {

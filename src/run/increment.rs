@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::OnGroups;
+use contact_dd_partition::id::{OnBlocks, OnGroups, OnTreeNodes};
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
@@ -65,7 +65,7 @@ pub struct Increment {
     /// Slips of the tangential conditions.
     pub slips: Slips,
     /// Data for the balance of energy of the next increment.
-    energies: BTreeMap<usize, BlockEnergy>,
+    energies: OnBlocks<BlockEnergy>,
     /// The balance of this one, and of those before it in the load step; on the root.
     pub energy: EnergyBalance,
     /// The scales of this one and those before, as far as they converged; on the root.
@@ -367,7 +367,7 @@ impl Increments<'_> {
 }
 
 /// Boundaries of clusters, and forces and closed conditions of contact groups, as the tree has them.
-type InTree = (BTreeMap<usize, Vec<f64>>, OnGroups<Vec<(f64, bool)>>);
+type InTree = (OnTreeNodes<Vec<f64>>, OnGroups<Vec<(f64, bool)>>);
 
 /// The end of the sweeps, on this rank.
 #[derive(Default)]

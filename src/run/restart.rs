@@ -184,7 +184,7 @@ impl Finished {
         let statuses = comm.scattered(&groups, |g| take(&mut kept.statuses[g.index()]));
         let statuses = statuses.into_iter();
         let energies = match context.catalog.has_friction() {
-            true => comm.scattered(plan.owners(), |b| take(&mut kept.energies[b])),
+            true => comm.scattered(&plan.owners(), |b| take(&mut kept.energies[b.index()])),
             false => BTreeMap::new(),
         };
         StepState {
@@ -239,7 +239,7 @@ pub fn keep(
     let slips = comm.gathered(&groups, |g| Reals(state.slips[&g].clone()));
     let statuses = comm.gathered(&groups, |g| state.statuses.get(&g).cloned());
     let energies = match context.catalog.has_friction() {
-        true => comm.gathered(plan.owners(), |b| state.energies[&b].clone()),
+        true => comm.gathered(&plan.owners(), |b| state.energies[&b].clone()),
         false => Vec::new(),
     };
     let write = |result: &mut ResultFile| -> Result<(), Failure> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use contact_dd_partition::destination::unfinished;
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
 
 use crate::bytes::Reals;
 use crate::certificate::energy::BlockEnergy;
@@ -34,7 +34,7 @@ pub struct StepState {
     /// were unloaded (m).
     pub slips: OnGroups<Vec<f64>>,
     /// Data of the blocks of this rank for the balance of energy, where there is friction.
-    pub energies: BTreeMap<usize, BlockEnergy>,
+    pub energies: OnBlocks<BlockEnergy>,
     /// The scales of the load steps that converged so far; on the root.
     pub scales: Scales,
 }
@@ -46,7 +46,7 @@ impl StepState {
     pub fn after(
         (pairs, statuses): (BTreeMap<usize, ContactPair>, OnGroups<Statuses>),
         slips: OnGroups<Vec<f64>>,
-        energies: BTreeMap<usize, BlockEnergy>,
+        energies: OnBlocks<BlockEnergy>,
         (outcome, scales): (Option<&SweepOutcome>, Scales),
         method: Method,
     ) -> Self {
@@ -98,10 +98,10 @@ impl StepState {
             },
         );
         comm.route(
-            ways(before.owners(), plan.owners()),
-            |b| self.energies.remove(&b),
-            |b, energy| {
-                energies.extend(energy.map(|energy| (b, energy)));
+            ways(before.owners().values(), plan.owners().values()),
+            |i| self.energies.remove(&BlockId::new(i)),
+            |i, energy| {
+                energies.extend(energy.map(|energy| (BlockId::new(i), energy)));
             },
         );
         Self {

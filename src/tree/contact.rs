@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes};
 
 use crate::contact::friction::Status;
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
@@ -38,7 +38,7 @@ pub struct TreeContact {
     /// Forces and closed conditions of every contact group.
     pub conditions: OnGroups<Vec<(f64, bool)>>,
     /// The unknowns on the boundary of every cluster.
-    pub boundaries: BTreeMap<usize, Vec<f64>>,
+    pub boundaries: OnTreeNodes<Vec<f64>>,
     /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
     pub statuses: OnGroups<Statuses>,
     /// How they got there; the same on all ranks but for times.
@@ -72,7 +72,7 @@ pub fn solve(
     context: &Context<'_>,
     fronts: &mut ActiveSetFronts,
     limits: &OnGroups<Limits>,
-    (loads, before): (&BTreeMap<usize, Vec<f64>>, &OnGroups<Statuses>),
+    (loads, before): (&OnTreeNodes<Vec<f64>>, &OnGroups<Statuses>),
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<TreeContact, Failure> {

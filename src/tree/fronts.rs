@@ -4,7 +4,7 @@ mod elimination;
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes, TreeNodeId};
 use faer::Mat;
 
 use crate::bddc::Bddc;
@@ -41,13 +41,13 @@ pub(super) struct ActiveSetFront {
 #[derive(Debug)]
 pub struct ActiveSetFronts {
     /// The nodes of the hierarchy above all clusters, children before parents, on all ranks the same.
-    pub(super) nodes: Vec<usize>,
-    pub(super) fronts: BTreeMap<usize, ActiveSetFront>,
+    pub(super) nodes: Vec<TreeNodeId>,
+    pub(super) fronts: OnTreeNodes<ActiveSetFront>,
     /// S of clusters and fronts, at the owner of the node that they are merged into.
-    merged: BTreeMap<usize, Condensed>,
+    merged: OnTreeNodes<Condensed>,
     /// S of those that nothing here is above.
-    pub(super) merge_roots: BTreeMap<usize, ClusterSchur>,
-    replaced: BTreeMap<usize, Vec<Replaced>>,
+    pub(super) merge_roots: OnTreeNodes<ClusterSchur>,
+    replaced: OnTreeNodes<Vec<Replaced>>,
     /// The dependent rows of every contact group of this rank.
     rows: OnGroups<DependentConstraints>,
     spring: f64,
@@ -71,7 +71,7 @@ impl ActiveSetFronts {
     ) -> Result<Self, Failure> {
         let context = &condensation.context;
         let plan = context.plan;
-        let mut is_between = vec![false; plan.tree.nodes.len()];
+        let mut is_between = plan.tree.nodes.like(false);
         for v in plan.merge_roots.iter().flat_map(|&v| plan.tree.subtree(v)) {
             is_between[v] = true;
         }
@@ -226,7 +226,7 @@ impl ActiveSetFronts {
         let touched = self.touched(context, open, is_known);
         let result = self.eliminate(context, open, &touched);
         comm.agree(result)?;
-        if plan.has_one_cluster() || !renewed && !touched.contains(&true) {
+        if plan.has_one_cluster() || !renewed && !touched.values().contains(&true) {
             return Ok(());
         }
         let mut bddc = match self.bddc.take() {
@@ -235,7 +235,7 @@ impl ActiveSetFronts {
         };
         let renewed = renewed || !is_known;
         // What was made before, with another preconditioner, can't move, nor can what springs hold.
-        let is_sound = self.spring > 0.0 || !touched.contains(&true) && !bddc.is_stale();
+        let is_sound = self.spring > 0.0 || !touched.values().contains(&true) && !bddc.is_stale();
         let mut fixed = bddc.fix(
             context,
             &self.merge_roots,

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes};
 use faer::linalg::solvers::SolveLstsq;
 use faer::{Col, Mat};
 
@@ -82,7 +82,7 @@ pub struct SlipProblem<'a> {
     /// Whether what slips is held, unless its slip follows from what is closed.
     pub is_held: bool,
     /// Loads on the boundaries of clusters, by node.
-    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    pub clusters: &'a OnTreeNodes<Vec<f64>>,
     /// The values of the closed jumps of every group, and of those that slip before they do (m).
     pub prescribed: &'a OnJumps,
     /// The laws of the slipping points.
@@ -98,7 +98,7 @@ impl SlipProblem<'_> {
     fn respond(
         &self,
         fronts: &mut ActiveSetFronts,
-        (clusters, prescribed): (&BTreeMap<usize, Vec<f64>>, &OnJumps),
+        (clusters, prescribed): (&OnTreeNodes<Vec<f64>>, &OnJumps),
         forces: &OnJumps,
         accuracy: Accuracy<'_>,
     ) -> Result<ActiveSetSolution, Failure> {

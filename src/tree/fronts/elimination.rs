@@ -1,6 +1,7 @@
 //! The elimination of the fronts that a change of the active set touches, children before parents.
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{GroupId, OnGroups, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 use faer::Mat;
 
 use super::{ActiveSetFront, ActiveSetFronts};
@@ -15,7 +16,7 @@ impl ActiveSetFronts {
     pub(super) fn pass_up(
         &mut self,
         context: &Context<'_>,
-        v: usize,
+        v: TreeNodeId,
         mut condensed: Option<Condensed>,
     ) {
         let Context { comm, plan, .. } = *context;
@@ -40,7 +41,7 @@ impl ActiveSetFronts {
         context: &Context<'_>,
         open: &OnGroups<Vec<bool>>,
         is_known: bool,
-    ) -> Vec<bool> {
+    ) -> Numbered<TreeNodeId, bool> {
         let Context { comm, plan, .. } = *context;
         let changed = |g: GroupId| {
             let front = self
@@ -51,7 +52,7 @@ impl ActiveSetFronts {
             // Of ties alone nothing ever changes.
             !open[&g].is_empty() && front.or_else(between) != Some(&open[&g])
         };
-        let mut touched = vec![!is_known; plan.tree.nodes.len()];
+        let mut touched = plan.tree.nodes.like(!is_known);
         comm.gather(&plan.group_owners(), changed, |g, changed| {
             touched[plan.groups[g].node] |= changed;
         });
@@ -65,7 +66,7 @@ impl ActiveSetFronts {
         &mut self,
         context: &Context<'_>,
         open: &OnGroups<Vec<bool>>,
-        touched: &[bool],
+        touched: &Numbered<TreeNodeId, bool>,
     ) -> Result<(), Failure> {
         let mut result = Ok(());
         self.smallest_pivot = f64::INFINITY;
@@ -92,7 +93,7 @@ impl ActiveSetFronts {
     fn merge(
         &mut self,
         context: &Context<'_>,
-        v: usize,
+        v: TreeNodeId,
         open: &OnGroups<Vec<bool>>,
     ) -> Result<Option<Condensed>, Failure> {
         let Context { plan, par, .. } = *context;
