@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 use contact_dd_partition::hierarchy::choice::{coarse_dofs, iteration_flops};
 use contact_dd_partition::hierarchy::tree::Tree;
-use contact_dd_partition::id::{BlockId, GroupId, TreeNodeId};
+use contact_dd_partition::id::{BlockId, ClusterId, GroupId, PairId, TreeNodeId};
 use contact_dd_partition::numbered::Numbered;
 use contact_dd_partition::problem::Catalog;
 
@@ -38,9 +38,9 @@ pub struct Plan {
     /// The owner of every node of the hierarchy.
     pub node_owners: Numbered<TreeNodeId, usize>,
     /// The clusters, of which the interface problem is assembled.
-    pub clusters: Vec<ClusterPlan>,
+    pub clusters: Numbered<ClusterId, ClusterPlan>,
     /// The clusters in contact.
-    pub contact: Vec<usize>,
+    pub contact: Numbered<PairId, ClusterId>,
     /// Treatment of contact on the way.
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
@@ -67,8 +67,8 @@ impl Plan {
             },
             tree,
             node_owners: Numbered::default(),
-            clusters: Vec::new(),
-            contact: Vec::new(),
+            clusters: Numbered::default(),
+            contact: Numbered::default(),
             merging,
         };
         plan.node_owners = plan.hand_out(catalog, ranks);
@@ -104,7 +104,7 @@ impl Plan {
     /// Forms the clusters.
     fn form_clusters(&mut self, merging: Merging) {
         self.merging = merging;
-        self.clusters.clear();
+        self.clusters = Numbered::default();
         for node in cluster_nodes(&self.tree, merging, &self.merge_roots) {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
@@ -114,7 +114,7 @@ impl Plan {
                 conditions: self.tree.nodes[node].conditions,
             });
         }
-        self.contact = (0..self.clusters.len())
+        self.contact = (self.clusters.ids())
             .filter(|&c| self.clusters[c].is_in_contact())
             .collect();
     }
@@ -232,7 +232,7 @@ impl Plan {
     pub fn points_of_conditions(
         &self,
         catalog: &Catalog,
-        p: usize,
+        p: PairId,
         conditions: &[usize],
     ) -> BTreeSet<u32> {
         let groups = &self.clusters[self.contact[p]].groups;
@@ -250,12 +250,12 @@ impl Plan {
     }
 
     /// The owner of every cluster.
-    pub fn cluster_owners(&self) -> Vec<usize> {
+    pub fn cluster_owners(&self) -> Numbered<ClusterId, usize> {
         self.clusters.iter().map(|c| c.owner).collect()
     }
 
     /// The owner of every cluster in contact.
-    pub fn contact_owners(&self) -> Vec<usize> {
+    pub fn contact_owners(&self) -> Numbered<PairId, usize> {
         self.contact
             .iter()
             .map(|&c| self.clusters[c].owner)
@@ -263,14 +263,15 @@ impl Plan {
     }
 
     /// The place of cluster c among those in contact.
-    pub fn contact_place(&self, c: usize) -> Option<usize> {
-        self.contact.binary_search(&c).ok()
+    pub fn contact_place(&self, c: ClusterId) -> Option<PairId> {
+        let at = self.contact.values().binary_search(&c);
+        at.ok().map(PairId::new)
     }
 
     /// The cluster of every block.
-    pub fn clusters_of_blocks(&self) -> Numbered<BlockId, usize> {
-        let mut of: Numbered<BlockId, usize> = vec![0; self.blocks()].into();
-        for (c, cluster) in self.clusters.iter().enumerate() {
+    pub fn clusters_of_blocks(&self) -> Numbered<BlockId, ClusterId> {
+        let mut of: Numbered<BlockId, ClusterId> = vec![ClusterId::new(0); self.blocks()].into();
+        for (c, cluster) in self.clusters.each() {
             for v in self.tree.subtree(cluster.node) {
                 if let Some(b) = self.tree.block(v) {
                     of[b] = c;

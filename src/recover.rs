@@ -21,7 +21,7 @@ pub mod stresses;
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::padded;
-use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnTreeNodes};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs, OnTreeNodes};
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
@@ -182,7 +182,7 @@ pub fn recover(
         &plan.cluster_owners(),
         |c| {
             Reals(root.map_or_else(Vec::new, |(u, numbers)| {
-                numbers[c].iter().map(|&i| u[i as usize]).collect()
+                numbers[c.index()].iter().map(|&i| u[i as usize]).collect()
             }))
         },
         |c, Reals(interface_dofs)| {
@@ -249,10 +249,7 @@ pub fn substitute_back(
 
 /// Forces of the points of every contact group, and which are closed, from the clusters that know.
 /// Collective.
-fn conditions(
-    factors: Factors<'_>,
-    pairs: &BTreeMap<usize, ContactPair>,
-) -> OnGroups<Vec<(f64, bool)>> {
+fn conditions(factors: Factors<'_>, pairs: &OnPairs<ContactPair>) -> OnGroups<Vec<(f64, bool)>> {
     let of_clusters = pairs.iter().map(|(&p, pair)| {
         let (forces, closed) = pair.conditions();
         (p, forces.into_iter().zip(closed).collect())

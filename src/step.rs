@@ -5,9 +5,7 @@ pub mod state;
 pub mod transfer;
 pub mod working_set;
 
-use std::collections::BTreeMap;
-
-use contact_dd_partition::id::{OnBlocks, OnTreeNodes};
+use contact_dd_partition::id::{OnBlocks, OnPairs, OnTreeNodes, PairId};
 
 use crate::certificate::scales::Scales;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
@@ -42,7 +40,7 @@ pub struct StepProblem<'a> {
     /// The condensed load of every node of the hierarchy.
     pub condensed: OnTreeNodes<CondensedLoad>,
     /// ϑ: the clusters in contact, by their place among those.
-    pub pairs: BTreeMap<usize, ContactPair>,
+    pub pairs: OnPairs<ContactPair>,
     /// S_0 U + S_CON(U) = F; on the root.
     pub interface: Option<InterfaceProblem<'a>>,
     /// The scales of the load steps before; on the root.
@@ -128,12 +126,12 @@ impl<'a> Loading<'a> {
     /// The clusters in contact of this rank under their loads.
     fn pairs(
         &self,
-        mut limits: BTreeMap<usize, Limits>,
+        mut limits: OnPairs<Limits>,
         loads: &OnTreeNodes<CondensedLoad>,
         mut before: StepState,
-    ) -> BTreeMap<usize, ContactPair> {
+    ) -> OnPairs<ContactPair> {
         let plan = self.context.plan;
-        let pair = |(&p, cluster): (&usize, &ContactCluster)| {
+        let pair = |(&p, cluster): (&PairId, &ContactCluster)| {
             let condensed = &cluster.condensed;
             let limits = limits.remove(&p)?;
             let mut load = loads
@@ -155,7 +153,7 @@ impl<'a> Loading<'a> {
     /// Assembles F on the root; `elsewhere` forces are up to this large. Collective.
     fn assemble(
         &self,
-        pairs: &BTreeMap<usize, ContactPair>,
+        pairs: &OnPairs<ContactPair>,
         loads: &OnTreeNodes<CondensedLoad>,
         elsewhere: f64,
     ) -> Option<InterfaceProblem<'a>> {

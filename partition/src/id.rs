@@ -60,6 +60,11 @@ ids! {
     TreeNodeId, OnTreeNodes;
     /// A contact group: the contact points of one node of the hierarchy. By ascending nodes, of those that have some.
     GroupId, OnGroups;
+    /// A cluster: the blocks under one node of the hierarchy, condensed, of which the interface problem is assembled. In the
+    /// order of the hierarchy.
+    ClusterId, OnClusters;
+    /// A pair: a cluster in contact, by its place among those alone.
+    PairId, OnPairs;
 }
 
 impl From<BlockId> for TreeNodeId {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{GroupId, OnGroups};
+use contact_dd_partition::id::{GroupId, OnGroups, OnPairs};
 
 use crate::contact::jumps::JumpOf;
 use crate::contact::jumps::Jumps;
@@ -25,10 +25,7 @@ pub fn tied_jumps(of_groups: &OnGroups<Limits>) -> TiedJumps {
 
 /// The bounds on the normal jumps of every cluster in contact of this rank in a load step, by its place among
 /// those, joined from those `made` of its groups. Collective.
-pub fn limits_of_clusters(
-    context: &Context<'_>,
-    made: &OnGroups<Limits>,
-) -> BTreeMap<usize, Limits> {
+pub fn limits_of_clusters(context: &Context<'_>, made: &OnGroups<Limits>) -> OnPairs<Limits> {
     let Context { comm, plan, .. } = context;
     let groups = plan.groups_by_cluster();
     let mut arrived: OnGroups<Limits> = BTreeMap::new();
@@ -39,8 +36,8 @@ pub fn limits_of_clusters(
             arrived.insert(groups[i], limits);
         },
     );
-    let contact = plan.contact.iter().map(|&c| &plan.clusters[c]);
-    let own = (contact.enumerate()).filter(|(_, cluster)| cluster.owner == comm.rank());
+    let contact = plan.contact.each().map(|(p, &c)| (p, &plan.clusters[c]));
+    let own = contact.filter(|(_, cluster)| cluster.owner == comm.rank());
     own.map(|(p, cluster)| {
         let groups = cluster.groups.iter();
         let limits: Vec<Limits> = groups.filter_map(|g| arrived.remove(g)).collect();

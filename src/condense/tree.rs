@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{BlockId, OnTreeNodes, TreeNodeId};
+use contact_dd_partition::id::{BlockId, OnPairs, OnTreeNodes, TreeNodeId};
 
 use crate::comm::is_asked_to_stop;
 use crate::condense::Condensation;
@@ -23,7 +23,7 @@ use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 /// A part that can move although its boundary is held, or supports that differ between subdomains.
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
-    modes: &BTreeMap<usize, RigidModes>,
+    modes: &OnPairs<RigidModes>,
 ) -> Result<CondensedBlocks, Failure> {
     let Context {
         comm,

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, TreeNodeId};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs, PairId, TreeNodeId};
 use contact_dd_partition::numbered::Numbered;
 
 use crate::bddc::solution::Accuracy;
@@ -165,7 +165,7 @@ impl<'a> FixedActiveSet<'a> {
             self.solve_interface(&limits, &condensed, |coupled, (r, loads), fixed| {
                 coupled.solve_fixed(r, loads, fixed, moves)
             });
-        let of_cluster = |(p, change): (usize, PairChange)| {
+        let of_cluster = |(p, change): (PairId, PairChange)| {
             let limits = self.step.pairs.get(&p)?.limits();
             Some((p, limits.forces(&change.at.forces)))
         };
@@ -249,10 +249,7 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// The statuses of the limits of every cluster in contact of this rank, for those of its conditions.
-    fn limits(
-        &self,
-        conditions: BTreeMap<usize, Vec<FixedStatus>>,
-    ) -> BTreeMap<usize, Vec<FixedStatus>> {
+    fn limits(&self, conditions: OnPairs<Vec<FixedStatus>>) -> OnPairs<Vec<FixedStatus>> {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
             if let Some(pair) = self.step.pairs.get(&p) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::OnTreeNodes;
+use contact_dd_partition::id::{ClusterId, OnPairs, OnTreeNodes};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -33,17 +33,17 @@ impl FixedActiveSet<'_> {
     /// changes of clusters in contact and the unknowns on the boundary of every cluster's node. Collective.
     pub fn solve_interface<S: Clone + Serialize + DeserializeOwned>(
         &self,
-        limits: &BTreeMap<usize, Vec<S>>,
+        limits: &OnPairs<Vec<S>>,
         condensed: &OnTreeNodes<CondensedLoad>,
         solve: impl FnOnce(
             &CoupledContact<'_>,
             InterfaceLoad<'_>,
             &[Vec<S>],
         ) -> (Vec<f64>, Vec<PairChange>),
-    ) -> (BTreeMap<usize, PairChange>, OnTreeNodes<Vec<f64>>) {
+    ) -> (OnPairs<PairChange>, OnTreeNodes<Vec<f64>>) {
         let plan = self.context.plan;
         let owners = plan.cluster_owners();
-        let boundary = |c: usize| {
+        let boundary = |c: ClusterId| {
             let load = condensed.get(&plan.clusters[c].node);
             load.map_or(&[][..], CondensedLoad::boundary)
         };
@@ -58,7 +58,7 @@ impl FixedActiveSet<'_> {
         let (mut changes, mut boundaries) = (BTreeMap::new(), BTreeMap::new());
         self.context.comm.scatter(
             &owners,
-            |c| std::mem::take(&mut answers[c]),
+            |c| std::mem::take(&mut answers[c.index()]),
             |c, (change, Reals(x))| {
                 if let Some(p) = plan.contact_place(c) {
                     changes.insert(p, change);
@@ -103,14 +103,14 @@ impl FixedActiveSetRoot<'_> {
         };
         let (u, pairs) = solve(&coupled, (&r, &loads), &limits);
         let mut pairs = pairs.into_iter();
-        let answer = |c: usize| {
+        let answer = |c: ClusterId| {
             let of_pair = plan.contact_place(c).and_then(|_| pairs.next());
             let change = of_pair.unwrap_or_default();
             let mut x = change.at.jumps.clone();
-            let interface_dofs = numbering.interface_dofs[c].iter();
+            let interface_dofs = numbering.interface_dofs[c.index()].iter();
             x.extend(interface_dofs.map(|&i| u[i as usize]));
             (change, Reals(x))
         };
-        (0..numbering.interface_dofs.len()).map(answer).collect()
+        plan.clusters.ids().map(answer).collect()
     }
 }

@@ -12,7 +12,7 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::OnBlocks;
+use contact_dd_partition::id::{OnBlocks, OnPairs, PairId};
 
 use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::coupled::{CoupledContact, PairChange};
@@ -83,11 +83,8 @@ impl FixedActiveSet<'_> {
     }
 
     /// The forces of all conditions of clusters in contact, and which are closed, where their limits are so.
-    fn conditions_of(
-        &self,
-        changes: BTreeMap<usize, PairChange>,
-    ) -> BTreeMap<usize, Vec<(f64, bool)>> {
-        let of_cluster = |(p, change): (usize, PairChange)| {
+    fn conditions_of(&self, changes: OnPairs<PairChange>) -> OnPairs<Vec<(f64, bool)>> {
+        let of_cluster = |(p, change): (PairId, PairChange)| {
             let limits = self.step.pairs.get(&p)?.limits();
             let closed = limits.closed(change.closed).into_iter();
             let forces = limits.forces(&change.at.forces).into_iter();

@@ -1,9 +1,7 @@
 //! Gathering what the analysis of rigid motions needs, and handing out what it found.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::element::geometry::{dot, length};
-use contact_dd_partition::id::{BlockId, OnBlocks};
+use contact_dd_partition::id::{BlockId, OnBlocks, OnPairs};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidMotions;
@@ -29,7 +27,7 @@ pub struct RigidBodyAnalysis {
     pub closing_motions: Vec<Vec<f64>>,
     /// For every cluster in contact of this rank, its conditions against the motions that supports
     /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
-    pub cluster_modes: BTreeMap<usize, RigidModes>,
+    pub cluster_modes: OnPairs<RigidModes>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// The scene of bodies and conditions, on the root.

@@ -1,8 +1,6 @@
 //! Contact conditions against the rigid motions of the bodies that lie wholly in a cluster.
 
-use std::collections::BTreeMap;
-
-use contact_dd_partition::id::GroupId;
+use contact_dd_partition::id::{ClusterId, GroupId, OnPairs};
 use faer::Mat;
 use nalgebra::DMatrix;
 
@@ -108,9 +106,9 @@ pub(super) fn cluster_modes(
     context: &Context<'_>,
     scene: &Scene,
     fixing_dofs: &[FixingDof],
-) -> BTreeMap<usize, RigidModes> {
+) -> OnPairs<RigidModes> {
     let Context { catalog, plan, .. } = *context;
-    let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
+    let mut home: Vec<Option<ClusterId>> = vec![None; catalog.bodies.len()];
     let mut elsewhere = vec![false; catalog.bodies.len()];
     let clusters = plan.clusters_of_blocks();
     for (subdomain, &cluster) in catalog.subdomains.iter().zip(&clusters) {

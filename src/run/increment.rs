@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{OnBlocks, OnGroups, OnTreeNodes};
+use contact_dd_partition::id::{OnBlocks, OnGroups, OnPairs, OnTreeNodes};
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
@@ -55,7 +55,7 @@ pub struct Increments<'a> {
 /// An increment that was solved, or tried.
 pub struct Increment {
     /// The clusters in contact of this rank.
-    pairs: BTreeMap<usize, ContactPair>,
+    pairs: OnPairs<ContactPair>,
     /// The statuses of the contact groups of this rank, where the tree solves for them.
     statuses: OnGroups<Statuses>,
     /// Outcome of the sweeps; on the root.
@@ -240,7 +240,7 @@ impl Increments<'_> {
     fn sweep(&self, step: &mut StepProblem<'_>, start: Start) -> Result<Swept, Failure> {
         let (context, log) = (&self.context, self.log);
         let owners = context.plan.contact_owners();
-        let mut s_con = SCon::new(context.comm, &owners, &mut step.pairs);
+        let mut s_con = SCon::new(context.comm, owners.values(), &mut step.pairs);
         let solved = match &step.interface {
             None => {
                 s_con.serve();

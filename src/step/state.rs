@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use contact_dd_partition::destination::unfinished;
-use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs};
 
 use crate::bytes::Reals;
 use crate::certificate::energy::BlockEnergy;
@@ -27,7 +27,7 @@ pub struct StepState {
     /// U, and the statuses of every cluster in contact; on the root.
     pub interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact of this rank, by their place among those.
-    pub pairs: BTreeMap<usize, PairState>,
+    pub pairs: OnPairs<PairState>,
     /// The statuses of the contact groups of this rank, where the tree solves for them; none where they weren't found.
     pub statuses: OnGroups<Statuses>,
     /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
@@ -44,7 +44,7 @@ impl StepState {
     /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
     /// bilateral solution leaves closed.
     pub fn after(
-        (pairs, statuses): (BTreeMap<usize, ContactPair>, OnGroups<Statuses>),
+        (pairs, statuses): (OnPairs<ContactPair>, OnGroups<Statuses>),
         slips: OnGroups<Vec<f64>>,
         energies: OnBlocks<BlockEnergy>,
         (outcome, scales): (Option<&SweepOutcome>, Scales),

@@ -4,7 +4,7 @@ mod elimination;
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes, TreeNodeId};
+use contact_dd_partition::id::{GroupId, OnClusters, OnGroups, OnTreeNodes, TreeNodeId};
 use faer::Mat;
 
 use crate::bddc::Bddc;
@@ -67,7 +67,7 @@ impl ActiveSetFronts {
     /// A contact point that nothing can be replaced for.
     pub fn new(
         condensation: &Condensation<'_>,
-        mut clusters: BTreeMap<usize, Condensed>,
+        mut clusters: OnClusters<Condensed>,
     ) -> Result<Self, Failure> {
         let context = &condensation.context;
         let plan = context.plan;
@@ -102,7 +102,7 @@ impl ActiveSetFronts {
             solves: 0,
             bddc: None,
         };
-        for (c, cluster) in plan.clusters.iter().enumerate() {
+        for (c, cluster) in plan.clusters.each() {
             fronts.pass_up(context, cluster.node, clusters.remove(&c));
         }
         Ok(fronts)
