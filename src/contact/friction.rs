@@ -4,7 +4,7 @@
 //! The bound b is given, or grows with the normal force, b = c + μ λ: then the matrix of the slipping ones isn't
 //! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; all
 //! wrong statuses are corrected at once until none is wrong, as semismooth Newton does, and where that gets no
-//! further, from near the end of a path that leads to a solution: an interior one, and Lemke's.
+//! further, from near the end of Lemke's path, which leads to a solution.
 
 mod cones;
 mod lemke;

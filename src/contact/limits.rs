@@ -288,15 +288,11 @@ impl Limits {
     /// The states of the limits where those of all conditions are these.
     pub fn states(&self, conditions: &[LimitState]) -> Vec<LimitState> {
         let of_condition = |&(condition, factor): &(usize, f64)| {
-            let LimitState {
-                force,
-                gap,
-                is_closed,
-            } = conditions[condition];
+            let LimitState { force, gap, status } = conditions[condition];
             LimitState {
                 force: factor * force,
                 gap: gap / factor,
-                is_closed,
+                status,
             }
         };
         self.tightest.iter().map(of_condition).collect()

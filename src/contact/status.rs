@@ -30,7 +30,7 @@ impl Status {
     }
 
     /// Status of a tangential limit that slips by `slip`.
-    pub(super) fn of_slip(slip: f64) -> Self {
+    pub fn of_slip(slip: f64) -> Self {
         match slip {
             ahead if ahead > 0.0 => Self::Forward,
             back if back < 0.0 => Self::Backward,
@@ -105,23 +105,13 @@ impl FixedStatus {
     }
 }
 
-/// Where a limit is: what is known of it before its law is solved anew.
+/// State of a limit or a condition: of a load step so far, from which its law is solved anew, and then.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitState {
     /// Its force (N/m).
     pub force: f64,
     /// What its jump has left, g − t, or the way back to where it stuck (m).
     pub gap: f64,
-    /// Whether it is closed, or sticks.
-    pub is_closed: bool,
-}
-
-impl LimitState {
     /// Its status.
-    pub fn status(&self) -> Status {
-        match self.is_closed {
-            true => Status::Closed,
-            false => Status::of_slip(self.force),
-        }
-    }
+    pub status: Status,
 }

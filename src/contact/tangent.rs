@@ -31,25 +31,6 @@ impl ForceBound {
         }
     }
 
-    /// The bound of a contact that is neither closed nor open, under λ with a gap of y left, with its derivatives by both: a cohesion that
-    /// vanishes as the contact opens has the share λ/(λ + y).
-    pub fn between(&self, force: f64, gap: f64) -> [f64; 3] {
-        let Self {
-            coefficient,
-            cohesion,
-            only_closed,
-        } = *self;
-        if !only_closed {
-            return [coefficient * force + cohesion, coefficient, 0.0];
-        }
-        let both = force + gap;
-        [
-            coefficient * force + cohesion * force / both,
-            coefficient + cohesion * gap / both / both,
-            -cohesion * force / both / both,
-        ]
-    }
-
     /// The bound as a line over the normal force: its value without one (N/m), and its slope.
     pub fn line(&self, is_closed: bool) -> [f64; 2] {
         match is_closed {

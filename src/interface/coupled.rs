@@ -20,7 +20,6 @@ use super::rigid_modes::RigidBasis;
 use crate::contact::active_set::{ContactProblem, ContactSolution};
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::FrictionProblem;
-use crate::contact::laws::Iterate;
 use crate::contact::limits::{Beside, TangentialLimit};
 use crate::contact::pair::{CondensedContact, PairResponse};
 use crate::contact::status::{FixedStatus, LimitState};
@@ -61,14 +60,22 @@ pub struct CoupledStep {
     pub unsettled: Vec<Vec<usize>>,
 }
 
-/// The change of the jumps of a pair: with that of its forces where statuses are fixed, with the forces after it where laws are
-/// solved.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct PairChange {
-    /// Jumps and forces.
-    pub at: Iterate,
-    /// Which limits are closed, or stick.
-    pub closed: Vec<bool>,
+/// A change of the solution on the interface and of all pairs.
+#[derive(Clone, Debug)]
+pub struct CoupledChange<L> {
+    /// The change of U.
+    pub u: Vec<f64>,
+    /// The pairs.
+    pub pairs: Vec<PairChange<L>>,
+}
+
+/// The change of the jumps of a pair, and what is asked for of its limits: the changes of their forces, or their states then.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct PairChange<L> {
+    /// Changes of jumps (m).
+    pub jumps: Vec<f64>,
+    /// What is asked for of every limit.
+    pub limits: Vec<L>,
 }
 
 /// The right-hand side after δ is eliminated.
@@ -179,7 +186,7 @@ impl<'a> CoupledContact<'a> {
         loads: &[Vec<f64>],
         statuses: &[Vec<FixedStatus>],
         moves: bool,
-    ) -> (Vec<f64>, Vec<PairChange>) {
+    ) -> CoupledChange<f64> {
         let loads = loads.concat();
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
@@ -198,22 +205,21 @@ impl<'a> CoupledContact<'a> {
             last_patch: &self.interface.last_patch,
         };
         let change = problem.change(&fixed);
-        let closed: Vec<bool> = fixed.iter().map(FixedStatus::is_closed).collect();
-        (
-            self.change_of_u(r, &condensed, &change.jumps),
-            self.changes(&change, &closed),
-        )
+        CoupledChange {
+            u: self.change_of_u(r, &condensed, &change.jumps),
+            pairs: self.pair_changes(&change.jumps, &change.forces),
+        }
     }
 
-    /// The change of U, and that of the jumps of every pair with the forces after it, that solves the laws of contact from these
-    /// `states` of all limits, where `r` on Γ and `loads` on the normal jumps are left unbalanced; and whether it does.
-    /// Round-off is that of the change: the displacements so far are no scale of it.
+    /// The change of U and of the jumps of every pair that solves the laws of contact from these `states` of all limits, where
+    /// `r` on Γ and `loads` on the normal jumps are left unbalanced, with the states then; and whether it does. Round-off is
+    /// that of the change: the displacements so far are no scale of it.
     pub fn solve_laws(
         &self,
         r: &[f64],
         loads: &[Vec<f64>],
         states: &[Vec<LimitState>],
-    ) -> (Vec<f64>, Vec<PairChange>, bool) {
+    ) -> (CoupledChange<LimitState>, bool) {
         let states = self.side_by_side(states.iter().map(Vec::as_slice));
         let forces: Vec<f64> = states.iter().map(|state| state.force).collect();
         let (of_jumps, of_rows) = forces.split_at(self.h.nrows());
@@ -239,28 +245,29 @@ impl<'a> CoupledContact<'a> {
             tangents: &self.tangents,
             last_patch: &self.interface.last_patch,
         };
-        let mut status: Vec<_> = states.iter().map(LimitState::status).collect();
+        let mut status: Vec<_> = states.iter().map(|state| state.status).collect();
         let solution = problem.solve(&mut status);
-        let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
-        let change = Iterate {
-            jumps: solution.jumps,
-            forces: solution.forces,
+        let of_rows = (0..self.rows.len()).map(|j| self.rows.value(j, &solution.jumps));
+        let moved = solution.jumps.iter().copied().chain(of_rows);
+        let then: Vec<LimitState> = (states.iter().zip(moved))
+            .zip(solution.forces.iter().zip(status))
+            .map(|((before, moved), (&force, status))| LimitState {
+                force,
+                gap: before.gap - moved,
+                status,
+            })
+            .collect();
+        let change = CoupledChange {
+            u: self.change_of_u(r, &condensed, &solution.jumps),
+            pairs: self.pair_changes(&solution.jumps, &then),
         };
-        (
-            self.change_of_u(r, &condensed, &change.jumps),
-            self.changes(&change, &closed),
-            solution.converged,
-        )
+        (change, solution.converged)
     }
 
-    /// The part of every pair in a change of all jumps and forces.
-    fn changes(&self, all: &Iterate, closed: &[bool]) -> Vec<PairChange> {
-        let pairs = (self.by_pair(&all.jumps).into_iter()).zip(self.by_pair(&all.forces));
-        let pairs = pairs.zip(self.by_pair(closed));
-        let of_pair = |((jumps, forces), closed)| PairChange {
-            at: Iterate { jumps, forces },
-            closed,
-        };
+    /// The part of every pair in a change of all jumps, with the values of all limits.
+    fn pair_changes<L: Copy>(&self, jumps: &[f64], limits: &[L]) -> Vec<PairChange<L>> {
+        let pairs = self.by_pair(jumps).into_iter().zip(self.by_pair(limits));
+        let of_pair = |(jumps, limits)| PairChange { jumps, limits };
         pairs.map(of_pair).collect()
     }
 

@@ -165,9 +165,9 @@ impl<'a> FixedActiveSet<'a> {
             self.solve_interface(&limits, &condensed, |coupled, (r, loads), fixed| {
                 coupled.solve_fixed(r, loads, fixed, moves)
             });
-        let of_cluster = |(p, change): (PairId, PairChange)| {
+        let of_cluster = |(p, change): (PairId, PairChange<f64>)| {
             let limits = self.step.pairs.get(&p)?.limits();
-            Some((p, limits.forces(&change.at.forces)))
+            Some((p, limits.forces(&change.limits)))
         };
         let forces_of_clusters = changes.into_iter().filter_map(of_cluster).collect();
         let (blocks, of_ties) = factors.recover(&condensed, boundaries);

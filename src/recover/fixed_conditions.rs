@@ -12,7 +12,6 @@ use crate::contact::law::{PointLaw, PointState, PointStatus};
 use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
-use crate::tree::slip_law::AT_BOUND;
 
 /// Angle between force and slip, about, beyond which the slip is too small to tell its direction.
 const TOLD: f64 = 0.1;
@@ -32,7 +31,7 @@ pub fn conditions(
     for point in group.point_laws() {
         let here = solution.point(&point);
         let size = here.size();
-        let parts = point.is_closed(&solution.closed) && size < AT_BOUND * here.bound;
+        let parts = solution.parts(&point);
         let in_a_plane = !point.is_along_a_line();
         let turns = in_a_plane
             && point

@@ -1,8 +1,9 @@
 //! The solution at the conditions of a contact group, and what the laws of contact want to be otherwise there.
 
 use crate::contact::law::{PointLaw, PointState};
-use crate::contact::status::LimitState;
+use crate::contact::status::{LimitState, Status};
 use crate::fem::contact_group::ContactGroup;
+use crate::tree::slip_law::AT_BOUND;
 
 /// The solution at the conditions of a contact group.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,15 +22,33 @@ impl GroupSolution {
         law.at(|j| -self.gaps[j], &self.forces, &self.closed)
     }
 
+    /// Whether a point slips while its contact is about to open: closed, under less than its bound.
+    pub fn parts(&self, law: &PointLaw) -> bool {
+        let here = self.point(law);
+        let sticks = law.limits().all(|j| self.closed[j]);
+        !sticks && law.is_closed(&self.closed) && here.size() < AT_BOUND * here.bound
+    }
+
     /// The states of all conditions.
-    pub fn states(&self) -> Vec<LimitState> {
+    pub fn states(&self, group: &ContactGroup) -> Vec<LimitState> {
         let all = self.forces.iter().zip(&self.gaps).zip(&self.closed);
-        let state = |((&force, &gap), &is_closed): ((&f64, &f64), &bool)| LimitState {
+        let state = |((&force, &gap), &closed): ((&f64, &f64), &bool)| LimitState {
             force,
             gap,
-            is_closed,
+            status: Status::new(!closed),
         };
-        all.map(state).collect()
+        let mut states: Vec<LimitState> = all.map(state).collect();
+        for point in group.point_laws() {
+            let parts = self.parts(&point);
+            for j in point.limits().filter(|&j| !self.closed[j]) {
+                states[j].status = match parts {
+                    true => Status::Parting,
+                    false if point.has_opened(&self.closed) => Status::Open,
+                    false => Status::of_slip(self.forces[j]),
+                };
+            }
+        }
+        states
     }
 
     /// Takes the forces of conditions that aren't ties, and which are closed.

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::bytes::Reals;
-use crate::interface::coupled::{CoupledContact, PairChange};
+use crate::interface::coupled::{CoupledChange, CoupledContact, PairChange};
 use crate::plan::Plan;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedActiveSetRoot};
 use crate::schur::local::CondensedLoad;
@@ -22,8 +22,8 @@ struct ClusterQuestion<S> {
     load: Vec<f64>,
 }
 
-/// The change of the jumps and forces of a cluster in contact, and of the unknowns on the boundary of its node.
-type ClusterAnswer = (PairChange, Reals);
+/// The change of a cluster where it is in contact, and that of the unknowns on the boundary of its node.
+type ClusterAnswer<L> = (Option<PairChange<L>>, Reals);
 
 /// The load on Γ, and on the normal jumps of every pair.
 pub type InterfaceLoad<'a> = (&'a [f64], &'a [Vec<f64>]);
@@ -31,16 +31,16 @@ pub type InterfaceLoad<'a> = (&'a [f64], &'a [Vec<f64>]);
 impl FixedActiveSet<'_> {
     /// Brings the loads and limits of clusters to the root, where `solve` finds the change of U and of all pairs, and back the
     /// changes of clusters in contact and the unknowns on the boundary of every cluster's node. Collective.
-    pub fn solve_interface<S: Clone + Serialize + DeserializeOwned>(
+    pub fn solve_interface<S, L>(
         &self,
         limits: &OnPairs<Vec<S>>,
         condensed: &OnTreeNodes<CondensedLoad>,
-        solve: impl FnOnce(
-            &CoupledContact<'_>,
-            InterfaceLoad<'_>,
-            &[Vec<S>],
-        ) -> (Vec<f64>, Vec<PairChange>),
-    ) -> (OnPairs<PairChange>, OnTreeNodes<Vec<f64>>) {
+        solve: impl FnOnce(&CoupledContact<'_>, InterfaceLoad<'_>, &[Vec<S>]) -> CoupledChange<L>,
+    ) -> (OnPairs<PairChange<L>>, OnTreeNodes<Vec<f64>>)
+    where
+        S: Clone + Serialize + DeserializeOwned,
+        L: Clone + Serialize + DeserializeOwned,
+    {
         let plan = self.context.plan;
         let owners = plan.cluster_owners();
         let boundary = |c: ClusterId| {
@@ -60,9 +60,7 @@ impl FixedActiveSet<'_> {
             &owners,
             |c| std::mem::take(&mut answers[c.index()]),
             |c, (change, Reals(x))| {
-                if let Some(p) = plan.contact_place(c) {
-                    changes.insert(p, change);
-                }
+                changes.extend(plan.contact_place(c).zip(change));
                 boundaries.insert(plan.clusters[c].node, x);
             },
         );
@@ -72,16 +70,12 @@ impl FixedActiveSet<'_> {
 
 impl FixedActiveSetRoot<'_> {
     /// Answers to all clusters.
-    fn answer<S>(
+    fn answer<S, L: Clone>(
         &self,
         plan: &Plan,
         questions: Vec<ClusterQuestion<S>>,
-        solve: impl FnOnce(
-            &CoupledContact<'_>,
-            InterfaceLoad<'_>,
-            &[Vec<S>],
-        ) -> (Vec<f64>, Vec<PairChange>),
-    ) -> Vec<ClusterAnswer> {
+        solve: impl FnOnce(&CoupledContact<'_>, InterfaceLoad<'_>, &[Vec<S>]) -> CoupledChange<L>,
+    ) -> Vec<ClusterAnswer<L>> {
         let Some((numbering, problem)) = self.interface else {
             return Vec::new();
         };
@@ -101,12 +95,13 @@ impl FixedActiveSetRoot<'_> {
         let Some(coupled) = CoupledContact::new(problem) else {
             return vec![ClusterAnswer::default(); numbering.interface_dofs.len()];
         };
-        let (u, pairs) = solve(&coupled, (&r, &loads), &limits);
+        let CoupledChange { u, pairs } = solve(&coupled, (&r, &loads), &limits);
         let mut pairs = pairs.into_iter();
         let answer = |c: ClusterId| {
-            let of_pair = plan.contact_place(c).and_then(|_| pairs.next());
-            let change = of_pair.unwrap_or_default();
-            let mut x = change.at.jumps.clone();
+            let change = plan.contact_place(c).and_then(|_| pairs.next());
+            let mut x = change
+                .as_ref()
+                .map_or_else(Vec::new, |change| change.jumps.clone());
             let interface_dofs = numbering.interface_dofs[c.index()].iter();
             x.extend(interface_dofs.map(|&i| u[i as usize]));
             (change, Reals(x))

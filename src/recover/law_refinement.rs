@@ -36,7 +36,7 @@ impl FixedActiveSet<'_> {
         }
         let groups = before.groups.iter();
         let states = groups
-            .map(|(&g, of_group)| (g, of_group.states()))
+            .map(|(&g, of_group)| (g, of_group.states(&context.groups[&g])))
             .collect();
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in factors.collect_conditions(states) {
@@ -49,9 +49,9 @@ impl FixedActiveSet<'_> {
         let converged = Cell::new(false);
         let (changes, boundaries) =
             self.solve_interface(&limits, &condensed, |coupled, (r, loads), states| {
-                let (u, pairs, is_solution) = coupled.solve_laws(r, loads, states);
+                let (change, is_solution) = coupled.solve_laws(r, loads, states);
                 converged.set(is_solution);
-                (u, pairs)
+                change
             });
         if !context.comm.decide(converged.get()) {
             return None;
@@ -83,12 +83,13 @@ impl FixedActiveSet<'_> {
     }
 
     /// The forces of all conditions of clusters in contact, and which are closed, where their limits are so.
-    fn conditions_of(&self, changes: OnPairs<PairChange>) -> OnPairs<Vec<(f64, bool)>> {
-        let of_cluster = |(p, change): (PairId, PairChange)| {
+    fn conditions_of(&self, changes: OnPairs<PairChange<LimitState>>) -> OnPairs<Vec<(f64, bool)>> {
+        let of_cluster = |(p, then): (PairId, PairChange<LimitState>)| {
             let limits = self.step.pairs.get(&p)?.limits();
-            let closed = limits.closed(change.closed).into_iter();
-            let forces = limits.forces(&change.at.forces).into_iter();
-            Some((p, forces.zip(closed).collect()))
+            let closed = then.limits.iter().map(|then| then.status.is_closed());
+            let forces: Vec<f64> = then.limits.iter().map(|then| then.force).collect();
+            let forces = limits.forces(&forces).into_iter();
+            Some((p, forces.zip(limits.closed(closed)).collect()))
         };
         changes.into_iter().filter_map(of_cluster).collect()
     }
@@ -119,11 +120,12 @@ impl FixedActiveSet<'_> {
 /// The statuses of all conditions where those that are closed are held at their bounds.
 fn held(solution: &DiscreteSolution) -> FixedStatuses {
     let of_group = |of_group: &GroupSolution| {
-        let status = |state: LimitState| match state.is_closed {
-            true => FixedStatus::Closed { lacks: state.gap },
+        let status = |(&lacks, &closed): (&f64, &bool)| match closed {
+            true => FixedStatus::Closed { lacks },
             false => FixedStatus::Open,
         };
-        of_group.states().into_iter().map(status).collect()
+        let all = of_group.gaps.iter().zip(&of_group.closed);
+        all.map(status).collect()
     };
     let groups = solution.groups.iter();
     groups.map(|(&g, own)| (g, of_group(own))).collect()

@@ -39,7 +39,7 @@ impl Sweeps<'_, '_> {
             self.outcome.active_set_iterations += step.contact.steps;
             if step.contact.fell_back {
                 (self.outcome).fell_back(
-                    "newton: active set taken from an interior-point or dual active-set method",
+                    "newton: active set taken from an interior-point or dual active-set method, or from Lemke's path",
                 );
             }
             if !step.contact.converged && coupled.has_friction() {

@@ -134,7 +134,7 @@ impl SweepOutcome {
         self.evaluations[1] += totals.unmoved_pairs;
         if totals.fallen_back_pairs > 0 {
             self.fell_back(
-                "pairs: active set taken from an interior-point or dual active-set method",
+                "pairs: active set taken from an interior-point or dual active-set method, or from Lemke's path",
             );
         }
     }

@@ -1,11 +1,10 @@
 //! Friction along one or two tangents of a point: a force within a disc, |λ_t| ≤ b, against the slip s.
 //!
 //! Semismooth Newton on the laws ([`newton`](crate::contact::newton)), with a dense linear problem for given statuses
-//! ([`linear`]). Where this gets no further, it starts again from near the solution, where an interior-point method leads
-//! ([`interior`]). After that Lemke's path leads to a solution ([`lemke`](super::lemke)), and viscous resistance to all
-//! jumps make the problem easier, the slower things move the less.
+//! ([`linear`]). Where this gets no further, it starts again from near the solution, where Lemke's path leads
+//! ([`lemke`](super::lemke)). After that viscous resistance to all jumps makes the problem easier, the slower things move
+//! the less.
 
-mod interior;
 mod linear;
 mod newton;
 

@@ -51,9 +51,6 @@ impl FrictionCones<'_> {
         if at_once.converged() {
             return (at_once, false, false);
         }
-        if let Some(found) = self.along_path() {
-            return (found, true, false);
-        }
         let mut steps = at_once.steps;
         if let Some(found) = self.along_lemke_s_path(problem, &mut steps) {
             return (Found { steps, ..found }, true, false);
@@ -66,7 +63,7 @@ impl FrictionCones<'_> {
     }
 
     /// The solution at the end of Lemke's path.
-    fn along_lemke_s_path(
+    pub(super) fn along_lemke_s_path(
         &self,
         problem: &FrictionProblem<'_>,
         steps: &mut usize,

@@ -50,7 +50,7 @@ fn slips_that_turn_about_are_found_by_newton_s_method_however_stiff_points_are()
 }
 
 #[test]
-fn the_interior_path_ends_at_solutions() {
+fn lemke_s_path_ends_near_solutions() {
     let mut ended = [0; 3];
     for seed in 0..150 {
         let steep = ForceBound {
@@ -70,7 +70,7 @@ fn the_interior_path_ends_at_solutions() {
         }
         points.with(|problem| {
             let cones = FrictionCones::new(problem);
-            let Some(found) = cones.along_path() else {
+            let Some(found) = cones.along_lemke_s_path(problem, &mut 0) else {
                 return;
             };
             let (jumps, forces) = cones.exact(&found);

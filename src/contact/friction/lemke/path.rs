@@ -5,7 +5,7 @@ mod points;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use super::polygon::{FrictionPolygon, SlipPart};
+use super::polygon::{FrictionPolygon, SideNormals, SlipPart};
 use super::responses::{Responses, Terms};
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::vector::{axpy, largest};
@@ -129,10 +129,11 @@ impl Path {
             scale,
         };
         let mut is_tangential = vec![false; count];
+        let normals = SideNormals::new(attempt);
         for limit in problem.tangents {
             is_tangential[limit.limit] = true;
             let added = [unit, path.added[limit.limit]];
-            let polygon = FrictionPolygon::new(limit, &path.scale, added, attempt);
+            let polygon = FrictionPolygon::new(limit, &path.scale, added, (attempt, &normals));
             path.points.extend(polygon);
         }
         path.normals = (0..count).filter(|&i| !is_tangential[i]).collect();
@@ -140,7 +141,7 @@ impl Path {
             *added = if is_tangential[i] { 0.0 } else { *added };
         }
         for point in 0..path.points.len() {
-            let polygon = path.points[point];
+            let polygon = path.points[point].clone();
             if polygon.is_free {
                 for (side, limit) in polygon.limits().enumerate() {
                     path.zero[limit] = Quantity::Bound {

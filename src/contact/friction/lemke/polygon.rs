@@ -5,6 +5,7 @@
 //! Coulomb friction*, Int. J. Numer. Methods Engrg 39 (1996).
 
 use std::f64::consts::TAU;
+use std::rc::Rc;
 
 use crate::contact::friction::ATTEMPTS;
 use crate::contact::tangent::TangentialLimit;
@@ -20,7 +21,7 @@ const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
 const MOST_COHESION: f64 = 10.0;
 
 /// The friction of a point, in the scale of energies of its first tangent.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FrictionPolygon {
     /// The limit of its normal jump.
     pub normal: Option<usize>,
@@ -40,8 +41,28 @@ pub(super) struct FrictionPolygon {
     pub only_closed: bool,
     /// Whether it never holds anything.
     pub is_free: bool,
-    sides: usize,
-    turned: f64,
+    /// The normals d of its sides.
+    normals: Rc<[[f64; 2]]>,
+}
+
+/// The normals of the sides of the polygons of all points, along a line and in space.
+pub(super) struct SideNormals {
+    line: Rc<[[f64; 2]]>,
+    in_space: Rc<[[f64; 2]]>,
+}
+
+impl SideNormals {
+    pub(super) fn new(attempt: usize) -> Self {
+        let (sides, turned) = (SIDES[attempt], TURNED[attempt]);
+        let normal = |side: usize| {
+            let angle = TAU * (side as f64 + turned) / sides as f64;
+            [angle.cos(), angle.sin()]
+        };
+        Self {
+            line: Rc::new([[1.0, 0.0], [-1.0, 0.0]]),
+            in_space: (0..sides).map(normal).collect(),
+        }
+    }
 }
 
 /// A part of a slip.
@@ -66,7 +87,7 @@ impl FrictionPolygon {
         limit: &TangentialLimit,
         scale: &[f64],
         [unit, added]: [f64; 2],
-        attempt: usize,
+        (attempt, normals): (usize, &SideNormals),
     ) -> Option<Self> {
         let (tangents, _) = limit.of_point()?;
         let (own, bound) = (scale[limit.limit], limit.bound);
@@ -88,8 +109,10 @@ impl FrictionPolygon {
             steep: falls.then(|| coefficient + cohesion / (STEEP[attempt] * unit)),
             only_closed: bound.only_closed,
             is_free: cohesion == 0.0 && coefficient == 0.0,
-            sides: tangents[1].map_or(2, |_| SIDES[attempt]),
-            turned: tangents[1].map_or(0.0, |_| TURNED[attempt]),
+            normals: Rc::clone(match tangents[1] {
+                Some(_) => &normals.in_space,
+                None => &normals.line,
+            }),
         })
     }
 
@@ -105,21 +128,18 @@ impl FrictionPolygon {
 
     /// Its sides.
     pub(super) fn sides(&self) -> std::ops::Range<usize> {
-        0..self.sides
+        0..self.normals.len()
     }
 
     /// The sides beside one.
     pub(super) fn neighbours(&self, side: usize) -> [usize; 2] {
-        [self.sides - 1, 1].map(|step| (side + step) % self.sides)
+        let sides = self.normals.len();
+        [sides - 1, 1].map(|step| (side + step) % sides)
     }
 
     /// The normal d of a side.
     pub(super) fn normal_of(&self, side: usize) -> [f64; 2] {
-        if self.is_line() {
-            return [1.0 - 2.0 * side as f64, 0.0];
-        }
-        let angle = TAU * (side as f64 + self.turned) / self.sides as f64;
-        [angle.cos(), angle.sin()]
+        self.normals[side]
     }
 
     /// The sides between whose normals a vector is, or the one along which it is on a line.
@@ -127,9 +147,11 @@ impl FrictionPolygon {
         if self.is_line() {
             return vec![usize::from(v[0] < 0.0)];
         }
-        let turns = v[1].atan2(v[0]).rem_euclid(TAU) / TAU * self.sides as f64 - self.turned;
-        let first = turns.floor().rem_euclid(self.sides as f64) as usize % self.sides;
-        vec![first, (first + 1) % self.sides]
+        let sides = self.normals.len();
+        let [first, second] = self.normals[0];
+        let turned = v[1].atan2(v[0]) - second.atan2(first);
+        let side = (turned.rem_euclid(TAU) / TAU * sides as f64).floor() as usize % sides;
+        vec![side, (side + 1) % sides]
     }
 
     /// The vector whose product with a slip is this part of it.
@@ -164,7 +186,9 @@ mod tests {
             beside: Beside::Limit(2),
         };
         for attempt in 0..ATTEMPTS {
-            let polygon = FrictionPolygon::new(&limit, &[1.0; 3], [1.0; 2], attempt).unwrap();
+            let normals = SideNormals::new(attempt);
+            let polygon =
+                FrictionPolygon::new(&limit, &[1.0; 3], [1.0; 2], (attempt, &normals)).unwrap();
             for k in 0..1000 {
                 let angle = 0.1 * f64::from(k);
                 let slip = [angle.cos(), angle.sin()];

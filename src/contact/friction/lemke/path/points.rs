@@ -53,7 +53,7 @@ impl Path {
 
     /// Makes these quantities of a point 0, and no others.
     fn arrange(&mut self, point: usize, wanted: &[Quantity]) {
-        let polygon = self.points[point];
+        let polygon = self.points[point].clone();
         for &quantity in wanted {
             if polygon.limits().any(|k| self.zero[k] == quantity) {
                 continue;
@@ -71,7 +71,7 @@ impl Path {
 
     /// What vanishes with a normal force slips as it opens, and from where it closes towards its slip.
     pub(super) fn turn(&mut self, theta: f64, point: usize, quantity: Quantity) {
-        let polygon = self.points[point];
+        let polygon = self.points[point].clone();
         let count = self.bounds.len();
         let sides = match (quantity, self.place(point)) {
             (Quantity::Force(_), Place::Corner(sides, _)) => sides.to_vec(),
