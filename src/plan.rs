@@ -39,8 +39,8 @@ pub struct Plan {
     pub node_owners: Numbered<TreeNodeId, usize>,
     /// The clusters, of which the interface problem is assembled.
     pub clusters: Numbered<ClusterId, ClusterPlan>,
-    /// The clusters in contact.
-    pub contact: Numbered<PairId, ClusterId>,
+    /// The pairs: the clusters in contact.
+    pub pairs: Numbered<PairId, ClusterId>,
     /// Treatment of contact on the way.
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
@@ -68,7 +68,7 @@ impl Plan {
             tree,
             node_owners: Numbered::default(),
             clusters: Numbered::default(),
-            contact: Numbered::default(),
+            pairs: Numbered::default(),
             merging,
         };
         plan.node_owners = plan.hand_out(catalog, ranks);
@@ -114,7 +114,7 @@ impl Plan {
                 conditions: self.tree.nodes[node].conditions,
             });
         }
-        self.contact = (self.clusters.ids())
+        self.pairs = (self.clusters.ids())
             .filter(|&c| self.clusters[c].is_in_contact())
             .collect();
     }
@@ -227,15 +227,14 @@ impl Plan {
         }
     }
 
-    /// The contact points of conditions of a cluster in contact, by its place among those: their places in `catalog`,
-    /// each once, ascending.
+    /// The contact points of conditions of a pair: their places in `catalog`, each once, ascending.
     pub fn points_of_conditions(
         &self,
         catalog: &Catalog,
         p: PairId,
         conditions: &[usize],
     ) -> BTreeSet<u32> {
-        let groups = &self.clusters[self.contact[p]].groups;
+        let groups = &self.clusters[self.pairs[p]].groups;
         let of_group = |&g: &GroupId| {
             let points = &self.tree.nodes[self.groups[g].node].points;
             let tangents = |&j: &u32| {
@@ -254,17 +253,14 @@ impl Plan {
         self.clusters.iter().map(|c| c.owner).collect()
     }
 
-    /// The owner of every cluster in contact.
-    pub fn contact_owners(&self) -> Numbered<PairId, usize> {
-        self.contact
-            .iter()
-            .map(|&c| self.clusters[c].owner)
-            .collect()
+    /// The owner of every pair.
+    pub fn pair_owners(&self) -> Numbered<PairId, usize> {
+        self.pairs.iter().map(|&c| self.clusters[c].owner).collect()
     }
 
-    /// The place of cluster c among those in contact.
-    pub fn contact_place(&self, c: ClusterId) -> Option<PairId> {
-        let at = self.contact.values().binary_search(&c);
+    /// The pair that cluster c is, if it is in contact.
+    pub fn pair_of(&self, c: ClusterId) -> Option<PairId> {
+        let at = self.pairs.values().binary_search(&c);
         at.ok().map(PairId::new)
     }
 
@@ -289,13 +285,13 @@ impl Plan {
 
     /// All groups of clusters in contact, cluster by cluster.
     pub fn groups_by_cluster(&self) -> Vec<GroupId> {
-        let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
+        let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
     /// From the owner of every such group to that of its cluster, cluster by cluster.
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
+        let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|cluster| {
             let groups = cluster.groups.iter();
             groups.map(|&g| (self.node_owners[self.groups[g].node], cluster.owner))

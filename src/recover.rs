@@ -186,7 +186,7 @@ pub fn recover(
             }))
         },
         |c, Reals(interface_dofs)| {
-            let pair = plan.contact_place(c).and_then(|p| step.pairs.get(&p));
+            let pair = plan.pair_of(c).and_then(|p| step.pairs.get(&p));
             let mut x = pair.map_or_else(Vec::new, |pair| pair.jumps().to_vec());
             x.extend(interface_dofs);
             boundaries.insert(plan.clusters[c].node, x);

@@ -135,7 +135,7 @@ impl<'a> Loading<'a> {
             let condensed = &cluster.condensed;
             let limits = limits.remove(&p)?;
             let mut load = loads
-                .get(&plan.clusters[plan.contact[p]].node)?
+                .get(&plan.clusters[plan.pairs[p]].node)?
                 .boundary()
                 .to_vec();
             if let Some(drive) = self.analysis.cluster_modes.get(&p) {
@@ -162,7 +162,7 @@ impl<'a> Loading<'a> {
         comm.gather(
             &plan.cluster_owners(),
             |c| {
-                let pair = plan.contact_place(c).and_then(|p| pairs.get(&p));
+                let pair = plan.pair_of(c).and_then(|p| pairs.get(&p));
                 let load = loads.get(&plan.clusters[c].node);
                 match pair {
                     Some(pair) => ClusterLoad {
@@ -195,7 +195,7 @@ impl<'a> Loading<'a> {
             return RigidModes::default();
         };
         let plan = self.context.plan;
-        let defining: Vec<usize> = (interface.laws.iter().zip(&plan.contact))
+        let defining: Vec<usize> = (interface.laws.iter().zip(&plan.pairs))
             .flat_map(|(law, &c)| {
                 let conditions = scene.conditions_of(&plan.clusters[c].groups);
                 law.defining.iter().map(move |&j| conditions[j])

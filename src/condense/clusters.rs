@@ -24,7 +24,7 @@ pub fn take_clusters(
         let Some(mut of_cluster) = merged.remove(&cluster.node) else {
             continue;
         };
-        let Some(p) = plan.contact_place(c) else {
+        let Some(p) = plan.pair_of(c) else {
             condensed.linear.insert(c, of_cluster);
             continue;
         };

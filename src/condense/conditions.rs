@@ -53,7 +53,7 @@ impl Factors<'_> {
     /// Cluster, by its place among those in contact, and group, cluster by cluster.
     fn places(&self) -> Vec<(PairId, GroupId)> {
         let plan = self.context.plan;
-        let contact = plan.contact.each();
+        let contact = plan.pairs.each();
         contact
             .flat_map(|(p, &c)| plan.clusters[c].groups.iter().map(move |&g| (p, g)))
             .collect()

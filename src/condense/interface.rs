@@ -81,7 +81,7 @@ fn contribution(
         };
         return Some((condensed.interface_dofs, contribution));
     }
-    let cluster = blocks.contact.get(&plan.contact_place(c)?)?;
+    let cluster = blocks.contact.get(&plan.pair_of(c)?)?;
     let condensed = &cluster.condensed;
     let contribution = Contribution {
         s: condensed.bilateral().to_owned(),

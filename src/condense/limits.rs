@@ -36,7 +36,7 @@ pub fn limits_of_clusters(context: &Context<'_>, made: &OnGroups<Limits>) -> OnP
             arrived.insert(groups[i], limits);
         },
     );
-    let contact = plan.contact.each().map(|(p, &c)| (p, &plan.clusters[c]));
+    let contact = plan.pairs.each().map(|(p, &c)| (p, &plan.clusters[c]));
     let own = contact.filter(|(_, cluster)| cluster.owner == comm.rank());
     own.map(|(p, cluster)| {
         let groups = cluster.groups.iter();

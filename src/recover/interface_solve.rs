@@ -48,7 +48,7 @@ impl FixedActiveSet<'_> {
             load.map_or(&[][..], CondensedLoad::boundary)
         };
         let questions = self.context.comm.gathered(&owners, |c| ClusterQuestion {
-            limits: plan.contact_place(c).and_then(|p| limits.get(&p)).cloned(),
+            limits: plan.pair_of(c).and_then(|p| limits.get(&p)).cloned(),
             load: boundary(c).to_vec(),
         });
         let mut answers = match self.root {
@@ -60,7 +60,7 @@ impl FixedActiveSet<'_> {
             &owners,
             |c| std::mem::take(&mut answers[c.index()]),
             |c, (change, Reals(x))| {
-                changes.extend(plan.contact_place(c).zip(change));
+                changes.extend(plan.pair_of(c).zip(change));
                 boundaries.insert(plan.clusters[c].node, x);
             },
         );
@@ -98,7 +98,7 @@ impl FixedActiveSetRoot<'_> {
         let CoupledChange { u, pairs } = solve(&coupled, (&r, &loads), &limits);
         let mut pairs = pairs.into_iter();
         let answer = |c: ClusterId| {
-            let change = plan.contact_place(c).and_then(|_| pairs.next());
+            let change = plan.pair_of(c).and_then(|_| pairs.next());
             let mut x = change
                 .as_ref()
                 .map_or_else(Vec::new, |change| change.jumps.clone());

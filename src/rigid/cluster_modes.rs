@@ -116,8 +116,8 @@ pub(super) fn cluster_modes(
         elsewhere[subdomain.body] |= *known != cluster;
     }
     let kinematics = Kinematics::new(scene.dim, &scene.bodies);
-    context.comm.scattered(&plan.contact_owners(), |p| {
-        let cluster = plan.contact[p];
+    context.comm.scattered(&plan.pair_owners(), |p| {
+        let cluster = plan.pairs[p];
         let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
         // Where the cluster leaves its nodes to the interface problem, bodies move these.
         let inside = !plan.leaves_its_nodes(plan.clusters[cluster].node);

@@ -239,7 +239,7 @@ impl Increments<'_> {
     /// A signal stopped the sweeps.
     fn sweep(&self, step: &mut StepProblem<'_>, start: Start) -> Result<Swept, Failure> {
         let (context, log) = (&self.context, self.log);
-        let owners = context.plan.contact_owners();
+        let owners = context.plan.pair_owners();
         let mut s_con = SCon::new(context.comm, owners.values(), &mut step.pairs);
         let solved = match &step.interface {
             None => {
