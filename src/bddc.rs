@@ -23,7 +23,9 @@ mod transform;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes, TreeNodeId};
+use contact_dd_partition::id::{
+    GroupId, MergeRootId, OnGroups, OnMergeRoots, OnTreeNodes, TreeNodeId,
+};
 use contact_dd_partition::numbered::Numbered;
 
 use self::between::{Between, between};
@@ -47,9 +49,9 @@ use crate::schur::symmetric::PackedSymmetric;
 #[derive(Debug)]
 pub struct Bddc {
     /// The owner of every cluster.
-    owners: Vec<usize>,
+    owners: Numbered<MergeRootId, usize>,
     /// Their unknowns, on all ranks.
-    dofs: Vec<Vec<InterfaceDof>>,
+    dofs: Numbered<MergeRootId, Vec<InterfaceDof>>,
     /// The contact groups between clusters.
     between: Vec<Between>,
     /// The contact groups of this rank, by number.
@@ -59,9 +61,9 @@ pub struct Bddc {
     classes: Classes,
     level: PreconditionerLevel,
     /// The clusters of this rank, in the bases of their classes.
-    locals: BTreeMap<usize, Local>,
+    locals: OnMergeRoots<Local>,
     /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
-    stale: Vec<bool>,
+    stale: Numbered<MergeRootId, bool>,
     coarse: Coarse,
     /// Number of coarse unknowns; on the root.
     pub coarse_dofs: usize,
@@ -78,9 +80,9 @@ impl Bddc {
     ) -> Result<Self, Failure> {
         let Context { comm, plan, .. } = *context;
         let owners = plan.owners_of(&plan.merge_roots);
-        let own = |c: usize| Some(clusters.get(&plan.merge_roots[c])?.dofs.clone());
+        let own = |c: MergeRootId| Some(clusters.get(&plan.merge_roots[c])?.dofs.clone());
         let dofs = comm.gathered(&owners, own).into_iter();
-        let mut dofs: Vec<Vec<InterfaceDof>> = dofs.flatten().collect();
+        let mut dofs: Numbered<MergeRootId, Vec<InterfaceDof>> = dofs.flatten().collect();
         comm.broadcast(&mut dofs);
         let numbers: Vec<GroupId> = (plan.groups.ids())
             .filter(|&g| plan.is_above_merge_roots(plan.groups[g].node))
@@ -97,7 +99,7 @@ impl Bddc {
         comm.broadcast(&mut of_groups);
         let between = between(&dofs, numbers.into_iter().zip(group_owners).zip(of_groups));
         Ok(Self {
-            stale: vec![true; dofs.len()],
+            stale: dofs.like(true),
             nodes: SharedNodes::new(context, &dofs),
             level: PreconditionerLevel::first(context.catalog.dim),
             between,
@@ -137,7 +139,12 @@ impl Bddc {
 
     /// The classes whose basis is made anew: those that aren't as `before`, and, where they are to be `renewed`, those of
     /// clusters that have `changed`.
-    fn made(&self, before: &Classes, changed: &[bool], renewed: bool) -> Vec<bool> {
+    fn made(
+        &self,
+        before: &Classes,
+        changed: &Numbered<MergeRootId, bool>,
+        renewed: bool,
+    ) -> Vec<bool> {
         let made = |class: &Class| {
             let has_changed = || class.clusters.iter().any(|&c| changed[c]);
             let is_new = before.place_of(class).is_none();
@@ -147,7 +154,7 @@ impl Bddc {
     }
 
     /// Replaces what clusters share.
-    fn refresh(&mut self, shared: BTreeMap<usize, Shared>) {
+    fn refresh(&mut self, shared: OnMergeRoots<Shared>) {
         for (c, shared) in shared {
             let local = self.locals.entry(c);
             local.and_modify(|local| local.shared = shared);
@@ -175,11 +182,11 @@ impl Bddc {
         let (before, changed) = self.classify(context, touched, renewed);
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
-        let cluster = |c: usize| &clusters[&plan.merge_roots[c]];
+        let cluster = |c: MergeRootId| &clusters[&plan.merge_roots[c]];
         let placement = |c| Placement::new(c, cluster(c), &self.classes, &self.ties);
         let shared = |c| Shared::new(cluster(c), placement(c), (&sprung, spring), par);
         let made = self.made(&before, &changed, renewed);
-        let own = self.owners.iter().enumerate();
+        let own = self.owners.each();
         let own = own.filter(|(_, owner)| **owner == comm.rank());
         let sides = own.map(|(c, _)| {
             let classes = &self.classes.of_clusters[c];
@@ -198,13 +205,13 @@ impl Bddc {
             };
             Ok((c, sides.map_err(moves)?))
         });
-        let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
+        let sides: OnMergeRoots<Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
             let local = shared(c).and_then(|shared| Local::new(shared, bases, self.level, par));
             Ok((c, local.map_err(moves)?))
         });
-        let made_anew: BTreeMap<usize, (Local, PackedSymmetric)> = comm.agree(locals.collect())?;
+        let made_anew: OnMergeRoots<(Local, PackedSymmetric)> = comm.agree(locals.collect())?;
         let (mut locals, mut parts) = (BTreeMap::new(), BTreeMap::new());
         for (c, (local, s)) in made_anew {
             parts.insert(c, Part::of(c, &local, s, &self.classes));
@@ -215,13 +222,13 @@ impl Bddc {
         let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
         self.refresh(comm.agree(refreshed.collect())?);
         self.locals.extend(locals);
-        if !changed.contains(&true) {
+        if !changed.values().contains(&true) {
             return Ok(());
         }
 
         let is_remade =
-            |c: usize| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
-        let remade: Vec<bool> = (0..changed.len()).map(is_remade).collect();
+            |c: MergeRootId| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
+        let remade: Numbered<MergeRootId, bool> = changed.ids().map(is_remade).collect();
         let holds = self.level.holds();
         (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
         self.coarse_dofs = comm.collect(&self.coarse.len()).into_iter().sum();
@@ -235,18 +242,18 @@ impl Bddc {
         context: &Context<'_>,
         touched: &Numbered<TreeNodeId, bool>,
         renewed: bool,
-    ) -> (Classes, Vec<bool>) {
+    ) -> (Classes, Numbered<MergeRootId, bool>) {
         let Context { comm, plan, .. } = *context;
         let ties = self.ties(comm);
         let classes = Classes::new(&self.dofs, &ties);
-        let shares_the_same = |c: usize| {
+        let shares_the_same = |c: MergeRootId| {
             let mut dofs = self.dofs[c].iter();
             classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
         };
-        let is_touched = |c: usize| self.stale[c] || touched[plan.merge_roots[c]];
-        let is_changed = |c: usize| !shares_the_same(c) || renewed && is_touched(c);
-        let changed: Vec<bool> = (0..self.dofs.len()).map(is_changed).collect();
-        self.stale = (0..changed.len())
+        let is_touched = |c: MergeRootId| self.stale[c] || touched[plan.merge_roots[c]];
+        let is_changed = |c: MergeRootId| !shares_the_same(c) || renewed && is_touched(c);
+        let changed: Numbered<MergeRootId, bool> = self.dofs.ids().map(is_changed).collect();
+        self.stale = (changed.ids())
             .map(|c| !changed[c] && is_touched(c))
             .collect();
         self.ties = ties;
@@ -285,7 +292,7 @@ impl Bddc {
 
     /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
     pub fn is_stale(&self) -> bool {
-        self.stale.contains(&true)
+        self.stale.values().contains(&true)
     }
 
     /// Which conditions of contact group g of this rank, between clusters, are open.

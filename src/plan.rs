@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 use contact_dd_partition::hierarchy::choice::{coarse_dofs, iteration_flops};
 use contact_dd_partition::hierarchy::tree::Tree;
-use contact_dd_partition::id::{BlockId, ClusterId, GroupId, PairId, TreeNodeId};
+use contact_dd_partition::id::{BlockId, ClusterId, GroupId, MergeRootId, PairId, TreeNodeId};
 use contact_dd_partition::numbered::Numbered;
 use contact_dd_partition::problem::Catalog;
 
@@ -45,7 +45,7 @@ pub struct Plan {
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.
-    pub merge_roots: Vec<TreeNodeId>,
+    pub merge_roots: Numbered<MergeRootId, TreeNodeId>,
 }
 
 impl Plan {
@@ -62,7 +62,7 @@ impl Plan {
                 .map(|v| GroupPlan::new(catalog, &tree, v))
                 .collect(),
             merge_roots: match merging {
-                Merging::Clusters => tree.clusters.clone(),
+                Merging::Clusters => tree.clusters.clone().into(),
                 _ => tree.roots().collect(),
             },
             tree,
@@ -84,8 +84,8 @@ impl Plan {
     /// The owner of every node of the hierarchy.
     fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Numbered<TreeNodeId, usize> {
         let top = match self.merging {
-            Merging::ActiveSet | Merging::Clusters => self.merge_roots.clone(),
-            _ => cluster_nodes(&self.tree, self.merging, &self.merge_roots),
+            Merging::ActiveSet | Merging::Clusters => self.merge_roots.values().to_vec(),
+            _ => cluster_nodes(&self.tree, self.merging, self.merge_roots.values()),
         };
         let mut costs = self.tree.nodes.like(0.0);
         for &v in &top {
@@ -105,7 +105,7 @@ impl Plan {
     fn form_clusters(&mut self, merging: Merging) {
         self.merging = merging;
         self.clusters = Numbered::default();
-        for node in cluster_nodes(&self.tree, merging, &self.merge_roots) {
+        for node in cluster_nodes(&self.tree, merging, self.merge_roots.values()) {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
                 node,
@@ -130,13 +130,13 @@ impl Plan {
     }
 
     /// The owners of nodes of the hierarchy.
-    pub fn owners_of(&self, nodes: &[TreeNodeId]) -> Vec<usize> {
+    pub fn owners_of<I>(&self, nodes: &Numbered<I, TreeNodeId>) -> Numbered<I, usize> {
         nodes.iter().map(|&v| self.node_owners[v]).collect()
     }
 
     /// Whether fixed active sets are merged no further than to node v of the hierarchy.
     pub fn is_merge_root(&self, v: TreeNodeId) -> bool {
-        self.merge_roots.binary_search(&v).is_ok()
+        self.merge_roots.values().binary_search(&v).is_ok()
     }
 
     /// The node of the hierarchy that node v is merged into.

@@ -65,6 +65,9 @@ ids! {
     ClusterId, OnClusters;
     /// A pair: a cluster in contact, by its place among those alone.
     PairId, OnPairs;
+    /// A node of the hierarchy above which nothing is merged where active sets are fixed, by its place among those alone,
+    /// ascending: the clusters of the iterative interface solver.
+    MergeRootId, OnMergeRoots;
 }
 
 impl From<BlockId> for TreeNodeId {

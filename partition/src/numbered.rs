@@ -34,6 +34,13 @@ impl<I, T> FromIterator<T> for Numbered<I, T> {
     }
 }
 
+impl<I: Into<usize>, T> Numbered<I, T> {
+    /// The value of a number, if it is one of these.
+    pub fn get(&self, id: I) -> Option<&T> {
+        self.values.get(id.into())
+    }
+}
+
 impl<I: Into<usize>, T> Index<I> for Numbered<I, T> {
     type Output = T;
 
@@ -110,5 +117,22 @@ impl<I: From<usize>, T> Numbered<I, T> {
     /// All numbers, ascending, each with its value.
     pub fn each(&self) -> impl DoubleEndedIterator<Item = (I, &T)> + ExactSizeIterator {
         self.ids().zip(&self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::id::GroupId;
+
+    #[test]
+    fn a_number_finds_its_own_value() {
+        let mut letters: Numbered<GroupId, char> = vec!['a', 'b'].into();
+        let c = letters.push('c');
+        assert_eq!((letters[c], letters.get(GroupId::new(3))), ('c', None));
+        letters[GroupId::new(0)] = 'z';
+        let all: String = letters.each().map(|(g, x)| format!("{g}{x}")).collect();
+        assert_eq!(all, "0z1b2c");
+        assert_eq!(letters.like(1).values(), [1; 3]);
     }
 }

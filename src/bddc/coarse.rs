@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{OnTreeNodes, TreeNodeId};
+use contact_dd_partition::id::{MergeRootId, OnMergeRoots, OnTreeNodes, TreeNodeId};
 use contact_dd_partition::numbered::Numbered;
 use faer::{Mat, Par};
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ pub struct Part {
 
 impl Part {
     /// The part of cluster c, which leaves `s`.
-    pub fn of(c: usize, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
+    pub fn of(c: MergeRootId, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
         let first = |&k: &usize| classes.list[k].dofs[0];
         let counts = local.bases().iter().map(|basis| basis.coarse);
         Self {
@@ -141,17 +141,12 @@ impl Coarse {
         &mut self,
         context: &Context<'_>,
         classes: &Classes,
-        mut parts: BTreeMap<usize, Part>,
-        remade: &[bool],
+        mut parts: OnMergeRoots<Part>,
+        remade: &Numbered<MergeRootId, bool>,
         holds: &[f64],
     ) -> Result<(), Failure> {
         let Context { comm, plan, .. } = *context;
-        for (c, &top) in plan
-            .merge_roots
-            .iter()
-            .enumerate()
-            .filter(|(c, _)| remade[*c])
-        {
+        for (c, &top) in plan.merge_roots.each().filter(|&(c, _)| remade[c]) {
             self.pass_up(context, top, parts.remove(&c));
         }
         let mut factorized = Ok(());
@@ -256,7 +251,7 @@ impl Coarse {
         let plan = context.plan;
         let parent = |v: TreeNodeId| plan.tree.nodes[v].parent;
         let mut arrived = BTreeMap::new();
-        for (c, &top) in plan.merge_roots.iter().enumerate() {
+        for (c, &top) in plan.merge_roots.each() {
             let load = loads.remove(&c);
             carry(context, top, parent(top), load, &mut arrived, Direction::Up);
         }
@@ -300,7 +295,7 @@ impl Coarse {
                 );
             }
         }
-        let of_clusters = plan.merge_roots.iter().enumerate();
+        let of_clusters = plan.merge_roots.each();
         of_clusters
             .filter_map(|(c, top)| Some((c, solved.remove(top)?)))
             .collect()

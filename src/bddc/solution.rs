@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{OnGroups, OnTreeNodes};
+use contact_dd_partition::id::{MergeRootId, OnGroups, OnMergeRoots, OnTreeNodes};
 
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
@@ -73,13 +73,13 @@ impl Bddc {
             true => self.loads_of(comm, loads.forces),
             false => Vec::new(),
         };
-        let load_of = |c: usize| {
+        let load_of = |c: MergeRootId| {
             let mut load = loads.clusters[&plan.merge_roots[c]].clone();
             let own = forces.iter().filter(|(cluster, ..)| *cluster == c);
             own.for_each(|&(_, place, force)| load[place] += force);
             load
         };
-        let constants_of = |c: usize| -> Vec<f64> {
+        let constants_of = |c: MergeRootId| -> Vec<f64> {
             let dofs = self.dofs[c].iter();
             dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
                 .collect()
@@ -145,7 +145,7 @@ impl Bddc {
             owners: &self.owners,
             classes: &self.classes,
             locals: &self.locals,
-            matrices: &matrices.collect::<Vec<_>>(),
+            matrices: &matrices.collect(),
             coarse: &self.coarse,
             is_stale: self.is_stale(),
             is_judged: self.is_judged(),
@@ -157,7 +157,7 @@ impl Bddc {
     /// The shared unknowns of clusters whose unknowns, by node, are `known`. Collective.
     fn start(&self, comm: &Comm, known: &OnTreeNodes<Vec<f64>>, plan: &Plan) -> Vectors {
         let classes = &self.classes.list;
-        let ends: Vec<(usize, usize)> = (classes.iter().enumerate())
+        let ends: Vec<(usize, MergeRootId)> = (classes.iter().enumerate())
             .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
             .collect();
         let home = |k: usize| self.owners[classes[k].clusters[0]];
@@ -196,7 +196,7 @@ impl Bddc {
 
     /// Loads on clusters of forces on the jumps of the contact groups of this rank, on all ranks: the first that has
     /// an unknown, and its place there. Collective.
-    fn loads_of(&self, comm: &Comm, forces: &OnGroups<Vec<f64>>) -> Vec<(usize, usize, f64)> {
+    fn loads_of(&self, comm: &Comm, forces: &OnGroups<Vec<f64>>) -> Vec<(MergeRootId, usize, f64)> {
         let mut loads = Vec::new();
         comm.gather(
             &self.group_owners(),
@@ -208,7 +208,8 @@ impl Bddc {
             |i, of_group| {
                 let clusters = &self.between[i].clusters;
                 loads.extend(of_group.into_iter().filter_map(|(dof, load)| {
-                    let place = |&c: &usize| Some((c, self.dofs[c].binary_search(&dof).ok()?));
+                    let place =
+                        |&c: &MergeRootId| Some((c, self.dofs[c].binary_search(&dof).ok()?));
                     let (c, place) = clusters.iter().find_map(place)?;
                     Some((c, place, load))
                 }));
@@ -239,7 +240,7 @@ impl Bddc {
         clusters: &Vectors,
         unbalanced: &Vectors,
     ) -> OnGroups<(Iterate, Vec<f64>)> {
-        let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
+        let ways: Vec<(usize, MergeRootId)> = (self.between.iter().enumerate())
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();
         let forces = self.locals.keys().map(|&c| {
@@ -251,7 +252,7 @@ impl Bddc {
             self.ties.carry(&mut forces);
             (c, forces)
         });
-        let forces: BTreeMap<usize, BTreeMap<InterfaceDof, f64>> = forces.collect();
+        let forces: OnMergeRoots<BTreeMap<InterfaceDof, f64>> = forces.collect();
         let mut of_groups: OnGroups<[BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
         comm.route(
             ways.iter()
