@@ -166,8 +166,8 @@ class Result:
 
     @property
     def quantity_errors(self) -> dict[str, float | None]:
-        """The estimated errors of the mesh in the quantities, each its value less the exact one, by their names; `None` where
-        there is no estimate."""
+        """The estimated errors of the mesh in the quantities, each its value less the exact one, by their names;
+        `None` where there is no estimate."""
         errors = {one["name"]: one.get("error") for one in self._report_of_step().get("quantities") or []}
         return {name: None if error is None else number(error) for name, error in errors.items()}
 
