@@ -6,12 +6,13 @@ import time
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from contact_dd.errors import InputError, NotConverged, OutputError
 from contact_dd.geometry import meshed
 from contact_dd.model import Model
 from contact_dd.result import Result
-from contact_dd.sizes import relative_errors, sizes_for
+from contact_dd.sizes import errors_of, relative_errors, sizes_for
 
 MOST_ROUNDS = 12
 
@@ -30,7 +31,7 @@ class Round:
 
     dofs: int
     error: float
-    """Estimated, relative, in the energy norm."""
+    """Estimated and relative: in the energy norm, or of the quantity."""
     seconds: float
     """Since the first mesh was begun."""
     result: Result
@@ -38,11 +39,11 @@ class Round:
 
 
 def adapt(
-    model: Model, error: float, geometry: str | Path | None = None, *, ranks: int = 2,
+    model: Model, error: float, geometry: str | Path | None = None, *, quantity: str | None = None, ranks: int = 2,
     folder: str | Path | None = None, progress: bool = True,
 ) -> tuple[Result, list[Round]]:
     """Meshes and solves a model until the estimated error, relative and in the energy norm, is at most `error`, in
-    every load step.
+    every load step; with the name of one of its quantities that of the `quantity`, in the last load step.
 
     `geometry` is a file that Gmsh meshes, with the groups of the model; without one it is Gmsh's current model. The
     first mesh has the sizes that the geometry asks for; the last one is that of the model then. Cells are quadratic.
@@ -51,10 +52,17 @@ def adapt(
     """
     if not 0 < error < 1:
         raise InputError(f"an error of {error}; expected one above 0 and below 1")
+    wanted: list[dict[str, Any]] = model.scene.get("quantity", [])
+    if quantity is not None and quantity not in (names := [one["name"] for one in wanted]):
+        known = ", ".join(map(repr, names)) or "none, as the model asks for none"
+        raise InputError(f"there is no quantity {quantity!r}; known are {known}")
+    order = wanted.copy()
     path = None if geometry is None else Path(geometry)
     start, sizes, rounds, aim = time.perf_counter(), None, list[Round](), AIM * error
     said: list[warnings.WarningMessage] = []
     try:
+        # Cells have errors of the first one.
+        wanted.sort(key=lambda one: quantity is not None and one["name"] != quantity)
         while True:
             if folder is not None and rounds:
                 keep(rounds[-1].result, len(rounds))
@@ -63,7 +71,7 @@ def adapt(
             with warnings.catch_warnings(record=True) as said:
                 warnings.simplefilter("always")
                 result = model.run(ranks, folder=folder, progress=False)
-            found, _ = relative_errors(result)
+            found, squares = relative_errors(result) if quantity is None else errors_of(result, quantity)
             rounds.append(Round(result.report["dofs"], found, time.perf_counter() - start, result))
             if progress:
                 last = rounds[-1]
@@ -74,10 +82,13 @@ def adapt(
                 late = NotConverged(f"after {MOST_ROUNDS} meshes the error is {found:.2g}, above {error:g}")
                 late.result = result
                 raise late
-            sizes = sizes_for(result, max(aim, found / MOST_PER_ROUND), is_first=len(rounds) == 1)
+            goal = max(aim, found / MOST_PER_ROUND)
+            # Of an error in the energy norm the squares of cells' errors add up.
+            sizes = sizes_for(result, squares, goal**2 if quantity is None else goal, is_first=len(rounds) == 1)
             if found < 2 * error:
                 aim *= AIM
     finally:
+        wanted[:] = order
         for message, category in dict.fromkeys((str(one.message), one.category) for one in said):
             warnings.warn(message, category, stacklevel=2)
 

@@ -108,6 +108,7 @@ def parser() -> argparse.ArgumentParser:
     adapted = commands.add_parser("adapt", help="mesh and solve until the error is small", description=what)
     adapted.add_argument("scene", type=Path, help="scene.toml")
     adapted.add_argument("--error", type=float, required=True, help="relative, in the energy norm: 1e-2 is 1 %%")
+    adapted.add_argument("--quantity", metavar="NAME", help="the error is that of this quantity, relative to its value")
     adapted.add_argument("--geometry", type=Path, help="file that Gmsh meshes (default: the scene's mesh with .geo)")
     adapted.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
     adapted.add_argument("--folder", type=Path, help="of mesh and result (default: the scene's stem + -adapted)")
@@ -217,7 +218,10 @@ def adapt(arguments: argparse.Namespace) -> None:
     geometry = arguments.geometry or mesh.with_suffix(".geo")
     folder = arguments.folder or arguments.scene.with_name(arguments.scene.stem + "-adapted")
     # A mesh is made first of all.
-    result, rounds = solve_adapted(Model(b"", scene), arguments.error, geometry, ranks=arguments.ranks, folder=folder)
+    model, quantity = Model(b"", scene), arguments.quantity
+    result, rounds = solve_adapted(
+        model, arguments.error, geometry, quantity=quantity, ranks=arguments.ranks, folder=folder
+    )
     try:
         print_bars(compare([one.result for one in rounds], adapted=True))
     except InputError:

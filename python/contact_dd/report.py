@@ -43,7 +43,7 @@ TIP: Shape = {
 }
 DERIVATIVE: Shape = {"parameter": str, "kind": str, "at": MAYBE, "derivative": MAYBE}
 QUANTITY: Shape = {
-    "name": str, "kind": str, "value": MAYBE, "node": (int, type(None)), "derivatives": [DERIVATIVE],
+    "name": str, "kind": str, "value": MAYBE, "error": MAYBE, "node": (int, type(None)), "derivatives": [DERIVATIVE],
 }
 # What may be null or missing.
 OPTIONAL: dict[str, Shape] = {

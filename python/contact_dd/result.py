@@ -164,6 +164,13 @@ class Result:
         """The values of the quantities that the scene asks for, by their names."""
         return {one["name"]: number(one["value"]) for one in self._report_of_step().get("quantities") or []}
 
+    @property
+    def quantity_errors(self) -> dict[str, float | None]:
+        """The estimated errors of the mesh in the quantities, each its value less the exact one, by their names;
+        `None` where there is no estimate."""
+        errors = {one["name"]: one.get("error") for one in self._report_of_step().get("quantities") or []}
+        return {name: None if error is None else number(error) for name, error in errors.items()}
+
     def gradient(self, name: str) -> dict[str, float]:
         """The derivatives of a quantity, by the names of the parameters: loads (of a factor), Young's moduli, gaps,
         prescribed displacements and coefficients of friction.

@@ -40,7 +40,8 @@ class SizeField:
 
 
 def relative_errors(result: Result) -> tuple[float, Floats]:
-    """The estimated error relative to the energy norm and the part of each cell, of all load steps the largest."""
+    """The estimated error relative to the energy norm and the square of that of each cell, of all load steps the
+    largest."""
     of_cells = np.zeros(len(result.cell_data["Subdomain"]))
     largest = 0.0
     for step in range(1, result.steps + 1):
@@ -54,22 +55,34 @@ def relative_errors(result: Result) -> tuple[float, Floats]:
         if norm > 0:
             largest = max(largest, estimate["relative"])
             of_cells = np.maximum(of_cells, of_step.cell_data["EnergyError"] / norm)
-    return largest, of_cells
+    return largest, of_cells**2
 
 
-def sizes_for(result: Result, aim: float, is_first: bool) -> SizeField:
-    """The sizes with which the error is about `aim`, relative, with as few cells as can be.
+def errors_of(result: Result, quantity: str) -> tuple[float, Floats]:
+    """The estimated error of a quantity relative to its value, and the size of the part of each cell, where the
+    quantity is the first of the scene."""
+    value, error = result.quantities[quantity], result.quantity_errors[quantity]
+    if error is None or not value:
+        without = result.report.get("without_derivatives") or "it has no estimate"
+        why = without if error is None else "its value is 0"
+        raise InputError(f"{result.path}: there is no error of quantity {quantity!r} to adapt to: {why}")
+    return abs(error / value), np.abs(result.cell_data["QuantityError"] / value)
+
+
+def sizes_for(result: Result, errors: Floats, aim: float, is_first: bool) -> SizeField:
+    """The sizes with which the sum of the cells' `errors`, squares of the energy norm or parts of the error of a
+    quantity, is about `aim`, with as few cells as can be.
 
     After Li and Bettess: with r the size after over that before, p the order, d the dimension, cells are Σ r^−d and
     their errors Σ e² r^2p = η²; the fewest cells have r^(2p+d) = μ/e². At a singularity, which shows on an
-    adapted mesh, a cell's squared error falls like its size, whatever its order."""
-    _, errors = relative_errors(result)
+    adapted mesh, a cell's squared error falls like its size, whatever its order. Errors of a quantity are products of
+    two of the energy norm, and fall as these squares do."""
     d = 3 if result.is_in_space else 2
     p = max(KINDS[cells.kind][1] for cells in result.cells)
-    squares = np.maximum(errors**2, 1e-24 * (errors**2).sum())
+    squares = np.maximum(errors, 1e-24 * errors.sum())
     q = 2 * p + d
     smooth = squares if is_first else np.minimum(squares, SINGULAR * squares.mean())
-    mu = (aim**2 / (smooth ** (d / q)).sum()) ** (q / (2 * p))
+    mu = (aim / (smooth ** (d / q)).sum()) ** (q / (2 * p))
     ratio = np.clip((mu / smooth) ** (1 / q) * smooth / squares, LEAST, MOST)
     sizes = at_nodes(result, ratio)
     asked = SizeField([])

@@ -53,6 +53,32 @@ def test_the_true_error_is_about_that_asked(scene, tmp_path, asked):
     assert abs(peak.values[-1] - 9.35135) <= peak.error <= 10 * abs(peak.values[-1] - 9.35135)
 
 
+def test_cells_are_small_where_a_quantity_needs_them(scene, tmp_path):
+    """The smoothed peak of Hertz' contact, of which a mesh of 666,078 dofs has ten digits."""
+    geometry = tmp_path / "hertz.geo"
+    geometry.write_text(HERTZ)
+    model = Model.from_scene(scene("hertz"))
+    model.quantity("low", "displacement", at=[0.0, -2.0], direction="y")
+    model.quantity("smooth", "largest_pressure", contact="contact", over=0.2)
+
+    def off(result):
+        return abs(result.quantities["smooth"] / 9.283495313 - 1)
+
+    result, rounds = adapt(model, 1e-4, geometry, quantity="smooth", ranks=1, progress=False)
+    assert rounds[-1].error <= 1e-4
+    assert off(result) <= 1e-4
+    assert list(result.quantities) == ["smooth", "low"]
+    parts = result.cell_data["QuantityError"]
+    assert abs(parts.sum() - result.quantity_errors["smooth"]) <= 1e-9 * np.abs(parts).sum()
+    # As many as that without them being where they matter don't do.
+    by_energy, _ = adapt(model, 3e-3, geometry, ranks=1, progress=False)
+    assert list(by_energy.quantities) == ["low", "smooth"]
+    assert by_energy.report["dofs"] > 1.5 * result.report["dofs"]
+    assert off(by_energy) > off(result)
+    with pytest.raises(InputError, match="there is no quantity 'high'; known are 'low', 'smooth'"):
+        adapt(model, 1e-4, geometry, quantity="high")
+
+
 def test_a_script_that_makes_its_mesh_itself_is_run_with_other_sizes(tmp_path):
     (tmp_path / "crack.geo").write_text(CRACK)
     model = Model(b"", {"plane": "strain"})

@@ -22,9 +22,6 @@ pub use super::status::Status;
 use super::tangent::TangentialLimit;
 pub use super::tangent::{ForceBound, TangentialCondition};
 
-/// Ways of Lemke's path that are tried.
-const ATTEMPTS: usize = 4;
-
 /// The contact problem with friction.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionProblem<'a> {

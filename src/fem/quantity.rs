@@ -1,5 +1,6 @@
 //! Quantities of the solution and their derivatives, as the report has them.
 
+use contact_dd_partition::id::OnBlocks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,8 @@ pub struct QuantityValue {
     pub kind: String,
     /// Its value (m, Pa, Pa √m, N, N m or J; forces, moments and energies in the plane per metre of thickness).
     pub value: f64,
+    /// Estimated error of the mesh: the value less the exact one, about; `null` where there is no estimate.
+    pub error: Option<f64>,
     /// Tag of the node at which it is taken, of the largest pressure that which has it; `null` where it isn't one of a node.
     pub node: Option<i64>,
     /// Its derivatives with respect to the parameters of the scene; empty where there are none.
@@ -39,6 +42,8 @@ pub struct Quantities {
     pub values: Vec<QuantityValue>,
     /// Contact points whose status is about to change, in words.
     pub about_to_change: Vec<String>,
+    /// Parts of the cells of every block of this rank in the estimated error of the first one.
+    pub errors_of_cells: OnBlocks<Vec<f64>>,
     /// Why there are no derivatives, or none of a quantity, in words.
     pub without_derivatives: Option<String>,
 }

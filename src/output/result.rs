@@ -56,6 +56,8 @@ pub(super) enum Of {
     Stress,
     /// Left out where nothing comes or goes.
     Presence,
+    /// Left out where stresses are, or where the scene asks for no quantity.
+    Quantity,
 }
 
 /// A list as the file has it.
@@ -141,4 +143,6 @@ lists! {
     von_mises: f64, "von Mises stresses", "CellData/VonMises", Cell, Stress;
     /// Estimated error of the cells in the energy norm (√N, per metre of thickness).
     energy_error: f64, "errors", "CellData/EnergyError", Cell, Stress;
+    /// Parts of the cells in the estimated error of the first quantity, in its unit; NaN where it has none.
+    quantity_error: f64, "errors of a quantity", "CellData/QuantityError", Cell, Quantity;
 }

@@ -18,6 +18,7 @@
 mod crack_tip;
 mod derivatives;
 mod functional;
+mod mesh_error;
 mod near_change;
 mod slip_conditions;
 mod slipping;
@@ -33,10 +34,11 @@ use contact_dd_partition::quantity::{Parameter, Quantity, QuantityKind};
 
 use self::derivatives::{Sensitivity, derivatives};
 use self::functional::{Functional, MaterialForces};
+use self::mesh_error::MeshError;
 use self::near_change::about_to_change;
 use self::slipping::SlippingPoints;
 use self::solved::Solved;
-use self::transposed::TransposedProblem;
+use self::transposed::{Transposed, TransposedProblem};
 use crate::context::LoadPoint;
 use crate::fem::quantity::{Derivative, Quantities, QuantityValue};
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -104,50 +106,65 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
     let directions = RefCell::default();
     for number in 0..catalog.quantities.len() {
         let functional = Functional::new(solved, number, &forces);
-        let mut found = Vec::new();
+        let quantity = &catalog.quantities[number];
+        let (mut found, mut error) = (Vec::new(), None);
         if has_derivatives {
             let problem = TransposedProblem::new(solved, &functional, (&slipping, &directions));
             let parts = (solved, &functional, &forces);
-            let is_off;
-            (found, is_off) = derivatives_of(parts, &problem);
-            if context.comm.decide(is_off) {
-                let name = &catalog.quantities[number].name;
+            let (state, off) = solve(parts, &problem);
+            if context.comm.decide(off > RECIPROCITY || off.is_nan()) {
+                let name = &quantity.name;
                 all.without_derivatives = Some(format!(
                     "the transposed problem of '{name}' can't be solved well enough with the contacts as they are"
                 ));
-                found.clear();
+            } else {
+                found = derivatives(&sensitivity(parts, &problem, &state));
+                if let Some(of_mesh) = MeshError::new(solved, quantity, &state) {
+                    error = Some(of_mesh.error);
+                    if number == 0 {
+                        all.errors_of_cells = of_mesh.of_cells;
+                    }
+                }
             }
         }
-        let quantity = &catalog.quantities[number];
-        (all.values).push(value(quantity, &functional, &catalog.parameters, &found));
+        let value = value(quantity, &functional, &catalog.parameters, &found);
+        all.values.push(QuantityValue { error, ..value });
     }
     all
 }
 
-/// The derivatives of a functional, and whether its transposed problem is solved badly; on the root. Collective.
-fn derivatives_of(
-    (solved, functional, forces): (Solved<'_>, &Functional, &MaterialForces),
-    problem: &TransposedProblem<'_>,
-) -> (Vec<f64>, bool) {
+/// A solved load step, a functional of it, and K u of its materials.
+type Parts<'a> = (Solved<'a>, &'a Functional, &'a MaterialForces);
+
+/// The solution of the transposed problem of a functional, and by how much it misses the law of reciprocity, which the root
+/// knows. Collective.
+fn solve(parts: Parts<'_>, problem: &TransposedProblem<'_>) -> (Transposed, f64) {
     let mut state = problem.solve();
     let mut off = f64::INFINITY;
     for round in 0.. {
-        let sensitivity = Sensitivity {
-            solved,
-            functional,
-            problem,
-            state: &state,
-            forces,
-        };
         let before = off;
-        off = sensitivity.reciprocity();
+        off = sensitivity(parts, problem, &state).reciprocity();
         let goes_on = off > GOOD && off < 0.5 * before && round < REFINEMENTS;
-        if !solved.fixed.context.comm.decide(goes_on) {
-            return (derivatives(&sensitivity), off > RECIPROCITY || off.is_nan());
+        if !parts.0.fixed.context.comm.decide(goes_on) {
+            break;
         }
         state = problem.refine(state);
     }
-    (Vec::new(), true)
+    (state, off)
+}
+
+fn sensitivity<'a>(
+    (solved, functional, forces): Parts<'a>,
+    problem: &'a TransposedProblem<'a>,
+    state: &'a Transposed,
+) -> Sensitivity<'a> {
+    Sensitivity {
+        solved,
+        functional,
+        problem,
+        state,
+        forces,
+    }
 }
 
 /// Value and derivatives of a quantity for the report.
@@ -169,5 +186,6 @@ fn value(
         value: functional.value,
         node: Some(functional.node).filter(|&node| node != -1),
         derivatives: parameters.iter().zip(found).map(derivative).collect(),
+        error: None,
     }
 }

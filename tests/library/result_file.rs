@@ -95,6 +95,7 @@ fn layout(cells: &[usize], conditions: &[usize]) -> Layout {
         times: Vec::new(),
         stress: true,
         presence: false,
+        quantities: false,
         title: "Two cracks".to_owned(),
         units: Units::Millimetre,
         plane: None,

@@ -1,5 +1,6 @@
 //! Quantities of the solution, and their derivatives.
 
+mod mesh_error;
 mod study;
 mod tips;
 mod values;

@@ -340,16 +340,20 @@ def quantities(report, units):
     found = report.get("quantities")
     if not found:
         return ""
-    rows = [[one["name"], si(one["value"], units.of_quantity(one["kind"]), 5), *most(one)] for one in found[:MOST_ROWS]]
+    rows = [
+        [one["name"], si(one["value"], units.of_quantity(one["kind"]), 5),
+         "–" if one.get("error") is None else si(one["error"], units.of_quantity(one["kind"]), 2), *most(one)]
+        for one in found[:MOST_ROWS]
+    ]
     words = (
-        "The parameter that changes a quantity most when it rises by its own size, and by how much of the quantity; "
-        "the report has all derivatives."
+        "The error of the mesh is an estimate of the value less the exact one. The parameter is the one that changes a "
+        "quantity most when it rises by its own size, and by how much of the quantity; the report has all derivatives."
     )
     if report.get("without_derivatives"):
         words = f"There are no derivatives: {report['without_derivatives']}."
     elif report.get("about_to_change"):
         words += f" They hold on one side: {'; '.join(report['about_to_change'])} is about to change its status."
-    rows = table(["quantity", "", "depends most on", "by"], rows, numbers=(1, 3))
+    rows = table(["quantity", "", "error of the mesh", "depends most on", "by"], rows, numbers=(1, 2, 4))
     return section("Quantities", rows, more(found, ""), f"<p><small>{escape(words)}</small></p>")
 
 

@@ -9,7 +9,8 @@
 //! A. Klarbring, J.-S. Pang, *Existence of solutions to discrete semicoercive frictional contact problems*, SIAM J.
 //! Optim. 8 (1998).
 //!
-//! In space friction has a polygon in the place of the disc, and the end of the path is near the solution.
+//! In space friction has a polygon in the place of the disc, and the end of the path is near the solution: the nearer, the
+//! finer polygons are where points slip. Slips that turn go from side to side of fine ones, so paths begin with few sides.
 //!
 //! Closed rows that depend on each other give way a little. A bound that vanishes as the contact opens, c + μ λ, falls
 //! steeply to 0 with the last of the force: what ends there is about to open.
@@ -19,10 +20,16 @@ mod polygon;
 mod responses;
 
 use self::path::{End, Path};
+use self::polygon::Polygons;
 use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
+/// Attempts, each of which goes another way, in the plane and in space.
+const ATTEMPTS: usize = 4;
+const IN_SPACE: usize = 2;
+/// How often polygons become finer.
+const FINER: usize = 3;
 /// Limits up to which the path is followed: its matrix is dense.
 const MOST_LIMITS: usize = 3000;
 /// Pivots between which its round-off may grow, but for that of large problems.
@@ -34,15 +41,15 @@ const EXCHANGES_EACH: usize = 8;
 const STANDS_STILL: usize = 100;
 
 impl FrictionProblem<'_> {
-    /// The end of the path, and the pivots that it took; `None` where it doesn't get there. Every `attempt` goes
-    /// another way.
-    pub(super) fn follow(&self, attempt: usize) -> (Option<End>, usize) {
+    /// The end of the path with these `polygons` of friction, and the pivots that it took; `None` where it doesn't get
+    /// there. Every attempt goes another way.
+    fn follow(&self, polygons: &Polygons) -> (Option<End>, usize) {
         let is_prescribed =
             |tangent: &TangentialLimit| matches!(tangent.beside, Beside::Prescribed(_));
         if self.contact.bounds.len() > MOST_LIMITS || self.tangents.iter().any(is_prescribed) {
             return (None, 0);
         }
-        let mut path = Path::new(self, attempt);
+        let mut path = Path::new(self, polygons);
         let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
         let (mut theta, mut way) = (f64::INFINITY, -1.0);
         let (mut entered, mut still) = (None, 0);
@@ -69,6 +76,32 @@ impl FrictionProblem<'_> {
             }
         }
         (None, most)
+    }
+
+    /// Offers the ends of paths, with the pivots that each took, until one of them is taken as the beginning of a solution:
+    /// in space every attempt goes on with polygons that are finer where points slip in the path before.
+    pub(super) fn try_paths<T>(
+        &self,
+        mut take: impl FnMut(Option<&End>, usize) -> Option<T>,
+    ) -> Option<T> {
+        let in_space = self
+            .tangents
+            .iter()
+            .any(|tangent| matches!(tangent.of_point(), Some(([_, Some(_)], _))));
+        for attempt in 0..if in_space { IN_SPACE } else { ATTEMPTS } {
+            let mut polygons = Polygons::new(attempt);
+            for _ in 0..=FINER {
+                let (end, pivots) = self.follow(&polygons);
+                if let Some(taken) = take(end.as_ref(), pivots) {
+                    return Some(taken);
+                }
+                let Some(finer) = end.and_then(|end| polygons.finer(end.directions)) else {
+                    break;
+                };
+                polygons = finer;
+            }
+        }
+        None
     }
 
     /// What a limit's jump is multiplied by in the scale of energies, and its force divided.

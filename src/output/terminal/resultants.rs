@@ -121,12 +121,16 @@ fn tips(tips: &[StressIntensity], units: Units) -> Vec<String> {
     })
 }
 
-/// The quantities that the scene asks for, and the parameter that changes each most, in proportion to its own value.
+/// The quantities that the scene asks for, the estimated error of the mesh in each, and the parameter that changes it most, in
+/// proportion to its own value.
 fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<String> {
     let title = "quantity";
     let names = quantities.iter().map(|of| of.name.chars().count());
     let width = names.max().unwrap_or(0).max(title.len());
-    let head = format!("{title:<width$} {:>14} {:<6} % per % of", "", "");
+    let head = format!(
+        "{title:<width$} {:>14} {:<6} {:>12} % per % of",
+        "", "", "mesh error"
+    );
     table(head, quantities, |of| {
         let unit = match &of.kind[..] {
             "displacement" | "opening" => units.length().to_owned(),
@@ -146,7 +150,9 @@ fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<
         let most = most.map_or(String::new(), |(share, name)| {
             format!(" {share:+.3} {name}")
         });
-        format!("{:<width$} {:>14.6e} {unit:<6}{most}", of.name, of.value)
+        let error = of.error.map_or("-".into(), |error| format!("{error:+.2e}"));
+        let (name, value) = (&of.name, of.value);
+        format!("{name:<width$} {value:>14.6e} {unit:<6} {error:>12}{most}")
     })
 }
 

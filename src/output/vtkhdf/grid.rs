@@ -82,7 +82,7 @@ impl GridPlacement {
             match field.of {
                 Of::Mesh if step > 0 => {}
                 Of::Mesh => put(dataset, start, list)?,
-                Of::Solution | Of::Stress | Of::Presence => {
+                Of::Solution | Of::Stress | Of::Presence | Of::Quantity => {
                     put(dataset, step * of_a_step + start, list)?
                 }
             }

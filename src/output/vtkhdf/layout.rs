@@ -19,6 +19,8 @@ pub struct Layout {
     pub stress: bool,
     /// Whether bodies or contacts come or go.
     pub presence: bool,
+    /// Whether there are stresses and quantities.
+    pub quantities: bool,
     /// The scene's title; may be empty.
     pub title: String,
     /// The units that its numbers are meant in.
@@ -43,6 +45,7 @@ impl Layout {
             times: catalog.steps.iter().map(|step| step.time).collect(),
             stress,
             presence: catalog.has_stages(),
+            quantities: stress && !catalog.quantities.is_empty(),
             title: catalog.title.clone(),
             units: catalog.units,
             plane: catalog.plane,
@@ -53,7 +56,11 @@ impl Layout {
 impl Layout {
     /// The lists that the file doesn't have.
     pub(super) fn left_out(&self) -> Vec<Of> {
-        let kinds = [(Of::Stress, self.stress), (Of::Presence, self.presence)];
+        let kinds = [
+            (Of::Stress, self.stress),
+            (Of::Presence, self.presence),
+            (Of::Quantity, self.quantities),
+        ];
         let left_out = kinds.into_iter().filter(|(_, is_there)| !is_there);
         left_out.map(|(kind, _)| kind).collect()
     }

@@ -56,6 +56,12 @@ impl Parcel {
                     }
                     if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&b)) {
                         append_stress(results, stress, block.body_nodes());
+                        if !catalog.quantities.is_empty() {
+                            let errors = solution.quantities.errors_of_cells.get(&b);
+                            let none = || vec![f64::NAN; stress.cells.len()];
+                            let errors = errors.cloned().unwrap_or_else(none);
+                            results.quantity_error.extend(errors);
+                        }
                     }
                 }
                 // It takes its place without any content, so that the file names it.

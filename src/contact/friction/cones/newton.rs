@@ -6,7 +6,7 @@ use contact_dd_partition::id::{GroupId, OnGroups};
 
 use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
-use crate::contact::friction::{ATTEMPTS, FrictionProblem, Status};
+use crate::contact::friction::{FrictionProblem, Status};
 use crate::contact::laws::{Iterate, LawResidual, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, StepAccuracy, TotalResidual, newton,
@@ -68,21 +68,17 @@ impl FrictionCones<'_> {
         problem: &FrictionProblem<'_>,
         steps: &mut usize,
     ) -> Option<Found> {
-        for attempt in 0..ATTEMPTS {
-            let (end, pivots) = problem.follow(attempt);
+        problem.try_paths(|end, pivots| {
             *steps += pivots;
-            let Some(end) = end else { continue };
+            let end = end?;
             // Where nothing resists, what slips both ways is between both there, and not just anywhere.
-            let start = self.place(end.jumps, end.of_rows);
+            let start = self.place(end.jumps.clone(), end.of_rows.clone());
             let mut state = self.laws.begin(&end.status, &start);
             state.opened.fill(true);
             let found = self.newton(&start, &state, STEPS);
             *steps += found.steps;
-            if found.converged() {
-                return Some(found);
-            }
-        }
-        None
+            found.converged().then_some(found)
+        })
     }
 
     /// The place from which open jumps go where the load drives them.

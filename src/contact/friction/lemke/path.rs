@@ -5,7 +5,7 @@ mod points;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-use super::polygon::{FrictionPolygon, SideNormals, SlipPart};
+use super::polygon::{FrictionPolygon, Polygons, SlipPart};
 use super::responses::{Responses, Terms};
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::vector::{axpy, largest};
@@ -17,6 +17,8 @@ pub(in crate::contact::friction) struct End {
     pub jumps: Vec<f64>,
     /// The forces of dependent rows there (N/m).
     pub of_rows: Vec<f64>,
+    /// The directions of the forces of points that slip in space, in the scale of energies.
+    pub directions: Vec<Option<[f64; 2]>>,
 }
 
 /// How much closed rows that depend on each other give way.
@@ -85,7 +87,7 @@ fn spread(i: usize, attempt: usize) -> f64 {
 
 impl Path {
     /// Its beginning, where all is closed.
-    pub(super) fn new(problem: &FrictionProblem<'_>, attempt: usize) -> Self {
+    pub(super) fn new(problem: &FrictionProblem<'_>, polygons: &Polygons) -> Self {
         let contact = &problem.contact;
         let (m, count) = (contact.c.len(), contact.bounds.len());
         let scale = problem.scales();
@@ -122,18 +124,20 @@ impl Path {
             independent: m,
             zero: (0..count).map(Quantity::Way).collect(),
             bounds,
-            added: (0..count).map(|i| unit * spread(i, attempt)).collect(),
+            added: (0..count)
+                .map(|i| unit * spread(i, polygons.attempt))
+                .collect(),
             points: Vec::new(),
             normals: Vec::new(),
             of_normal: vec![Vec::new(); count],
             scale,
         };
         let mut is_tangential = vec![false; count];
-        let normals = SideNormals::new(attempt);
         for limit in problem.tangents {
             is_tangential[limit.limit] = true;
             let added = [unit, path.added[limit.limit]];
-            let polygon = FrictionPolygon::new(limit, &path.scale, added, (attempt, &normals));
+            let next = (path.points.len(), polygons);
+            let polygon = FrictionPolygon::new(limit, &path.scale, added, next);
             path.points.extend(polygon);
         }
         path.normals = (0..count).filter(|&i| !is_tangential[i]).collect();
@@ -343,6 +347,7 @@ impl Path {
     pub(super) fn end(&self) -> End {
         let of_normal = |i: usize| Status::new(self.is_open(i));
         let mut status: Vec<Status> = (0..self.bounds.len()).map(of_normal).collect();
+        let mut directions = Vec::with_capacity(self.points.len());
         for (point, polygon) in self.points.iter().enumerate() {
             let slips = |side: usize| match polygon.is_line() {
                 true => Status::of_slip(polygon.normal_of(side)[0]),
@@ -359,6 +364,8 @@ impl Path {
                 Place::Side(side, false) | Place::Corner([side, _], false) => slips(side),
             };
             polygon.limits().for_each(|i| status[i] = own);
+            let slips = matches!(own, Status::Slipping | Status::Parting) && !polygon.is_line();
+            directions.push(slips.then(|| self.force_at(0.0, point)));
         }
         let (m, count) = (self.independent, self.bounds.len());
         let jumps = self.value[0].iter().zip(&self.scale).take(m);
@@ -367,6 +374,7 @@ impl Path {
             status,
             jumps: jumps.map(|(jump, scale)| jump / scale).collect(),
             of_rows: of_rows.map(|(force, scale)| force * scale).collect(),
+            directions,
         }
     }
 }

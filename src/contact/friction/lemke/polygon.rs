@@ -7,16 +7,21 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use crate::contact::friction::ATTEMPTS;
+use super::ATTEMPTS;
 use crate::contact::tangent::TangentialLimit;
 
 /// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
 /// where it is steep the path ends at the solution, but has further to go.
 const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-6, 1e-8, 1e-10];
-/// Sides in space. Their end is nearer to the solution the more there are, but slips that turn go from side to side.
-const SIDES: [usize; ATTEMPTS] = [16, 96, 24, 48];
+/// Sides in space at first.
+const SIDES: [usize; ATTEMPTS] = [16, 24, 48, 96];
 /// Part of the angle of a side by which the first is turned: no slip along an axis is along a normal.
-const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
+const TURNED: [f64; ATTEMPTS] = [0.27, 0.63, 0.21, 0.41];
+/// Sides on either hand of a direction near which a polygon is fine, and those of the rest of it.
+const BESIDE: usize = 6;
+const REST: usize = 14;
+/// Half of the angle that is fine, over the angle between sides before.
+const FINE: f64 = 1.5;
 /// Force, relative to the largest where all is closed, that nothing exceeds: rows that give way would be far away.
 const MOST_COHESION: f64 = 10.0;
 
@@ -45,24 +50,65 @@ pub(super) struct FrictionPolygon {
     normals: Rc<[[f64; 2]]>,
 }
 
-/// The normals of the sides of the polygons of all points, along a line and in space.
-pub(super) struct SideNormals {
+/// The polygons of all points.
+#[derive(Clone, Debug)]
+pub(super) struct Polygons {
+    /// The attempt that they serve.
+    pub attempt: usize,
+    /// The directions near which those in space are fine, in the order of points; none at first.
+    directions: Vec<Option<[f64; 2]>>,
+    /// Angle between sides, near these.
+    angle: f64,
     line: Rc<[[f64; 2]]>,
-    in_space: Rc<[[f64; 2]]>,
+    /// Those with equal sides in space.
+    equal: Rc<[[f64; 2]]>,
 }
 
-impl SideNormals {
+impl Polygons {
+    /// Those with which an attempt begins.
     pub(super) fn new(attempt: usize) -> Self {
-        let (sides, turned) = (SIDES[attempt], TURNED[attempt]);
-        let normal = |side: usize| {
-            let angle = TAU * (side as f64 + turned) / sides as f64;
-            [angle.cos(), angle.sin()]
-        };
+        let angle = TAU / SIDES[attempt] as f64;
+        let equal = (0..SIDES[attempt]).map(|side| unit((side as f64 + TURNED[attempt]) * angle));
         Self {
+            attempt,
+            directions: Vec::new(),
+            angle,
             line: Rc::new([[1.0, 0.0], [-1.0, 0.0]]),
-            in_space: (0..sides).map(normal).collect(),
+            equal: equal.collect(),
         }
     }
+
+    /// Finer ones near the `directions` of points that slip; `None` where none does in space.
+    pub(super) fn finer(&self, directions: Vec<Option<[f64; 2]>>) -> Option<Self> {
+        directions.iter().any(Option::is_some).then(|| Self {
+            directions,
+            angle: FINE * self.angle / BESIDE as f64,
+            ..self.clone()
+        })
+    }
+
+    /// The normals of the sides of a point along so many tangents, counted from 0.
+    fn normals(&self, point: usize, in_space: bool) -> Rc<[[f64; 2]]> {
+        match self.directions.get(point) {
+            _ if !in_space => Rc::clone(&self.line),
+            Some(&Some([x, y])) => {
+                let (middle, beside) = (y.atan2(x), BESIDE as f64);
+                let turned = TURNED[self.attempt];
+                let fine = (0..2 * BESIDE + 1).map(|k| self.angle * (k as f64 - beside + turned));
+                let half = self.angle * beside;
+                let rest = (1..=REST).map(|k| {
+                    let part = k as f64 / (REST + 1) as f64;
+                    self.angle * turned + half + part * (TAU - 2.0 * half)
+                });
+                fine.chain(rest).map(|angle| unit(middle + angle)).collect()
+            }
+            _ => Rc::clone(&self.equal),
+        }
+    }
+}
+
+fn unit(angle: f64) -> [f64; 2] {
+    [angle.cos(), angle.sin()]
 }
 
 /// A part of a slip.
@@ -81,13 +127,13 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl FrictionPolygon {
-    /// The polygon of the point whose first tangential limit is this one; `None` where it is the second. `unit` is the
+    /// The polygon of the next `point`, whose first tangential limit is this one; `None` where it is the second. `unit` is the
     /// largest force where all is closed, `added` what θ adds to a given bound.
     pub(super) fn new(
         limit: &TangentialLimit,
         scale: &[f64],
         [unit, added]: [f64; 2],
-        (attempt, normals): (usize, &SideNormals),
+        (point, polygons): (usize, &Polygons),
     ) -> Option<Self> {
         let (tangents, _) = limit.of_point()?;
         let (own, bound) = (scale[limit.limit], limit.bound);
@@ -106,13 +152,10 @@ impl FrictionPolygon {
             coefficient,
             cohesion,
             added: if cohesion > 0.0 { added } else { 0.0 },
-            steep: falls.then(|| coefficient + cohesion / (STEEP[attempt] * unit)),
+            steep: falls.then(|| coefficient + cohesion / (STEEP[polygons.attempt] * unit)),
             only_closed: bound.only_closed,
             is_free: cohesion == 0.0 && coefficient == 0.0,
-            normals: Rc::clone(match tangents[1] {
-                Some(_) => &normals.in_space,
-                None => &normals.line,
-            }),
+            normals: polygons.normals(point, tangents[1].is_some()),
         })
     }
 
@@ -147,11 +190,13 @@ impl FrictionPolygon {
         if self.is_line() {
             return vec![usize::from(v[0] < 0.0)];
         }
-        let sides = self.normals.len();
-        let [first, second] = self.normals[0];
-        let turned = v[1].atan2(v[0]) - second.atan2(first);
-        let side = (turned.rem_euclid(TAU) / TAU * sides as f64).floor() as usize % sides;
-        vec![side, (side + 1) % sides]
+        let after = |side: usize| (side + 1) % self.normals.len();
+        let is_between = |side: &usize| {
+            let [own, next] = [*side, after(*side)].map(|side| self.normals[side]);
+            cross(own, v) >= 0.0 && cross(v, next) > 0.0
+        };
+        let side = self.sides().find(is_between).unwrap_or(0);
+        vec![side, after(side)]
     }
 
     /// The vector whose product with a slip is this part of it.
@@ -185,10 +230,11 @@ mod tests {
             bound: COULOMB,
             beside: Beside::Limit(2),
         };
-        for attempt in 0..ATTEMPTS {
-            let normals = SideNormals::new(attempt);
+        let finer = Polygons::new(0).finer(vec![Some([-0.6, 0.8])]).unwrap();
+        let finest = finer.finer(vec![Some([0.8, -0.6])]).unwrap();
+        for polygons in (0..ATTEMPTS).map(Polygons::new).chain([finer, finest]) {
             let polygon =
-                FrictionPolygon::new(&limit, &[1.0; 3], [1.0; 2], (attempt, &normals)).unwrap();
+                FrictionPolygon::new(&limit, &[1.0; 3], [1.0; 2], (0, &polygons)).unwrap();
             for k in 0..1000 {
                 let angle = 0.1 * f64::from(k);
                 let slip = [angle.cos(), angle.sin()];

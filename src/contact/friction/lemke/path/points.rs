@@ -72,15 +72,10 @@ impl Path {
     /// What vanishes with a normal force slips as it opens, and from where it closes towards its slip.
     pub(super) fn turn(&mut self, theta: f64, point: usize, quantity: Quantity) {
         let polygon = self.points[point].clone();
-        let count = self.bounds.len();
         let sides = match (quantity, self.place(point)) {
             (Quantity::Force(_), Place::Corner(sides, _)) => sides.to_vec(),
             (Quantity::Force(_), Place::Side(side, _)) if polygon.is_line() => vec![side],
-            (Quantity::Force(_), _) => {
-                polygon.sides_towards(self.vector(theta, point, |k, limit| {
-                    (count + limit, polygon.weights[k], 0.0)
-                }))
-            }
+            (Quantity::Force(_), _) => polygon.sides_towards(self.force_at(theta, point)),
             _ => polygon.sides_towards(self.vector(theta, point, |k, limit| {
                 (limit, 1.0 / polygon.weights[k], self.bounds[limit])
             })),
@@ -89,6 +84,12 @@ impl Path {
         let bound = |side| Quantity::Bound { point, side, steep };
         let wanted: Vec<Quantity> = sides.into_iter().map(bound).collect();
         self.arrange(point, &wanted);
+    }
+
+    /// The tangential force of a point at θ.
+    pub(super) fn force_at(&self, theta: f64, point: usize) -> [f64; 2] {
+        let (count, weights) = (self.bounds.len(), self.points[point].weights);
+        self.vector(theta, point, |k, limit| (count + limit, weights[k], 0.0))
     }
 
     /// A force or slip of a point at θ: which jump or force of its k-th limit, with what factor, beyond what.
