@@ -23,6 +23,11 @@ mod transform;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use contact_dd_partition::id::{
+    GroupId, MergeRootId, OnGroups, OnMergeRoots, OnTreeNodes, TreeNodeId,
+};
+use contact_dd_partition::numbered::Numbered;
+
 use self::between::{Between, between};
 use self::classes::{Class, Classes};
 use self::closed::{GroupBetween, Ties};
@@ -44,21 +49,21 @@ use crate::schur::symmetric::PackedSymmetric;
 #[derive(Debug)]
 pub struct Bddc {
     /// The owner of every cluster.
-    owners: Vec<usize>,
+    owners: Numbered<MergeRootId, usize>,
     /// Their unknowns, on all ranks.
-    dofs: Vec<Vec<InterfaceDof>>,
+    dofs: Numbered<MergeRootId, Vec<InterfaceDof>>,
     /// The contact groups between clusters.
     between: Vec<Between>,
     /// The contact groups of this rank, by number.
-    groups: BTreeMap<usize, GroupBetween>,
+    groups: OnGroups<GroupBetween>,
     ties: Ties,
     nodes: SharedNodes,
     classes: Classes,
     level: PreconditionerLevel,
     /// The clusters of this rank, in the bases of their classes.
-    locals: BTreeMap<usize, Local>,
+    locals: OnMergeRoots<Local>,
     /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
-    stale: Vec<bool>,
+    stale: Numbered<MergeRootId, bool>,
     coarse: Coarse,
     /// Number of coarse unknowns; on the root.
     pub coarse_dofs: usize,
@@ -71,22 +76,22 @@ impl Bddc {
     /// A contact point that nothing can be replaced for.
     pub fn new(
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
+        clusters: &OnTreeNodes<ClusterSchur>,
     ) -> Result<Self, Failure> {
         let Context { comm, plan, .. } = *context;
         let owners = plan.owners_of(&plan.merge_roots);
-        let own = |c: usize| Some(clusters.get(&plan.merge_roots[c])?.dofs.clone());
+        let own = |c: MergeRootId| Some(clusters.get(&plan.merge_roots[c])?.dofs.clone());
         let dofs = comm.gathered(&owners, own).into_iter();
-        let mut dofs: Vec<Vec<InterfaceDof>> = dofs.flatten().collect();
+        let mut dofs: Numbered<MergeRootId, Vec<InterfaceDof>> = dofs.flatten().collect();
         comm.broadcast(&mut dofs);
-        let numbers: Vec<usize> = (0..plan.groups.len())
+        let numbers: Vec<GroupId> = (plan.groups.ids())
             .filter(|&g| plan.is_above_merge_roots(plan.groups[g].node))
             .collect();
         let own = numbers
             .iter()
             .filter_map(|g| Some((*g, context.groups.get(g)?)));
         let groups = own.map(|(g, group)| Ok((g, GroupBetween::new(context, g, group)?)));
-        let groups: BTreeMap<usize, GroupBetween> = comm.agree(groups.collect())?;
+        let groups: OnGroups<GroupBetween> = comm.agree(groups.collect())?;
         let group_owners: Vec<usize> = (numbers.iter())
             .map(|&g| plan.node_owners[plan.groups[g].node])
             .collect();
@@ -94,7 +99,7 @@ impl Bddc {
         comm.broadcast(&mut of_groups);
         let between = between(&dofs, numbers.into_iter().zip(group_owners).zip(of_groups));
         Ok(Self {
-            stale: vec![true; dofs.len()],
+            stale: dofs.like(true),
             nodes: SharedNodes::new(context, &dofs),
             level: PreconditionerLevel::first(context.catalog.dim),
             between,
@@ -116,7 +121,7 @@ impl Bddc {
     fn fix_groups(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         let plan = context.plan;
         let mut fixed = Ok(());
@@ -134,7 +139,12 @@ impl Bddc {
 
     /// The classes whose basis is made anew: those that aren't as `before`, and, where they are to be `renewed`, those of
     /// clusters that have `changed`.
-    fn made(&self, before: &Classes, changed: &[bool], renewed: bool) -> Vec<bool> {
+    fn made(
+        &self,
+        before: &Classes,
+        changed: &Numbered<MergeRootId, bool>,
+        renewed: bool,
+    ) -> Vec<bool> {
         let made = |class: &Class| {
             let has_changed = || class.clusters.iter().any(|&c| changed[c]);
             let is_new = before.place_of(class).is_none();
@@ -144,7 +154,7 @@ impl Bddc {
     }
 
     /// Replaces what clusters share.
-    fn refresh(&mut self, shared: BTreeMap<usize, Shared>) {
+    fn refresh(&mut self, shared: OnMergeRoots<Shared>) {
         for (c, shared) in shared {
             let local = self.locals.entry(c);
             local.and_modify(|local| local.shared = shared);
@@ -160,9 +170,9 @@ impl Bddc {
     pub fn fix(
         &mut self,
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
-        touched: &[bool],
-        open: &BTreeMap<usize, Vec<bool>>,
+        clusters: &OnTreeNodes<ClusterSchur>,
+        touched: &Numbered<TreeNodeId, bool>,
+        open: &OnGroups<Vec<bool>>,
         (spring, renewed): (f64, bool),
     ) -> Result<(), Failure> {
         let Context {
@@ -172,11 +182,11 @@ impl Bddc {
         let (before, changed) = self.classify(context, touched, renewed);
         let unknowns = self.between.iter().flat_map(|group| &group.dofs);
         let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
-        let cluster = |c: usize| &clusters[&plan.merge_roots[c]];
+        let cluster = |c: MergeRootId| &clusters[&plan.merge_roots[c]];
         let placement = |c| Placement::new(c, cluster(c), &self.classes, &self.ties);
         let shared = |c| Shared::new(cluster(c), placement(c), (&sprung, spring), par);
         let made = self.made(&before, &changed, renewed);
-        let own = self.owners.iter().enumerate();
+        let own = self.owners.each();
         let own = own.filter(|(_, owner)| **owner == comm.rank());
         let sides = own.map(|(c, _)| {
             let classes = &self.classes.of_clusters[c];
@@ -195,13 +205,13 @@ impl Bddc {
             };
             Ok((c, sides.map_err(moves)?))
         });
-        let sides: BTreeMap<usize, Vec<Option<Side>>> = comm.agree(sides.collect())?;
+        let sides: OnMergeRoots<Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
             let local = shared(c).and_then(|shared| Local::new(shared, bases, self.level, par));
             Ok((c, local.map_err(moves)?))
         });
-        let made_anew: BTreeMap<usize, (Local, PackedSymmetric)> = comm.agree(locals.collect())?;
+        let made_anew: OnMergeRoots<(Local, PackedSymmetric)> = comm.agree(locals.collect())?;
         let (mut locals, mut parts) = (BTreeMap::new(), BTreeMap::new());
         for (c, (local, s)) in made_anew {
             parts.insert(c, Part::of(c, &local, s, &self.classes));
@@ -212,13 +222,13 @@ impl Bddc {
         let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
         self.refresh(comm.agree(refreshed.collect())?);
         self.locals.extend(locals);
-        if !changed.contains(&true) {
+        if !changed.values().contains(&true) {
             return Ok(());
         }
 
         let is_remade =
-            |c: usize| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
-        let remade: Vec<bool> = (0..changed.len()).map(is_remade).collect();
+            |c: MergeRootId| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
+        let remade: Numbered<MergeRootId, bool> = changed.ids().map(is_remade).collect();
         let holds = self.level.holds();
         (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
         self.coarse_dofs = comm.collect(&self.coarse.len()).into_iter().sum();
@@ -230,20 +240,20 @@ impl Bddc {
     fn classify(
         &mut self,
         context: &Context<'_>,
-        touched: &[bool],
+        touched: &Numbered<TreeNodeId, bool>,
         renewed: bool,
-    ) -> (Classes, Vec<bool>) {
+    ) -> (Classes, Numbered<MergeRootId, bool>) {
         let Context { comm, plan, .. } = *context;
         let ties = self.ties(comm);
         let classes = Classes::new(&self.dofs, &ties);
-        let shares_the_same = |c: usize| {
+        let shares_the_same = |c: MergeRootId| {
             let mut dofs = self.dofs[c].iter();
             classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
         };
-        let is_touched = |c: usize| self.stale[c] || touched[plan.merge_roots[c]];
-        let is_changed = |c: usize| !shares_the_same(c) || renewed && is_touched(c);
-        let changed: Vec<bool> = (0..self.dofs.len()).map(is_changed).collect();
-        self.stale = (0..changed.len())
+        let is_touched = |c: MergeRootId| self.stale[c] || touched[plan.merge_roots[c]];
+        let is_changed = |c: MergeRootId| !shares_the_same(c) || renewed && is_touched(c);
+        let changed: Numbered<MergeRootId, bool> = self.dofs.ids().map(is_changed).collect();
+        self.stale = (changed.ids())
             .map(|c| !changed[c] && is_touched(c))
             .collect();
         self.ties = ties;
@@ -282,11 +292,11 @@ impl Bddc {
 
     /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
     pub fn is_stale(&self) -> bool {
-        self.stale.contains(&true)
+        self.stale.values().contains(&true)
     }
 
     /// Which conditions of contact group g of this rank, between clusters, are open.
-    pub fn open(&self, g: usize) -> Option<&Vec<bool>> {
+    pub fn open(&self, g: GroupId) -> Option<&Vec<bool>> {
         self.groups.get(&g).map(|group| &group.open)
     }
 

@@ -8,6 +8,7 @@ mod collectives;
 mod launcher;
 #[cfg(debug_assertions)]
 mod on_purpose;
+pub mod owners;
 mod phase;
 pub mod ranks;
 mod signals;

@@ -8,6 +8,7 @@ pub mod limits;
 pub mod substitute;
 pub mod tree;
 
+use contact_dd_partition::id::{BlockId, TreeNodeId};
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::mesh::topology::Topology;
 use contact_dd_partition::problem::Catalog;
@@ -49,7 +50,7 @@ impl Condensation<'_> {
     /// A block that can move although its boundary is held, or that is too large.
     pub fn condense(
         &self,
-        number: usize,
+        number: BlockId,
         block: &Block,
         condensed: &mut CondensedBlocks,
     ) -> Result<Condensed, Failure> {
@@ -96,7 +97,7 @@ impl Condensation<'_> {
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.
-    pub fn replaced(&self, v: usize) -> Result<Vec<Replaced>, Failure> {
+    pub fn replaced(&self, v: TreeNodeId) -> Result<Vec<Replaced>, Failure> {
         let Context { plan, groups, .. } = self.context;
         let Some((g, group)) = plan.group_of(v).and_then(|g| Some((g, groups.get(&g)?))) else {
             return Ok(Vec::new());
@@ -106,8 +107,10 @@ impl Condensation<'_> {
 }
 
 /// The fixing dofs that lie in a block: node and component.
-fn fixing_dofs_of(number: usize, all: &[FixingDof]) -> Vec<(u32, usize)> {
-    let own = all.iter().filter(|dof| dof.subdomain as usize == number);
+fn fixing_dofs_of(number: BlockId, all: &[FixingDof]) -> Vec<(u32, usize)> {
+    let own = all
+        .iter()
+        .filter(|dof| dof.subdomain as usize == number.index());
     own.map(|dof| (dof.node, dof.component as usize)).collect()
 }
 
@@ -156,7 +159,7 @@ fn is_held(block: &Block, fixing_dofs: &[(u32, usize)]) -> bool {
     eigenvalues.min() > HELD * eigenvalues.max()
 }
 
-fn too_large(subdomain: usize) -> Failure {
+fn too_large(subdomain: BlockId) -> Failure {
     Failure::internal(format!(
         "subdomain {subdomain}: its factor needs more memory than there is; expected more, smaller \
          subdomains"

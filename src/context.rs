@@ -2,8 +2,7 @@
 
 pub mod hierarchy;
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{OnBlocks, OnGroups};
 use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
 use faer::Par;
@@ -35,9 +34,9 @@ pub struct Context<'a> {
     /// The owners of blocks and fronts.
     pub plan: &'a Plan,
     /// The blocks of this rank, by their number.
-    pub blocks: &'a BTreeMap<usize, Block>,
+    pub blocks: &'a OnBlocks<Block>,
     /// The contact groups of this rank, by their number.
-    pub groups: &'a BTreeMap<usize, ContactGroup>,
+    pub groups: &'a OnGroups<ContactGroup>,
     /// Threads.
     pub par: Par,
     /// The receiver of progress reports.
@@ -64,9 +63,9 @@ impl LoadPoint {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loads {
     /// On its blocks, by their number.
-    pub blocks: BTreeMap<usize, BlockLoads>,
+    pub blocks: OnBlocks<BlockLoads>,
     /// On its contact groups, by their number.
-    pub groups: BTreeMap<usize, GroupLoads>,
+    pub groups: OnGroups<GroupLoads>,
 }
 
 impl Context<'_> {
@@ -77,7 +76,7 @@ impl Context<'_> {
             let before = (moment.step.checked_sub(1)).map(|step| self.loads_of_step(step));
             for (b, loads) in &mut loads.blocks {
                 // Nothing acts on what isn't there, whatever did before.
-                if self.catalog.bodies[self.catalog.subdomains[*b].body].is_absent {
+                if self.catalog.bodies[self.catalog.body_of(*b)].is_absent {
                     continue;
                 }
                 let before = before.as_ref().map(|before| &before.blocks[b]);

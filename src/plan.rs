@@ -14,6 +14,8 @@ use std::collections::BTreeSet;
 
 use contact_dd_partition::hierarchy::choice::{coarse_dofs, iteration_flops};
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::{BlockId, ClusterId, GroupId, MergeRootId, PairId, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 use contact_dd_partition::problem::Catalog;
 
 use self::assign::assign;
@@ -32,18 +34,18 @@ pub struct Plan {
     /// The hierarchy of the blocks.
     pub tree: Tree,
     /// The contact groups, by ascending nodes of the hierarchy.
-    pub groups: Vec<GroupPlan>,
+    pub groups: Numbered<GroupId, GroupPlan>,
     /// The owner of every node of the hierarchy.
-    pub node_owners: Vec<usize>,
+    pub node_owners: Numbered<TreeNodeId, usize>,
     /// The clusters, of which the interface problem is assembled.
-    pub clusters: Vec<ClusterPlan>,
-    /// The clusters in contact.
-    pub contact: Vec<usize>,
+    pub clusters: Numbered<ClusterId, ClusterPlan>,
+    /// The pairs: the clusters in contact.
+    pub pairs: Numbered<PairId, ClusterId>,
     /// Treatment of contact on the way.
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.
-    pub merge_roots: Vec<usize>,
+    pub merge_roots: Numbered<MergeRootId, TreeNodeId>,
 }
 
 impl Plan {
@@ -54,19 +56,19 @@ impl Plan {
             Merging::All | Merging::ActiveSet | Merging::Clusters => Tree::new(catalog),
             Merging::Linear | Merging::Groups => Tree::by_group(catalog),
         };
-        let in_contact = (0..tree.nodes.len()).filter(|&v| !tree.nodes[v].points.is_empty());
+        let in_contact = (tree.nodes.ids()).filter(|&v| !tree.nodes[v].points.is_empty());
         let mut plan = Self {
             groups: in_contact
                 .map(|v| GroupPlan::new(catalog, &tree, v))
                 .collect(),
             merge_roots: match merging {
-                Merging::Clusters => tree.clusters.clone(),
+                Merging::Clusters => tree.clusters.clone().into(),
                 _ => tree.roots().collect(),
             },
             tree,
-            node_owners: Vec::new(),
-            clusters: Vec::new(),
-            contact: Vec::new(),
+            node_owners: Numbered::default(),
+            clusters: Numbered::default(),
+            pairs: Numbered::default(),
             merging,
         };
         plan.node_owners = plan.hand_out(catalog, ranks);
@@ -75,17 +77,17 @@ impl Plan {
     }
 
     /// Estimated time of what is done at node v of the hierarchy (flops).
-    pub fn time(&self, v: usize, dim: usize) -> f64 {
+    pub fn time(&self, v: TreeNodeId, dim: usize) -> f64 {
         self.tree.time(v, dim, self.merging.has_active_set())
     }
 
     /// The owner of every node of the hierarchy.
-    fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Vec<usize> {
+    fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Numbered<TreeNodeId, usize> {
         let top = match self.merging {
-            Merging::ActiveSet | Merging::Clusters => self.merge_roots.clone(),
-            _ => cluster_nodes(&self.tree, self.merging, &self.merge_roots),
+            Merging::ActiveSet | Merging::Clusters => self.merge_roots.values().to_vec(),
+            _ => cluster_nodes(&self.tree, self.merging, self.merge_roots.values()),
         };
-        let mut costs = vec![0.0; self.tree.nodes.len()];
+        let mut costs = self.tree.nodes.like(0.0);
         for &v in &top {
             for v in self.tree.subtree(v) {
                 costs[v] = self.time(v, catalog.dim);
@@ -102,8 +104,8 @@ impl Plan {
     /// Forms the clusters.
     fn form_clusters(&mut self, merging: Merging) {
         self.merging = merging;
-        self.clusters.clear();
-        for node in cluster_nodes(&self.tree, merging, &self.merge_roots) {
+        self.clusters = Numbered::default();
+        for node in cluster_nodes(&self.tree, merging, self.merge_roots.values()) {
             let under = self.tree.subtree(node).into_iter();
             self.clusters.push(ClusterPlan {
                 node,
@@ -112,7 +114,7 @@ impl Plan {
                 conditions: self.tree.nodes[node].conditions,
             });
         }
-        self.contact = (0..self.clusters.len())
+        self.pairs = (self.clusters.ids())
             .filter(|&c| self.clusters[c].is_in_contact())
             .collect();
     }
@@ -123,22 +125,22 @@ impl Plan {
     }
 
     /// The owner of every block.
-    pub fn owners(&self) -> &[usize] {
-        &self.node_owners[..self.blocks()]
+    pub fn owners(&self) -> Numbered<BlockId, usize> {
+        self.node_owners.values()[..self.blocks()].to_vec().into()
     }
 
     /// The owners of nodes of the hierarchy.
-    pub fn owners_of(&self, nodes: &[usize]) -> Vec<usize> {
+    pub fn owners_of<I>(&self, nodes: &Numbered<I, TreeNodeId>) -> Numbered<I, usize> {
         nodes.iter().map(|&v| self.node_owners[v]).collect()
     }
 
     /// Whether fixed active sets are merged no further than to node v of the hierarchy.
-    pub fn is_merge_root(&self, v: usize) -> bool {
-        self.merge_roots.binary_search(&v).is_ok()
+    pub fn is_merge_root(&self, v: TreeNodeId) -> bool {
+        self.merge_roots.values().binary_search(&v).is_ok()
     }
 
     /// The node of the hierarchy that node v is merged into.
-    pub fn merged_into(&self, v: usize) -> Option<usize> {
+    pub fn merged_into(&self, v: TreeNodeId) -> Option<TreeNodeId> {
         self.tree.nodes[v].parent.filter(|_| !self.is_merge_root(v))
     }
 
@@ -149,20 +151,20 @@ impl Plan {
 
     /// The nodes of the hierarchy that are `sought`, the deepest first: what ranks share is near the roots, and none
     /// waits for another before.
-    pub fn deepest_first(&self, is_sought: impl Fn(usize) -> bool) -> Vec<usize> {
+    pub fn deepest_first(&self, is_sought: impl Fn(TreeNodeId) -> bool) -> Vec<TreeNodeId> {
         let nodes = &self.tree.nodes;
-        let mut depth = vec![0; nodes.len()];
-        for v in (0..nodes.len()).rev() {
+        let mut depth = nodes.like(0);
+        for v in nodes.ids().rev() {
             depth[v] = nodes[v].parent.map_or(0, |parent| depth[parent] + 1);
         }
-        let mut sought: Vec<usize> = (0..nodes.len()).filter(|&v| is_sought(v)).collect();
+        let mut sought: Vec<TreeNodeId> = nodes.ids().filter(|&v| is_sought(v)).collect();
         sought.sort_by_key(|&v| Reverse(depth[v]));
         sought
     }
 
     /// Marks whatever is above marked nodes of the hierarchy.
-    pub fn mark_above(&self, marked: &mut [bool]) {
-        for v in 0..marked.len() {
+    pub fn mark_above(&self, marked: &mut Numbered<TreeNodeId, bool>) {
+        for v in marked.ids() {
             if let (true, Some(parent)) = (marked[v], self.tree.nodes[v].parent) {
                 marked[parent] = true;
             }
@@ -170,7 +172,7 @@ impl Plan {
     }
 
     /// Whether node v of the hierarchy is above the last ones that fixed active sets are merged to.
-    pub fn is_above_merge_roots(&self, v: usize) -> bool {
+    pub fn is_above_merge_roots(&self, v: TreeNodeId) -> bool {
         let mut above = Some(v);
         while let Some(v) = above {
             if self.is_merge_root(v) {
@@ -187,22 +189,22 @@ impl Plan {
     }
 
     /// The owner of every group.
-    pub fn group_owners(&self) -> Vec<usize> {
+    pub fn group_owners(&self) -> Numbered<GroupId, usize> {
         let nodes = self.groups.iter().map(|group| group.node);
         nodes.map(|v| self.node_owners[v]).collect()
     }
 
     /// The group of node v of the hierarchy.
-    pub fn group_of(&self, v: usize) -> Option<usize> {
-        self.groups
-            .binary_search_by_key(&v, |group| group.node)
-            .ok()
+    pub fn group_of(&self, v: TreeNodeId) -> Option<GroupId> {
+        let groups = self.groups.values();
+        let at = groups.binary_search_by_key(&v, |group| group.node);
+        at.ok().map(GroupId::new)
     }
 
     /// Whether node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact
     /// points lie between several parts of the scene. Where it has many conditions their problem is solved in the cluster
     /// alone, and not once more at the root.
-    pub fn leaves_its_nodes(&self, v: usize) -> bool {
+    pub fn leaves_its_nodes(&self, v: TreeNodeId) -> bool {
         let node = &self.tree.nodes[v];
         let is_root = node.parent.is_none() && node.children.len() > 1;
         let is_small = node.conditions <= MANY_CONDITIONS || self.merging != Merging::All;
@@ -210,7 +212,7 @@ impl Plan {
     }
 
     /// The nodes of Γ that the merge at node v eliminates.
-    pub fn eliminated(&self, v: usize) -> &[u32] {
+    pub fn eliminated(&self, v: TreeNodeId) -> &[u32] {
         match self.leaves_its_nodes(v) {
             true => &[],
             false => &self.tree.nodes[v].eliminated,
@@ -218,23 +220,22 @@ impl Plan {
     }
 
     /// The nodes of Γ that the merge at node v keeps.
-    pub fn kept(&self, v: usize) -> &[u32] {
+    pub fn kept(&self, v: TreeNodeId) -> &[u32] {
         match self.leaves_its_nodes(v) {
             true => &self.tree.nodes[v].eliminated,
             false => &self.tree.nodes[v].kept,
         }
     }
 
-    /// The contact points of conditions of a cluster in contact, by its place among those: their places in `catalog`,
-    /// each once, ascending.
+    /// The contact points of conditions of a pair: their places in `catalog`, each once, ascending.
     pub fn points_of_conditions(
         &self,
         catalog: &Catalog,
-        p: usize,
+        p: PairId,
         conditions: &[usize],
     ) -> BTreeSet<u32> {
-        let groups = &self.clusters[self.contact[p]].groups;
-        let of_group = |&g: &usize| {
+        let groups = &self.clusters[self.pairs[p]].groups;
+        let of_group = |&g: &GroupId| {
             let points = &self.tree.nodes[self.groups[g].node].points;
             let tangents = |&j: &u32| {
                 let tangents = catalog.points[j as usize].tangents(catalog.dim).len();
@@ -248,30 +249,28 @@ impl Plan {
     }
 
     /// The owner of every cluster.
-    pub fn cluster_owners(&self) -> Vec<usize> {
+    pub fn cluster_owners(&self) -> Numbered<ClusterId, usize> {
         self.clusters.iter().map(|c| c.owner).collect()
     }
 
-    /// The owner of every cluster in contact.
-    pub fn contact_owners(&self) -> Vec<usize> {
-        self.contact
-            .iter()
-            .map(|&c| self.clusters[c].owner)
-            .collect()
+    /// The owner of every pair.
+    pub fn pair_owners(&self) -> Numbered<PairId, usize> {
+        self.pairs.iter().map(|&c| self.clusters[c].owner).collect()
     }
 
-    /// The place of cluster c among those in contact.
-    pub fn contact_place(&self, c: usize) -> Option<usize> {
-        self.contact.binary_search(&c).ok()
+    /// The pair that cluster c is, if it is in contact.
+    pub fn pair_of(&self, c: ClusterId) -> Option<PairId> {
+        let at = self.pairs.values().binary_search(&c);
+        at.ok().map(PairId::new)
     }
 
     /// The cluster of every block.
-    pub fn clusters_of_blocks(&self) -> Vec<usize> {
-        let mut of = vec![0; self.blocks()];
-        for (c, cluster) in self.clusters.iter().enumerate() {
+    pub fn clusters_of_blocks(&self) -> Numbered<BlockId, ClusterId> {
+        let mut of: Numbered<BlockId, ClusterId> = vec![ClusterId::new(0); self.blocks()].into();
+        for (c, cluster) in self.clusters.each() {
             for v in self.tree.subtree(cluster.node) {
-                if let Some(of) = of.get_mut(v) {
-                    *of = c;
+                if let Some(b) = self.tree.block(v) {
+                    of[b] = c;
                 }
             }
         }
@@ -285,14 +284,14 @@ impl Plan {
     }
 
     /// All groups of clusters in contact, cluster by cluster.
-    pub fn groups_by_cluster(&self) -> Vec<usize> {
-        let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
+    pub fn groups_by_cluster(&self) -> Vec<GroupId> {
+        let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
     /// From the owner of every such group to that of its cluster, cluster by cluster.
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let clusters = self.contact.iter().map(|&c| &self.clusters[c]);
+        let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|cluster| {
             let groups = cluster.groups.iter();
             groups.map(|&g| (self.node_owners[self.groups[g].node], cluster.owner))

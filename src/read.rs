@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use contact_dd_partition::error::InputError;
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
 use contact_dd_partition::problem::consistency::Places;
 use contact_dd_partition::problem::copies::{Disagreement, NodeCopies, OwnNodes};
@@ -46,7 +47,7 @@ pub fn read_blocks(
     rank: usize,
     file: &ProblemFile,
     plan: &Plan,
-) -> Result<BTreeMap<usize, Block>, Failure> {
+) -> Result<OnBlocks<Block>, Failure> {
     let dim = file.catalog().dim;
     let subdomains = read_subdomains(rank, file, plan)?.into_iter();
     Ok(subdomains
@@ -64,8 +65,8 @@ pub fn collect_groups(
     file: &ProblemFile,
     catalog: &Catalog,
     plan: &Plan,
-    blocks: &BTreeMap<usize, Block>,
-) -> Result<BTreeMap<usize, ContactGroup>, Failure> {
+    blocks: &OnBlocks<Block>,
+) -> Result<OnGroups<ContactGroup>, Failure> {
     let mut bounds = BoundingBox::EMPTY;
     blocks
         .values()
@@ -84,7 +85,7 @@ pub fn collect_groups(
             ContactNode::of(block, &catalog.materials, &nodes)
         })
     });
-    let group = |(g, nodes): (usize, Vec<ContactNode>)| -> Result<_, InputError> {
+    let group = |(g, nodes): (GroupId, Vec<ContactNode>)| -> Result<_, InputError> {
         let of_plan = &plan.groups[g];
         let numbers = of_plan.numbers.iter();
         let places = Places {
@@ -113,11 +114,11 @@ fn read_subdomains(
     rank: usize,
     file: &ProblemFile,
     plan: &Plan,
-) -> Result<BTreeMap<usize, Subdomain>, Failure> {
+) -> Result<OnBlocks<Subdomain>, Failure> {
     let owners = plan.owners();
-    let own = (0..owners.len()).filter(|&s| owners[s] == rank);
+    let own = owners.each().filter(|&(_, &owner)| owner == rank);
     let mut runs: Vec<Range<usize>> = Vec::new();
-    for s in own {
+    for s in own.map(|(b, _)| b.index()) {
         match runs.last_mut() {
             Some(run) if run.end == s && run.len() < AT_ONCE => run.end += 1,
             _ => runs.push(s..s + 1),
@@ -126,7 +127,7 @@ fn read_subdomains(
     let mut subdomains = BTreeMap::new();
     for run in runs {
         let read = file.subdomains(run.clone())?;
-        subdomains.extend(run.zip(read));
+        subdomains.extend(run.map(BlockId::new).zip(read));
     }
     Ok(subdomains)
 }
@@ -139,7 +140,7 @@ fn read_subdomains(
 pub fn check_copies(
     comm: &Comm,
     file: &ProblemFile,
-    blocks: &BTreeMap<usize, Block>,
+    blocks: &OnBlocks<Block>,
 ) -> Result<(), Failure> {
     let ranks = comm.size();
     let mut parts = vec![Vec::new(); ranks];
@@ -149,11 +150,11 @@ pub fn check_copies(
             to.push((s, part));
         }
     }
-    let mut own: Vec<(usize, OwnNodes)> = comm.exchange(parts).into_iter().flatten().collect();
+    let mut own: Vec<(BlockId, OwnNodes)> = comm.exchange(parts).into_iter().flatten().collect();
     own.sort_by_key(|&(s, _)| s);
     let mut copies = NodeCopies::default();
     for (s, nodes) in own {
-        copies.add(s, nodes);
+        copies.add(s.index(), nodes);
     }
     let first = comm.collect(&copies.check()).into_iter().flatten().min();
     let refused = |fault: Disagreement| Failure::from(file.refuse(InputError::new(fault.message)));

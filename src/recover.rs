@@ -21,6 +21,7 @@ pub mod stresses;
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::padded;
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs, OnTreeNodes};
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::bytes::Reals;
@@ -46,14 +47,14 @@ pub struct BlockSolution {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slips {
     /// Tangential jumps since the bodies were unloaded (m).
-    pub jumps: BTreeMap<usize, Vec<f64>>,
+    pub jumps: OnGroups<Vec<f64>>,
     /// Dissipated work in the load step: force times slip (J, per metre of thickness).
-    pub work: BTreeMap<usize, Vec<f64>>,
+    pub work: OnGroups<Vec<f64>>,
 }
 
 impl Slips {
     /// Jumps and work of a contact group.
-    pub fn of(&self, g: usize) -> (&[f64], &[f64]) {
+    pub fn of(&self, g: GroupId) -> (&[f64], &[f64]) {
         let [jumps, work] = [&self.jumps, &self.work].map(|all| all.get(&g));
         (
             jumps.map_or(&[], Vec::as_slice),
@@ -62,7 +63,7 @@ impl Slips {
     }
 
     /// Counts the work of increments before this one, too.
-    pub fn add_work(&mut self, earlier: &BTreeMap<usize, Vec<f64>>) {
+    pub fn add_work(&mut self, earlier: &OnGroups<Vec<f64>>) {
         for (g, work) in &mut self.work {
             for (work, earlier) in work.iter_mut().zip(earlier.get(g).into_iter().flatten()) {
                 *work += earlier;
@@ -75,14 +76,14 @@ impl Slips {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscreteSolution {
     /// On its blocks, by their number.
-    pub blocks: BTreeMap<usize, BlockSolution>,
+    pub blocks: OnBlocks<BlockSolution>,
     /// On its contact groups, by their number.
-    pub groups: BTreeMap<usize, GroupSolution>,
+    pub groups: OnGroups<GroupSolution>,
 }
 
 impl DiscreteSolution {
     /// Slips and frictional work where the tangential jumps before the increment were `before` (m).
-    pub fn slips(&self, context: &Context<'_>, before: &BTreeMap<usize, Vec<f64>>) -> Slips {
+    pub fn slips(&self, context: &Context<'_>, before: &OnGroups<Vec<f64>>) -> Slips {
         let mut slips = Slips::default();
         for (&g, solution) in &self.groups {
             let first = context.groups[&g].points.len();
@@ -122,7 +123,7 @@ impl DiscreteSolution {
     }
 
     /// Adds changes of the unknowns of blocks of this rank to their displacements.
-    pub fn add(&mut self, condensed: &CondensedBlocks, changes: BTreeMap<usize, Vec<f64>>) {
+    pub fn add(&mut self, condensed: &CondensedBlocks, changes: OnBlocks<Vec<f64>>) {
         for (b, x) in changes {
             let block = condensed.blocks.get(&b);
             if let (Some(of_block), Some(block)) = (self.blocks.get_mut(&b), block) {
@@ -163,8 +164,8 @@ impl DiscreteSolution {
 
 /// The displacement of every block, node by node.
 pub fn displacements(
-    solutions: &BTreeMap<usize, BlockSolution>,
-) -> impl Iterator<Item = (usize, &[f64])> {
+    solutions: &OnBlocks<BlockSolution>,
+) -> impl Iterator<Item = (BlockId, &[f64])> {
     solutions.iter().map(|(&b, solution)| (b, &solution.u[..]))
 }
 
@@ -176,16 +177,16 @@ pub fn recover(
     root: Option<(&[f64], &[Vec<u32>])>,
 ) -> DiscreteSolution {
     let Context { comm, plan, .. } = factors.context;
-    let mut boundaries: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    let mut boundaries: OnTreeNodes<Vec<f64>> = BTreeMap::new();
     comm.scatter(
         &plan.cluster_owners(),
         |c| {
             Reals(root.map_or_else(Vec::new, |(u, numbers)| {
-                numbers[c].iter().map(|&i| u[i as usize]).collect()
+                numbers[c.index()].iter().map(|&i| u[i as usize]).collect()
             }))
         },
         |c, Reals(interface_dofs)| {
-            let pair = plan.contact_place(c).and_then(|p| step.pairs.get(&p));
+            let pair = plan.pair_of(c).and_then(|p| step.pairs.get(&p));
             let mut x = pair.map_or_else(Vec::new, |pair| pair.jumps().to_vec());
             x.extend(interface_dofs);
             boundaries.insert(plan.clusters[c].node, x);
@@ -200,16 +201,16 @@ pub fn recover(
 pub fn substitute_back(
     factors: Factors<'_>,
     step: &StepProblem<'_>,
-    boundaries: BTreeMap<usize, Vec<f64>>,
-    conditions: BTreeMap<usize, Vec<(f64, bool)>>,
+    boundaries: OnTreeNodes<Vec<f64>>,
+    conditions: OnGroups<Vec<(f64, bool)>>,
 ) -> DiscreteSolution {
     // Groups of ties alone are those of no cluster in contact.
     let all = factors.context.groups.iter();
     let none = all.map(|(&g, group)| (g, vec![(0.0, false); group.conditions().count()]));
-    let mut known: BTreeMap<usize, Vec<(f64, bool)>> = none.collect();
+    let mut known: OnGroups<Vec<(f64, bool)>> = none.collect();
     known.extend(conditions);
     let groups = known.into_iter();
-    let of_group = |(g, conditions): (usize, Vec<(f64, bool)>)| {
+    let of_group = |(g, conditions): (GroupId, Vec<(f64, bool)>)| {
         let (forces, closed) = conditions.into_iter().unzip();
         let gaps = Vec::new();
         (
@@ -222,7 +223,7 @@ pub fn substitute_back(
         )
     };
     let (blocks, of_ties) = factors.recover(&step.condensed, boundaries);
-    let of_block = |(b, x): (usize, Vec<f64>)| {
+    let of_block = |(b, x): (BlockId, Vec<f64>)| {
         let dofs = &factors.condensed.blocks.get(&b)?.dofs;
         let u = step.prescribed.get(&b)?.displacement(dofs, &x);
         let pushes = Vec::new();
@@ -248,10 +249,7 @@ pub fn substitute_back(
 
 /// Forces of the points of every contact group, and which are closed, from the clusters that know.
 /// Collective.
-fn conditions(
-    factors: Factors<'_>,
-    pairs: &BTreeMap<usize, ContactPair>,
-) -> BTreeMap<usize, Vec<(f64, bool)>> {
+fn conditions(factors: Factors<'_>, pairs: &OnPairs<ContactPair>) -> OnGroups<Vec<(f64, bool)>> {
     let of_clusters = pairs.iter().map(|(&p, pair)| {
         let (forces, closed) = pair.conditions();
         (p, forces.into_iter().zip(closed).collect())

@@ -26,8 +26,8 @@ const BAD_CONDITION: f64 = 1e10;
 
 /// Brings every rank's times and memory to the root. Collective.
 pub fn collect(comm: &Comm, seconds: &RankSeconds, plan: &Plan) -> Vec<RankReport> {
-    let owners = plan.owners().iter().copied();
-    let subdomains = owners.filter(|&owner| owner == comm.rank()).count();
+    let owners = plan.owners();
+    let subdomains = owners.iter().filter(|&&owner| owner == comm.rank()).count();
     let sent = (
         comm.bytes_sent(),
         comm.messages_sent(),

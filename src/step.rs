@@ -5,7 +5,7 @@ pub mod state;
 pub mod transfer;
 pub mod working_set;
 
-use std::collections::BTreeMap;
+use contact_dd_partition::id::{OnBlocks, OnPairs, OnTreeNodes, PairId};
 
 use crate::certificate::scales::Scales;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
@@ -34,13 +34,13 @@ pub struct StepProblem<'a> {
     /// The loads on its blocks and contact groups.
     pub loads: Loads,
     /// Displacements that supports prescribe in them.
-    pub prescribed: BTreeMap<usize, Prescribed>,
+    pub prescribed: OnBlocks<Prescribed>,
     /// The jumps of ties.
     pub tied: TiedJumps,
     /// The condensed load of every node of the hierarchy.
-    pub condensed: BTreeMap<usize, CondensedLoad>,
+    pub condensed: OnTreeNodes<CondensedLoad>,
     /// ϑ: the clusters in contact, by their place among those.
-    pub pairs: BTreeMap<usize, ContactPair>,
+    pub pairs: OnPairs<ContactPair>,
     /// S_0 U + S_CON(U) = F; on the root.
     pub interface: Option<InterfaceProblem<'a>>,
     /// The scales of the load steps before; on the root.
@@ -95,9 +95,9 @@ impl<'a> Loading<'a> {
     fn condense(
         &self,
         loads: &Loads,
-        prescribed: &BTreeMap<usize, Prescribed>,
+        prescribed: &OnBlocks<Prescribed>,
         tied: &TiedJumps,
-    ) -> (BTreeMap<usize, CondensedLoad>, f64) {
+    ) -> (OnTreeNodes<CondensedLoad>, f64) {
         let Context {
             comm,
             catalog,
@@ -116,8 +116,7 @@ impl<'a> Loading<'a> {
             condensed: self.factors,
             only: None,
         };
-        let of_blocks: BTreeMap<usize, Vec<f64>> =
-            loads.blocks.iter().filter_map(of_block).collect();
+        let of_blocks: OnBlocks<Vec<f64>> = loads.blocks.iter().filter_map(of_block).collect();
         let own = of_blocks.values().map(|load| largest(load));
         let largest_loads = comm.collect(&own.fold(0.0, f64::max)).into_iter();
         let largest_load = largest_loads.fold(0.0, f64::max);
@@ -127,16 +126,16 @@ impl<'a> Loading<'a> {
     /// The clusters in contact of this rank under their loads.
     fn pairs(
         &self,
-        mut limits: BTreeMap<usize, Limits>,
-        loads: &BTreeMap<usize, CondensedLoad>,
+        mut limits: OnPairs<Limits>,
+        loads: &OnTreeNodes<CondensedLoad>,
         mut before: StepState,
-    ) -> BTreeMap<usize, ContactPair> {
+    ) -> OnPairs<ContactPair> {
         let plan = self.context.plan;
-        let pair = |(&p, cluster): (&usize, &ContactCluster)| {
+        let pair = |(&p, cluster): (&PairId, &ContactCluster)| {
             let condensed = &cluster.condensed;
             let limits = limits.remove(&p)?;
             let mut load = loads
-                .get(&plan.clusters[plan.contact[p]].node)?
+                .get(&plan.clusters[plan.pairs[p]].node)?
                 .boundary()
                 .to_vec();
             if let Some(drive) = self.analysis.cluster_modes.get(&p) {
@@ -154,8 +153,8 @@ impl<'a> Loading<'a> {
     /// Assembles F on the root; `elsewhere` forces are up to this large. Collective.
     fn assemble(
         &self,
-        pairs: &BTreeMap<usize, ContactPair>,
-        loads: &BTreeMap<usize, CondensedLoad>,
+        pairs: &OnPairs<ContactPair>,
+        loads: &OnTreeNodes<CondensedLoad>,
         elsewhere: f64,
     ) -> Option<InterfaceProblem<'a>> {
         let Context { comm, plan, .. } = self.context;
@@ -163,7 +162,7 @@ impl<'a> Loading<'a> {
         comm.gather(
             &plan.cluster_owners(),
             |c| {
-                let pair = plan.contact_place(c).and_then(|p| pairs.get(&p));
+                let pair = plan.pair_of(c).and_then(|p| pairs.get(&p));
                 let load = loads.get(&plan.clusters[c].node);
                 match pair {
                     Some(pair) => ClusterLoad {
@@ -196,7 +195,7 @@ impl<'a> Loading<'a> {
             return RigidModes::default();
         };
         let plan = self.context.plan;
-        let defining: Vec<usize> = (interface.laws.iter().zip(&plan.contact))
+        let defining: Vec<usize> = (interface.laws.iter().zip(&plan.pairs))
             .flat_map(|(law, &c)| {
                 let conditions = scene.conditions_of(&plan.clusters[c].groups);
                 law.defining.iter().map(move |&j| conditions[j])

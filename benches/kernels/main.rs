@@ -21,6 +21,7 @@ use contact_dd_mpi::interface::operator::{Contribution, Interface};
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::local::LocalSchur;
 use contact_dd_mpi::schur::merge::{Merge, Spare};
+use contact_dd_partition::id::TreeNodeId;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use faer::Par;
 
@@ -74,16 +75,23 @@ fn subdomain(c: &mut Criterion) {
 fn merge(c: &mut Criterion) {
     let scene = Scene::granite(2, 40);
     let blocks = scene.blocks.len();
-    let nodes = &scene.plan.tree.nodes;
-    let of_blocks = |v: &usize| {
+    let tree = &scene.plan.tree;
+    let nodes = &tree.nodes;
+    let of_blocks = |v: &TreeNodeId| {
         let node = &nodes[*v];
-        node.points.is_empty() && node.children.iter().all(|&child| child < blocks)
+        node.points.is_empty()
+            && node
+                .children
+                .iter()
+                .all(|&child| tree.block(child).is_some())
     };
-    let inner = (blocks..nodes.len()).filter(of_blocks);
+    let inner = nodes.ids().skip(blocks).filter(of_blocks);
     let v = inner.max_by_key(|&v| nodes[v].kept.len()).unwrap();
     let children = || -> Vec<Condensed> {
         let children = nodes[v].children.iter();
-        children.map(|&child| scene.of_block(child)).collect()
+        children
+            .map(|child| scene.of_block(child.index()))
+            .collect()
     };
     let mut spare = Spare::default();
     c.bench_function("merge", |bench| {
@@ -105,9 +113,8 @@ fn interface(c: &mut Criterion) {
     let in_contact = vec![false; blocks];
     let condensed: Vec<Condensed> = (0..blocks).map(|b| scene.of_block(b)).collect();
     let interface_dofs: Vec<_> = condensed.iter().map(|c| &c.interface_dofs[..]).collect();
-    let nodes: Vec<_> = (0..blocks)
-        .map(|b| &scene.plan.tree.nodes[b].kept[..])
-        .collect();
+    let nodes = scene.plan.tree.nodes.iter().take(blocks);
+    let nodes: Vec<_> = nodes.map(|node| &node.kept[..]).collect();
     let numbering = Numbering::new(&interface_dofs, &nodes, &in_contact).unwrap();
     c.bench_function("S_0", |bench| {
         bench.iter_batched(

@@ -47,6 +47,7 @@ pub mod example;
 pub mod explanation;
 pub mod flops;
 pub mod hierarchy;
+pub mod id;
 #[cfg(feature = "metis")]
 pub mod info;
 #[cfg_attr(
@@ -60,6 +61,7 @@ pub mod mesh;
 pub mod message;
 pub mod model;
 pub mod name;
+pub mod numbered;
 pub mod problem;
 pub mod quantity;
 pub mod scene;

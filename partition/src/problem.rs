@@ -26,6 +26,7 @@ use crate::contact_point::{ContactPoint, Probe};
 use crate::crack_tip::CrackTip;
 use crate::element::Elements;
 use crate::element::geometry::{advance, dot};
+use crate::id::BlockId;
 use crate::model::{Material, PlaneState, SpringBlock, Support};
 use crate::quantity::{NodalShares, Parameter, Quantity};
 use crate::scene::units::Units;
@@ -173,6 +174,13 @@ pub struct SubdomainNode {
     pub subdomain: u32,
     /// Node of that subdomain.
     pub node: u32,
+}
+
+impl SubdomainNode {
+    /// The subdomain as a block.
+    pub fn block(self) -> BlockId {
+        BlockId::new(self.subdomain as usize)
+    }
 }
 
 /// A node of a contact point in the catalog.
@@ -324,6 +332,11 @@ impl Body {
 }
 
 impl Catalog {
+    /// The number of the body that a block is of.
+    pub fn body_of(&self, block: BlockId) -> usize {
+        self.subdomains[block.index()].body
+    }
+
     /// Number of nodes, those on Γ counted once.
     pub fn nodes(&self) -> usize {
         let nodes: usize = self.subdomains.iter().map(|s| s.nodes).sum();

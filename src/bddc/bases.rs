@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{MergeRootId, OnMergeRoots};
+use contact_dd_partition::numbered::Numbered;
+
 use crate::bddc::classes::Classes;
 use crate::bddc::constraints::{Basis, Mechanism, Side};
 use crate::bddc::{Bddc, moves};
@@ -16,12 +19,12 @@ impl Bddc {
         &self,
         context: &Context<'_>,
         before: &Classes,
-        changed: &[bool],
+        changed: &Numbered<MergeRootId, bool>,
         made: &[bool],
-        mut sides: BTreeMap<usize, Vec<Option<Side>>>,
-    ) -> Result<BTreeMap<usize, Vec<Basis>>, Failure> {
+        mut sides: OnMergeRoots<Vec<Option<Side>>>,
+    ) -> Result<OnMergeRoots<Vec<Basis>>, Failure> {
         let comm = context.comm;
-        let ends: Vec<(usize, usize)> = (0..self.classes.list.len())
+        let ends: Vec<(usize, MergeRootId)> = (0..self.classes.list.len())
             .filter(|&k| made[k])
             .flat_map(|k| self.classes.list[k].clusters.iter().map(move |&c| (k, c)))
             .collect();
@@ -56,7 +59,7 @@ impl Bddc {
             |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
         );
         let mut bases = BTreeMap::new();
-        for (c, owner) in self.owners.iter().enumerate() {
+        for (c, owner) in self.owners.each() {
             let classes = &self.classes.of_clusters[c];
             let is_new = changed[c] || classes.iter().any(|&k| made[k]);
             if *owner != comm.rank() || !is_new {

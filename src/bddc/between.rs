@@ -2,34 +2,37 @@
 
 use std::collections::BTreeSet;
 
+use contact_dd_partition::id::{GroupId, MergeRootId};
+use contact_dd_partition::numbered::Numbered;
+
 use crate::schur::condensed::InterfaceDof;
 
 /// A contact group between clusters.
 #[derive(Debug)]
 pub struct Between {
     /// Its number.
-    pub number: usize,
+    pub number: GroupId,
     /// The rank that owns it.
     pub owner: usize,
     /// Its unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
     /// The clusters that have some of them, or what may be tied to some, ascending.
-    pub clusters: Vec<usize>,
+    pub clusters: Vec<MergeRootId>,
 }
 
 /// The contact groups between clusters with these `dofs`, in the order of the hierarchy, each with its number, its owner
 /// and its unknowns.
 pub fn between(
-    dofs: &[Vec<InterfaceDof>],
-    groups: impl Iterator<Item = ((usize, usize), Vec<InterfaceDof>)>,
+    dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>,
+    groups: impl Iterator<Item = ((GroupId, usize), Vec<InterfaceDof>)>,
 ) -> Vec<Between> {
-    let has_some = |c: usize, sought: &[InterfaceDof]| {
+    let has_some = |c: MergeRootId, sought: &[InterfaceDof]| {
         (sought.iter()).any(|dof| dofs[c].binary_search(dof).is_ok())
     };
     let mut between: Vec<Between> = Vec::new();
     for ((number, owner), sought) in groups {
-        let mut clusters: BTreeSet<usize> =
-            (0..dofs.len()).filter(|&c| has_some(c, &sought)).collect();
+        let mut clusters: BTreeSet<MergeRootId> =
+            dofs.ids().filter(|&c| has_some(c, &sought)).collect();
         // What a group below ties may be tied to unknowns of this one.
         for below in &between {
             if (below.dofs.iter()).any(|dof| sought.binary_search(dof).is_ok()) {

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::disjoint_sets::DisjointSets;
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::{MergeRootId, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
@@ -19,7 +21,7 @@ const ROUND_OFF: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
     /// The clusters, ascending.
-    pub clusters: Vec<usize>,
+    pub clusters: Vec<MergeRootId>,
     /// The unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
     /// Whether one of the clusters has only some combinations of them.
@@ -68,9 +70,9 @@ pub struct Classes {
     /// The classes that several clusters have, by these in ascending order.
     pub list: Vec<Class>,
     /// For every cluster the numbers of these, ascending.
-    pub of_clusters: Vec<Vec<usize>>,
+    pub of_clusters: Numbered<MergeRootId, Vec<usize>>,
     /// For every cluster the unknowns that no other has.
-    pub own: Vec<Vec<InterfaceDof>>,
+    pub own: Numbered<MergeRootId, Vec<InterfaceDof>>,
 }
 
 impl Classes {
@@ -81,7 +83,7 @@ impl Classes {
     }
 
     /// Whether cluster c has the same unknowns in the same classes as in others.
-    pub fn are_as_in(&self, others: &Self, c: usize) -> bool {
+    pub fn are_as_in(&self, others: &Self, c: MergeRootId) -> bool {
         let (Some(own), Some(list)) = (others.own.get(c), others.of_clusters.get(c)) else {
             return false;
         };
@@ -92,7 +94,7 @@ impl Classes {
     }
 
     /// The lowest node above all clusters of each class, where clusters are the `nodes` of a tree.
-    pub fn homes(&self, tree: &Tree, nodes: &[usize]) -> Vec<usize> {
+    pub fn homes(&self, tree: &Tree, nodes: &Numbered<MergeRootId, TreeNodeId>) -> Vec<TreeNodeId> {
         let home = |class: &Class| {
             let first = nodes[class.clusters[0]];
             let clusters = class.clusters.iter().map(|&c| nodes[c]);
@@ -102,9 +104,9 @@ impl Classes {
     }
 
     /// The classes of clusters that have these `dofs`, with closed contact conditions that tie some to others.
-    pub fn new(dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Self {
-        let mut ends: Vec<(InterfaceDof, usize)> = Vec::new();
-        for (c, list) in dofs.iter().enumerate() {
+    pub fn new(dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>, ties: &Ties) -> Self {
+        let mut ends: Vec<(InterfaceDof, MergeRootId)> = Vec::new();
+        for (c, list) in dofs.each() {
             for dof in list {
                 match ties.tied(dof) {
                     Some(terms) => ends.extend(terms.iter().map(|(dof, _)| (*dof, c))),
@@ -114,15 +116,15 @@ impl Classes {
         }
         ends.sort_unstable();
         ends.dedup();
-        let mut of: BTreeMap<Vec<usize>, Vec<InterfaceDof>> = BTreeMap::new();
+        let mut of: BTreeMap<Vec<MergeRootId>, Vec<InterfaceDof>> = BTreeMap::new();
         for of_dof in ends.chunk_by(|a, b| a.0 == b.0) {
-            let clusters: Vec<usize> = of_dof.iter().map(|(_, c)| *c).collect();
+            let clusters: Vec<MergeRootId> = of_dof.iter().map(|(_, c)| *c).collect();
             of.entry(clusters).or_default().push(of_dof[0].0);
         }
         let mut classes = Self {
             list: Vec::new(),
-            of_clusters: vec![Vec::new(); dofs.len()],
-            own: vec![Vec::new(); dofs.len()],
+            of_clusters: dofs.like(Vec::new()),
+            own: dofs.like(Vec::new()),
         };
         for (clusters, of_class) in of {
             if let [cluster] = clusters[..] {
@@ -153,7 +155,11 @@ impl Classes {
 
 /// The combinations of the unknowns of a class that its two clusters have, of which one doesn't have all; `None` where
 /// there are more clusters, or combinations that neither has.
-fn turned(class: &Class, dofs: &[Vec<InterfaceDof>], ties: &Ties) -> Option<Turned> {
+fn turned(
+    class: &Class,
+    dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>,
+    ties: &Ties,
+) -> Option<Turned> {
     let [a, b] = class.clusters[..] else {
         return None;
     };

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::GroupId;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::active_equalities::ActiveEqualities;
@@ -38,7 +39,7 @@ impl GroupBetween {
     ///
     /// # Errors
     /// A contact point that nothing can be replaced for.
-    pub fn new(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Self, Failure> {
+    pub fn new(context: &Context<'_>, g: GroupId, group: &ContactGroup) -> Result<Self, Failure> {
         let limits = resting_limits(context, g, group)?;
         let rows = group.rows_of(&limits);
         Ok(Self {

@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{MergeRootId, OnMergeRoots, OnTreeNodes, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 use faer::{Mat, Par};
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +33,7 @@ pub struct Part {
 
 impl Part {
     /// The part of cluster c, which leaves `s`.
-    pub fn of(c: usize, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
+    pub fn of(c: MergeRootId, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
         let first = |&k: &usize| classes.list[k].dofs[0];
         let counts = local.bases().iter().map(|basis| basis.coarse);
         Self {
@@ -110,11 +112,11 @@ impl Front {
 #[derive(Debug)]
 pub struct Coarse {
     /// The nodes of the hierarchy above clusters, children before parents.
-    nodes: Vec<usize>,
+    nodes: Vec<TreeNodeId>,
     /// The fronts of this rank.
-    fronts: BTreeMap<usize, Front>,
+    fronts: OnTreeNodes<Front>,
     /// The coarse matrices of clusters and nodes, at the owner of the node above.
-    parts: BTreeMap<usize, Part>,
+    parts: OnTreeNodes<Part>,
     /// The share of the diagonal that is added; none before the first factorization.
     share: Option<f64>,
 }
@@ -139,23 +141,18 @@ impl Coarse {
         &mut self,
         context: &Context<'_>,
         classes: &Classes,
-        mut parts: BTreeMap<usize, Part>,
-        remade: &[bool],
+        mut parts: OnMergeRoots<Part>,
+        remade: &Numbered<MergeRootId, bool>,
         holds: &[f64],
     ) -> Result<(), Failure> {
         let Context { comm, plan, .. } = *context;
-        for (c, &top) in plan
-            .merge_roots
-            .iter()
-            .enumerate()
-            .filter(|(c, _)| remade[*c])
-        {
+        for (c, &top) in plan.merge_roots.each().filter(|&(c, _)| remade[c]) {
             self.pass_up(context, top, parts.remove(&c));
         }
         let mut factorized = Ok(());
         for &share in holds {
             let is_other = self.share != Some(share);
-            let mut touched = vec![false; plan.tree.nodes.len()];
+            let mut touched = plan.tree.nodes.like(false);
             for (&top, is_remade) in plan.merge_roots.iter().zip(remade) {
                 touched[top] = is_other || *is_remade;
             }
@@ -174,14 +171,14 @@ impl Coarse {
         &mut self,
         context: &Context<'_>,
         classes: &Classes,
-        touched: &[bool],
+        touched: &Numbered<TreeNodeId, bool>,
         share: f64,
     ) -> Result<(), Failure> {
         let Context {
             comm, plan, par, ..
         } = *context;
         let homes = classes.homes(&plan.tree, &plan.merge_roots);
-        let homes: BTreeMap<InterfaceDof, usize> = (classes.list.iter().zip(homes))
+        let homes: BTreeMap<InterfaceDof, TreeNodeId> = (classes.list.iter().zip(homes))
             .map(|(class, home)| (class.dofs[0], home))
             .collect();
         let mut result = Ok(());
@@ -189,7 +186,7 @@ impl Coarse {
             if !touched[v] {
                 continue;
             }
-            let child = |&child: &usize| {
+            let child = |&child: &TreeNodeId| {
                 let share = if plan.is_merge_root(child) {
                     share
                 } else {
@@ -223,7 +220,7 @@ impl Coarse {
     }
 
     /// Brings what node v leaves to the owner of the node above. Collective.
-    fn pass_up(&mut self, context: &Context<'_>, v: usize, mut part: Option<Part>) {
+    fn pass_up(&mut self, context: &Context<'_>, v: TreeNodeId, mut part: Option<Part>) {
         let Context { comm, plan, .. } = *context;
         let Some(parent) = plan.tree.nodes[v].parent else {
             return;
@@ -252,13 +249,13 @@ impl Coarse {
     /// The coarse unknowns of the clusters of this rank, for the loads of all. Collective.
     pub fn solve(&self, context: &Context<'_>, mut loads: Vectors) -> Vectors {
         let plan = context.plan;
-        let parent = |v: usize| plan.tree.nodes[v].parent;
+        let parent = |v: TreeNodeId| plan.tree.nodes[v].parent;
         let mut arrived = BTreeMap::new();
-        for (c, &top) in plan.merge_roots.iter().enumerate() {
+        for (c, &top) in plan.merge_roots.each() {
             let load = loads.remove(&c);
             carry(context, top, parent(top), load, &mut arrived, Direction::Up);
         }
-        let mut eliminated: Vectors = BTreeMap::new();
+        let mut eliminated: OnTreeNodes<Vec<f64>> = BTreeMap::new();
         for &v in &self.nodes {
             let passed = self.fronts.get(&v).map(|front| {
                 let mut load = vec![0.0; front.factor.size()];
@@ -298,7 +295,7 @@ impl Coarse {
                 );
             }
         }
-        let of_clusters = plan.merge_roots.iter().enumerate();
+        let of_clusters = plan.merge_roots.each();
         of_clusters
             .filter_map(|(c, top)| Some((c, solved.remove(top)?)))
             .collect()

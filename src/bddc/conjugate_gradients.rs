@@ -5,6 +5,9 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{MergeRootId, OnMergeRoots};
+use contact_dd_partition::numbered::Numbered;
+
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
 use crate::bddc::local::{Local, Vectors};
@@ -28,13 +31,13 @@ pub struct ConjugateGradients<'a> {
     /// The context of the run.
     pub context: &'a Context<'a>,
     /// The owner of every cluster.
-    pub owners: &'a [usize],
+    pub owners: &'a Numbered<MergeRootId, usize>,
     /// The classes of Γ.
     pub classes: &'a Classes,
     /// The clusters of this rank.
-    pub locals: &'a BTreeMap<usize, Local>,
+    pub locals: &'a OnMergeRoots<Local>,
     /// S of every cluster; none of those of other ranks.
-    pub matrices: &'a [Option<&'a PackedSymmetric>],
+    pub matrices: &'a Numbered<MergeRootId, Option<&'a PackedSymmetric>>,
     /// The coarse problem.
     pub coarse: &'a Coarse,
     /// Whether the preconditioner is that of other matrices.
@@ -112,8 +115,9 @@ impl ConjugateGradients<'_> {
 
     /// S x. Collective.
     fn multiply(&self, x: &Vectors) -> Vectors {
-        let of =
-            |(&c, local): (&usize, &Local)| Some((c, local.multiply(self.matrices[c]?, &x[&c])));
+        let of = |(&c, local): (&MergeRootId, &Local)| {
+            Some((c, local.multiply(self.matrices[c]?, &x[&c])))
+        };
         let mut y = self.locals.iter().filter_map(of).collect();
         self.add_up(&mut y);
         y
@@ -139,11 +143,11 @@ impl ConjugateGradients<'_> {
 
     /// Replaces what every cluster has by the sum over all that share it. Collective.
     fn add_up(&self, v: &mut Vectors) {
-        let ranges = |c: usize, k: usize| {
+        let ranges = |c: MergeRootId, k: usize| {
             let at = self.classes.of_clusters[c].binary_search(&k);
             at.map_or(0..0, |at| self.locals[&c].ranges()[at].clone())
         };
-        let parts: Vec<(usize, usize)> = (self.classes.list.iter().enumerate())
+        let parts: Vec<(usize, MergeRootId)> = (self.classes.list.iter().enumerate())
             .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
             .collect();
         let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
@@ -176,7 +180,8 @@ impl ConjugateGradients<'_> {
     /// x·y, every unknown once, on all ranks. Collective.
     fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
         let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
-        let parts = self.context.comm.route_lists(&to_root, |c| {
+        let parts = self.context.comm.route_lists(&to_root, |i| {
+            let c = MergeRootId::new(i);
             let classes = self.classes.of_clusters[c].iter();
             let classes = classes.zip(self.locals[&c].ranges());
             let own = classes.filter(|(k, _)| self.classes.list[**k].clusters[0] == c);

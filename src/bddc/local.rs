@@ -1,8 +1,9 @@
 //! A cluster: its unknowns [own | shared], own ones eliminated, and what the preconditioner inverts of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
+use contact_dd_partition::id::OnMergeRoots;
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::{Mat, MatMut, Par, Side::Lower};
 
@@ -32,7 +33,7 @@ fn fill_upper_triangle(s: &mut Mat<f64>) {
 }
 
 /// A vector on what clusters share, by cluster.
-pub type Vectors = BTreeMap<usize, Vec<f64>>;
+pub type Vectors = OnMergeRoots<Vec<f64>>;
 
 /// The unknowns that a cluster shares with others, class after class.
 #[derive(Debug)]

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use contact_dd_partition::id::MergeRootId;
+use contact_dd_partition::numbered::Numbered;
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +26,7 @@ pub struct SharedNodes {
 
 impl SharedNodes {
     /// The shared nodes of clusters with these `dofs`. Collective.
-    pub fn new(context: &Context<'_>, dofs: &[Vec<InterfaceDof>]) -> Self {
+    pub fn new(context: &Context<'_>, dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>) -> Self {
         let comm = context.comm;
         let sought: BTreeSet<u32> = dofs.iter().flatten().map(|dof| dof.node).collect();
         let mut nodes = BTreeMap::new();

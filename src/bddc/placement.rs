@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use contact_dd_partition::id::MergeRootId;
+
 use crate::bddc::classes::Classes;
 use crate::bddc::closed::Ties;
 use crate::bddc::cluster_schur::ClusterSchur;
@@ -22,7 +24,7 @@ pub struct Placement {
 
 impl Placement {
     /// The placement of the unknowns of cluster c.
-    pub fn new(c: usize, cluster: &ClusterSchur, classes: &Classes, ties: &Ties) -> Self {
+    pub fn new(c: MergeRootId, cluster: &ClusterSchur, classes: &Classes, ties: &Ties) -> Self {
         let mut places: HashMap<InterfaceDof, Vec<(usize, f64)>> = HashMap::new();
         let mut own = classes.own[c].len();
         for (i, &dof) in classes.own[c].iter().enumerate() {

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{MergeRootId, OnGroups, OnMergeRoots, OnTreeNodes};
+
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
@@ -9,7 +11,6 @@ use crate::bddc::local::Vectors;
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
@@ -18,11 +19,11 @@ use crate::schur::condensed::InterfaceDof;
 #[derive(Clone, Copy, Debug)]
 pub struct ClusterLoads<'a> {
     /// Loads on the boundaries of clusters, by node.
-    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    pub clusters: &'a OnTreeNodes<Vec<f64>>,
     /// The values of the closed jumps of every contact group, and of those of its ties behind all that are unknowns (m).
-    pub prescribed: &'a BTreeMap<usize, Vec<f64>>,
+    pub prescribed: &'a OnGroups<Vec<f64>>,
     /// The forces on the open ones of every group with friction (N/m); others have none.
-    pub forces: &'a BTreeMap<usize, Vec<f64>>,
+    pub forces: &'a OnGroups<Vec<f64>>,
 }
 
 /// Accuracy to which a solution is iterated.
@@ -31,7 +32,7 @@ pub struct Accuracy<'a> {
     /// Bound of the error in the energy norm, relative to that of the solution, about.
     pub tolerance: f64,
     /// The unknowns of every cluster, by its node, in a solution that isn't far.
-    pub start: Option<&'a BTreeMap<usize, Vec<f64>>>,
+    pub start: Option<&'a OnTreeNodes<Vec<f64>>>,
 }
 
 impl Accuracy<'_> {
@@ -46,7 +47,7 @@ impl Accuracy<'_> {
 #[derive(Debug, Default)]
 pub struct BddcSolution {
     /// The unknowns of every cluster, by its node.
-    pub clusters: BTreeMap<usize, Vec<f64>>,
+    pub clusters: OnTreeNodes<Vec<f64>>,
     /// The jumps and forces of every contact group between clusters; no force where open.
     pub groups: OnGroups<Iterate>,
     /// The forces at the jumps of their ties.
@@ -62,7 +63,7 @@ impl Bddc {
     pub fn solve(
         &self,
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
+        clusters: &OnTreeNodes<ClusterSchur>,
         loads: ClusterLoads<'_>,
         accuracy: Accuracy,
     ) -> BddcSolution {
@@ -72,13 +73,13 @@ impl Bddc {
             true => self.loads_of(comm, loads.forces),
             false => Vec::new(),
         };
-        let load_of = |c: usize| {
+        let load_of = |c: MergeRootId| {
             let mut load = loads.clusters[&plan.merge_roots[c]].clone();
             let own = forces.iter().filter(|(cluster, ..)| *cluster == c);
             own.for_each(|&(_, place, force)| load[place] += force);
             load
         };
-        let constants_of = |c: usize| -> Vec<f64> {
+        let constants_of = |c: MergeRootId| -> Vec<f64> {
             let dofs = self.dofs[c].iter();
             dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
                 .collect()
@@ -130,7 +131,7 @@ impl Bddc {
     fn iterate(
         &self,
         context: &Context<'_>,
-        clusters: &BTreeMap<usize, ClusterSchur>,
+        clusters: &OnTreeNodes<ClusterSchur>,
         b: Vectors,
         accuracy: Accuracy,
     ) -> (Vectors, usize, bool) {
@@ -144,7 +145,7 @@ impl Bddc {
             owners: &self.owners,
             classes: &self.classes,
             locals: &self.locals,
-            matrices: &matrices.collect::<Vec<_>>(),
+            matrices: &matrices.collect(),
             coarse: &self.coarse,
             is_stale: self.is_stale(),
             is_judged: self.is_judged(),
@@ -154,9 +155,9 @@ impl Bddc {
     }
 
     /// The shared unknowns of clusters whose unknowns, by node, are `known`. Collective.
-    fn start(&self, comm: &Comm, known: &BTreeMap<usize, Vec<f64>>, plan: &Plan) -> Vectors {
+    fn start(&self, comm: &Comm, known: &OnTreeNodes<Vec<f64>>, plan: &Plan) -> Vectors {
         let classes = &self.classes.list;
-        let ends: Vec<(usize, usize)> = (classes.iter().enumerate())
+        let ends: Vec<(usize, MergeRootId)> = (classes.iter().enumerate())
             .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
             .collect();
         let home = |k: usize| self.owners[classes[k].clusters[0]];
@@ -195,11 +196,7 @@ impl Bddc {
 
     /// Loads on clusters of forces on the jumps of the contact groups of this rank, on all ranks: the first that has
     /// an unknown, and its place there. Collective.
-    fn loads_of(
-        &self,
-        comm: &Comm,
-        forces: &BTreeMap<usize, Vec<f64>>,
-    ) -> Vec<(usize, usize, f64)> {
+    fn loads_of(&self, comm: &Comm, forces: &OnGroups<Vec<f64>>) -> Vec<(MergeRootId, usize, f64)> {
         let mut loads = Vec::new();
         comm.gather(
             &self.group_owners(),
@@ -211,7 +208,8 @@ impl Bddc {
             |i, of_group| {
                 let clusters = &self.between[i].clusters;
                 loads.extend(of_group.into_iter().filter_map(|(dof, load)| {
-                    let place = |&c: &usize| Some((c, self.dofs[c].binary_search(&dof).ok()?));
+                    let place =
+                        |&c: &MergeRootId| Some((c, self.dofs[c].binary_search(&dof).ok()?));
                     let (c, place) = clusters.iter().find_map(place)?;
                     Some((c, place, load))
                 }));
@@ -222,11 +220,7 @@ impl Bddc {
     }
 
     /// The constants of tied displacements beside the terms of others, on all ranks. Collective.
-    fn constants(
-        &self,
-        comm: &Comm,
-        values: &BTreeMap<usize, Vec<f64>>,
-    ) -> BTreeMap<InterfaceDof, f64> {
+    fn constants(&self, comm: &Comm, values: &OnGroups<Vec<f64>>) -> BTreeMap<InterfaceDof, f64> {
         let of_group = |i: usize| {
             let number = self.between[i].number;
             self.groups[&number].constants(&values[&number])
@@ -246,7 +240,7 @@ impl Bddc {
         clusters: &Vectors,
         unbalanced: &Vectors,
     ) -> OnGroups<(Iterate, Vec<f64>)> {
-        let ways: Vec<(usize, usize)> = (self.between.iter().enumerate())
+        let ways: Vec<(usize, MergeRootId)> = (self.between.iter().enumerate())
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();
         let forces = self.locals.keys().map(|&c| {
@@ -258,8 +252,8 @@ impl Bddc {
             self.ties.carry(&mut forces);
             (c, forces)
         });
-        let forces: BTreeMap<usize, BTreeMap<InterfaceDof, f64>> = forces.collect();
-        let mut of_groups: BTreeMap<usize, [BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
+        let forces: OnMergeRoots<BTreeMap<InterfaceDof, f64>> = forces.collect();
+        let mut of_groups: OnGroups<[BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
         comm.route(
             ways.iter()
                 .map(|&(i, c)| (self.owners[c], self.between[i].owner)),

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::owners::Owners;
 use super::{Comm, ROOT};
 use crate::bytes::Reals;
 
@@ -17,30 +18,35 @@ impl Comm {
     /// Collective.
     ///
     /// `make(i)` is called on the owner of `i`, `take(i, value)` on the root.
-    pub fn gather<T: Serialize + DeserializeOwned>(
+    pub fn gather<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
         &self,
-        owners: &[usize],
-        mut make: impl FnMut(usize) -> T,
-        mut take: impl FnMut(usize, T),
+        owners: &O,
+        mut make: impl FnMut(O::Of) -> T,
+        mut take: impl FnMut(O::Of, T),
     ) {
-        for bundles in bundles(owners) {
+        for bundles in bundles(owners.ranks()) {
             let mut arrived = BTreeMap::new();
             let ways: Vec<(usize, usize)> = bundles.keys().map(|&owner| (owner, ROOT)).collect();
             let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
             self.route(
                 ways,
-                |k| bundles[k].iter().map(|&i| make(i)).collect::<Vec<T>>(),
+                |k| {
+                    let made = bundles[k].iter().map(|&i| make(i.into()));
+                    made.collect::<Vec<T>>()
+                },
                 |k, values| arrived.extend(bundles[k].iter().copied().zip(values)),
             );
-            arrived.into_iter().for_each(|(i, value)| take(i, value));
+            for (i, value) in arrived {
+                take(i.into(), value);
+            }
         }
     }
 
     /// The values that [`gather`](Self::gather) brings to the root, in their order; nothing elsewhere. Collective.
-    pub fn gathered<T: Serialize + DeserializeOwned>(
+    pub fn gathered<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
         &self,
-        owners: &[usize],
-        make: impl FnMut(usize) -> T,
+        owners: &O,
+        make: impl FnMut(O::Of) -> T,
     ) -> Vec<T> {
         let mut all = Vec::new();
         self.gather(owners, make, |_, value| all.push(value));
@@ -48,11 +54,11 @@ impl Comm {
     }
 
     /// The values that [`scatter`](Self::scatter) brings to this rank, by their number. Collective.
-    pub fn scattered<T: Serialize + DeserializeOwned>(
+    pub fn scattered<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
         &self,
-        owners: &[usize],
-        make: impl FnMut(usize) -> T,
-    ) -> BTreeMap<usize, T> {
+        owners: &O,
+        make: impl FnMut(O::Of) -> T,
+    ) -> BTreeMap<O::Of, T> {
         let mut own = BTreeMap::new();
         self.scatter(owners, make, |i, value| {
             own.insert(i, value);
@@ -63,21 +69,24 @@ impl Comm {
     /// Brings one value of the root to each of `owners`, in their order, those of a rank together. Collective.
     ///
     /// `make(i)` is called on the root, `take(i, value)` on the owner of `i`.
-    pub fn scatter<T: Serialize + DeserializeOwned>(
+    pub fn scatter<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
         &self,
-        owners: &[usize],
-        mut make: impl FnMut(usize) -> T,
-        mut take: impl FnMut(usize, T),
+        owners: &O,
+        mut make: impl FnMut(O::Of) -> T,
+        mut take: impl FnMut(O::Of, T),
     ) {
-        for bundles in bundles(owners) {
+        for bundles in bundles(owners.ranks()) {
             let ways: Vec<(usize, usize)> = bundles.keys().map(|&owner| (ROOT, owner)).collect();
             let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
             self.route(
                 ways,
-                |k| bundles[k].iter().map(|&i| make(i)).collect::<Vec<T>>(),
+                |k| {
+                    let made = bundles[k].iter().map(|&i| make(i.into()));
+                    made.collect::<Vec<T>>()
+                },
                 |k, values| {
                     let all = bundles[k].iter().copied().zip(values);
-                    all.for_each(|(i, value)| take(i, value));
+                    all.for_each(|(i, value)| take(i.into(), value));
                 },
             );
         }

@@ -1,7 +1,8 @@
 //! The condensed blocks and clusters of a rank.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
+
+use contact_dd_partition::id::{OnBlocks, OnClusters, OnPairs, OnTreeNodes};
 
 use crate::comm::clock::Times;
 use crate::contact::limits::Limits;
@@ -37,13 +38,13 @@ pub struct ContactCluster {
 #[derive(Debug, Default)]
 pub struct CondensedBlocks {
     /// Blocks, by their number.
-    pub blocks: BTreeMap<usize, CondensedBlock>,
+    pub blocks: OnBlocks<CondensedBlock>,
     /// The merge at every inner node of the hierarchy.
-    pub merges: BTreeMap<usize, Merge>,
+    pub merges: OnTreeNodes<Merge>,
     /// T: the clusters without contact, by their place among all.
-    pub linear: BTreeMap<usize, Condensed>,
+    pub linear: OnClusters<Condensed>,
     /// ϑ: the clusters in contact, by their place among those.
-    pub contact: BTreeMap<usize, ContactCluster>,
+    pub contact: OnPairs<ContactCluster>,
     /// Time for assembling and for factorizing (s).
     pub seconds: [Times; 2],
 }

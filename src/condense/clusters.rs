@@ -1,8 +1,8 @@
 //! Clusters: what blocks were merged into, with the contacts of all that lies in them.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use contact_dd_partition::id::{OnPairs, OnTreeNodes};
 use faer::Mat;
 
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
@@ -15,16 +15,16 @@ use crate::schur::condensed::Condensed;
 /// bodies that lie wholly in one make of its conditions, and `limits` bound the normal jumps.
 pub fn take_clusters(
     plan: &Plan,
-    modes: &BTreeMap<usize, RigidModes>,
-    mut limits: BTreeMap<usize, Limits>,
-    mut merged: BTreeMap<usize, Condensed>,
+    modes: &OnPairs<RigidModes>,
+    mut limits: OnPairs<Limits>,
+    mut merged: OnTreeNodes<Condensed>,
     condensed: &mut CondensedBlocks,
 ) {
-    for (c, cluster) in plan.clusters.iter().enumerate() {
+    for (c, cluster) in plan.clusters.each() {
         let Some(mut of_cluster) = merged.remove(&cluster.node) else {
             continue;
         };
-        let Some(p) = plan.contact_place(c) else {
+        let Some(p) = plan.pair_of(c) else {
             condensed.linear.insert(c, of_cluster);
             continue;
         };

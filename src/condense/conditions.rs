@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups, OnPairs, PairId};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -12,11 +13,11 @@ impl Factors<'_> {
     /// Collective; groups by number, clusters by their place among those in contact.
     pub fn collect_conditions<T: Serialize + DeserializeOwned>(
         &self,
-        mut of_groups: BTreeMap<usize, Vec<T>>,
-    ) -> BTreeMap<usize, Vec<T>> {
+        mut of_groups: OnGroups<Vec<T>>,
+    ) -> OnPairs<Vec<T>> {
         let plan = self.context.plan;
         let places = self.places();
-        let mut of_clusters: BTreeMap<usize, Vec<T>> = BTreeMap::new();
+        let mut of_clusters: OnPairs<Vec<T>> = BTreeMap::new();
         self.context.comm.route(
             plan.ways_to_clusters(),
             |i| of_groups.remove(&places[i].1).unwrap_or_default(),
@@ -28,8 +29,8 @@ impl Factors<'_> {
     /// Brings what is said of every condition of a cluster to the groups that they belong to. Collective.
     pub fn spread_conditions<T: Serialize + DeserializeOwned>(
         &self,
-        mut of_clusters: BTreeMap<usize, Vec<T>>,
-    ) -> BTreeMap<usize, Vec<T>> {
+        mut of_clusters: OnPairs<Vec<T>>,
+    ) -> OnGroups<Vec<T>> {
         let plan = self.context.plan;
         let places = self.places();
         let mut of_groups = BTreeMap::new();
@@ -50,9 +51,9 @@ impl Factors<'_> {
     }
 
     /// Cluster, by its place among those in contact, and group, cluster by cluster.
-    fn places(&self) -> Vec<(usize, usize)> {
+    fn places(&self) -> Vec<(PairId, GroupId)> {
         let plan = self.context.plan;
-        let contact = plan.contact.iter().enumerate();
+        let contact = plan.pairs.each();
         contact
             .flat_map(|(p, &c)| plan.clusters[c].groups.iter().map(move |&g| (p, g)))
             .collect()

@@ -1,5 +1,6 @@
 //! Bringing the clusters together at the root: Γ, S_0 and the bilateral operator.
 
+use contact_dd_partition::id::ClusterId;
 use faer::Par;
 
 use crate::condense::blocks::CondensedBlocks;
@@ -67,7 +68,7 @@ fn assemble(
 fn contribution(
     blocks: &CondensedBlocks,
     plan: &Plan,
-    c: usize,
+    c: ClusterId,
     with_laws: bool,
 ) -> Option<(Vec<InterfaceDof>, Contribution)> {
     if let Some(linear) = blocks.linear.get(&c) {
@@ -80,7 +81,7 @@ fn contribution(
         };
         return Some((condensed.interface_dofs, contribution));
     }
-    let cluster = blocks.contact.get(&plan.contact_place(c)?)?;
+    let cluster = blocks.contact.get(&plan.pair_of(c)?)?;
     let condensed = &cluster.condensed;
     let contribution = Contribution {
         s: condensed.bilateral().to_owned(),

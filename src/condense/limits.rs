@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups, OnPairs};
+
 use crate::contact::jumps::JumpOf;
 use crate::contact::jumps::Jumps;
 use crate::contact::limits::Limits;
@@ -11,10 +13,10 @@ use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 
 /// The jumps of the ties of every contact group of this rank, by its number, each with its condition (m).
-pub type TiedJumps = BTreeMap<usize, Vec<(usize, f64)>>;
+pub type TiedJumps = OnGroups<Vec<(usize, f64)>>;
 
 /// The jumps of ties among limits of groups.
-pub fn tied_jumps(of_groups: &BTreeMap<usize, Limits>) -> TiedJumps {
+pub fn tied_jumps(of_groups: &OnGroups<Limits>) -> TiedJumps {
     let tied = of_groups
         .iter()
         .map(|(&g, limits)| (g, limits.tied.clone()));
@@ -23,13 +25,10 @@ pub fn tied_jumps(of_groups: &BTreeMap<usize, Limits>) -> TiedJumps {
 
 /// The bounds on the normal jumps of every cluster in contact of this rank in a load step, by its place among
 /// those, joined from those `made` of its groups. Collective.
-pub fn limits_of_clusters(
-    context: &Context<'_>,
-    made: &BTreeMap<usize, Limits>,
-) -> BTreeMap<usize, Limits> {
+pub fn limits_of_clusters(context: &Context<'_>, made: &OnGroups<Limits>) -> OnPairs<Limits> {
     let Context { comm, plan, .. } = context;
     let groups = plan.groups_by_cluster();
-    let mut arrived: BTreeMap<usize, Limits> = BTreeMap::new();
+    let mut arrived: OnGroups<Limits> = BTreeMap::new();
     comm.route(
         plan.ways_to_clusters(),
         |i| made.get(&groups[i]).cloned().unwrap_or_default(),
@@ -37,8 +36,8 @@ pub fn limits_of_clusters(
             arrived.insert(groups[i], limits);
         },
     );
-    let contact = plan.contact.iter().map(|&c| &plan.clusters[c]);
-    let own = (contact.enumerate()).filter(|(_, cluster)| cluster.owner == comm.rank());
+    let contact = plan.pairs.each().map(|(p, &c)| (p, &plan.clusters[c]));
+    let own = contact.filter(|(_, cluster)| cluster.owner == comm.rank());
     own.map(|(p, cluster)| {
         let groups = cluster.groups.iter();
         let limits: Vec<Limits> = groups.filter_map(|g| arrived.remove(g)).collect();
@@ -51,10 +50,7 @@ pub fn limits_of_clusters(
 ///
 /// # Errors
 /// Supports that make two sides penetrate.
-pub fn limits_of_groups(
-    context: &Context<'_>,
-    loads: &Loads,
-) -> Result<BTreeMap<usize, Limits>, Failure> {
+pub fn limits_of_groups(context: &Context<'_>, loads: &Loads) -> Result<OnGroups<Limits>, Failure> {
     let made = context.groups.iter().map(|(&g, group)| {
         let limits = of_group(context, g, group, &loads.groups[&g])?;
         Ok((g, limits))
@@ -65,7 +61,7 @@ pub fn limits_of_groups(
 /// The bounds on the normal jumps of group g.
 fn of_group(
     context: &Context<'_>,
-    g: usize,
+    g: GroupId,
     group: &ContactGroup,
     loads: &GroupLoads,
 ) -> Result<Limits, Failure> {

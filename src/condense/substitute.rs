@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::condense::blocks::CondensedBlocks;
+use contact_dd_partition::id::{BlockId, OnBlocks, OnGroups, OnTreeNodes, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
+
+use crate::condense::blocks::{CondensedBlock, CondensedBlocks};
 use crate::condense::limits::TiedJumps;
 use crate::context::Context;
 use crate::context::hierarchy::{Direction, carry};
@@ -17,7 +20,7 @@ pub struct Factors<'a> {
     pub condensed: &'a CondensedBlocks,
     /// The nodes of the hierarchy on which loads act and of which solutions are wanted, with all above them up to the
     /// clusters, whose own are among them; all nodes where it is left out.
-    pub only: Option<&'a [bool]>,
+    pub only: Option<&'a Numbered<TreeNodeId, bool>>,
 }
 
 impl Factors<'_> {
@@ -25,11 +28,11 @@ impl Factors<'_> {
     /// rank. Collective.
     pub fn condense(
         &self,
-        mut loads: BTreeMap<usize, Vec<f64>>,
+        mut loads: OnBlocks<Vec<f64>>,
         tied: &TiedJumps,
-    ) -> BTreeMap<usize, CondensedLoad> {
+    ) -> OnTreeNodes<CondensedLoad> {
         let (context, condensed) = (&self.context, self.condensed);
-        let mut of_nodes: BTreeMap<usize, CondensedLoad> = BTreeMap::new();
+        let mut of_nodes: OnTreeNodes<CondensedLoad> = BTreeMap::new();
         let mut arrived = BTreeMap::new();
         for v in self.nodes() {
             let children = &context.plan.tree.nodes[v].children;
@@ -37,8 +40,8 @@ impl Factors<'_> {
                 let load = of_nodes.get(&child).map(|load| load.boundary().to_vec());
                 carry(context, child, Some(v), load, &mut arrived, Direction::Up);
             }
-            if let Some(block) = condensed.blocks.get(&v) {
-                let load = loads.remove(&v).unwrap_or_default();
+            if let Some((b, block)) = self.block(v) {
+                let load = loads.remove(&b).unwrap_or_default();
                 of_nodes.insert(v, block.factor.condense(load));
             } else if let Some(merge) = condensed.merges.get(&v) {
                 // What isn't there has no load.
@@ -59,17 +62,17 @@ impl Factors<'_> {
     /// where `loads` are the condensed ones, and the forces of ties below clusters, by contact group. Collective.
     pub fn recover(
         &self,
-        loads: &BTreeMap<usize, CondensedLoad>,
-        mut boundaries: BTreeMap<usize, Vec<f64>>,
-    ) -> (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<f64>>) {
+        loads: &OnTreeNodes<CondensedLoad>,
+        mut boundaries: OnTreeNodes<Vec<f64>>,
+    ) -> (OnBlocks<Vec<f64>>, OnGroups<Vec<f64>>) {
         let (context, condensed) = (&self.context, self.condensed);
         let (mut of_blocks, mut of_ties) = (BTreeMap::new(), BTreeMap::new());
         for v in self.nodes().into_iter().rev() {
-            let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+            let mut of_children: OnTreeNodes<Vec<f64>> = BTreeMap::new();
             let children = &context.plan.tree.nodes[v].children;
             if let (Some(x), Some(load)) = (boundaries.remove(&v), loads.get(&v)) {
-                if let Some(block) = condensed.blocks.get(&v) {
-                    of_blocks.insert(v, block.factor.recover(load, &x));
+                if let Some((b, block)) = self.block(v) {
+                    of_blocks.insert(b, block.factor.recover(load, &x));
                 } else if let Some(merge) = condensed.merges.get(&v) {
                     let recovered = merge.recover(load, &x);
                     of_children.extend(children.iter().copied().zip(recovered.children));
@@ -87,7 +90,7 @@ impl Factors<'_> {
     }
 
     /// The nodes of all clusters, children before parents, on all ranks the same.
-    fn nodes(&self) -> Vec<usize> {
+    fn nodes(&self) -> Vec<TreeNodeId> {
         let clusters = self.context.plan.clusters.iter();
         clusters
             .flat_map(|c| self.context.plan.tree.subtree(c.node))
@@ -95,8 +98,14 @@ impl Factors<'_> {
             .collect()
     }
 
+    /// The block that node v is, if it is one of this rank.
+    fn block(&self, v: TreeNodeId) -> Option<(BlockId, &CondensedBlock)> {
+        let b = self.context.plan.tree.block(v)?;
+        Some((b, self.condensed.blocks.get(&b)?))
+    }
+
     /// Whether a node is one of those that loads and solutions are of.
-    fn has(&self, v: usize) -> bool {
+    fn has(&self, v: TreeNodeId) -> bool {
         self.only.is_none_or(|only| only[v])
     }
 }

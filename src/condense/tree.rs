@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{BlockId, OnPairs, OnTreeNodes, TreeNodeId};
+
 use crate::comm::is_asked_to_stop;
 use crate::condense::Condensation;
 use crate::condense::blocks::CondensedBlocks;
@@ -21,7 +23,7 @@ use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 /// A part that can move although its boundary is held, or supports that differ between subdomains.
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
-    modes: &BTreeMap<usize, RigidModes>,
+    modes: &OnPairs<RigidModes>,
 ) -> Result<CondensedBlocks, Failure> {
     let Context {
         comm,
@@ -37,13 +39,13 @@ pub fn condense_clusters(
         spare: Spare::default(),
     };
     let (alone, across) = merging.nodes();
-    let time = |&v: &usize| match plan.node_owners[v] == comm.rank() {
+    let time = |&v: &TreeNodeId| match plan.node_owners[v] == comm.rank() {
         true => plan.time(v, catalog.dim),
         false => 0.0,
     };
     let all: f64 = alone.iter().chain(&across).map(time).sum();
     let mut spent = 0.0;
-    let mut is_done = |v: usize| {
+    let mut is_done = |v: TreeNodeId| {
         spent += time(&v);
         listener.done((spent / all).clamp(f64::MIN_POSITIVE, 1.0));
     };
@@ -82,7 +84,7 @@ struct Merging<'a> {
     condensation: &'a Condensation<'a>,
     condensed: CondensedBlocks,
     /// Nodes that are condensed and not merged yet.
-    waiting: BTreeMap<usize, Condensed>,
+    waiting: OnTreeNodes<Condensed>,
     /// Memory of what was merged.
     spare: Spare,
 }
@@ -90,10 +92,10 @@ struct Merging<'a> {
 impl Merging<'_> {
     /// The nodes of clusters under which everything is this rank's, depth first, and, on all ranks
     /// the same, those with parts of several ranks.
-    fn nodes(&self) -> (Vec<usize>, Vec<usize>) {
+    fn nodes(&self) -> (Vec<TreeNodeId>, Vec<TreeNodeId>) {
         let plan = self.condensation.context.plan;
         let (mut alone, mut across) = (Vec::new(), Vec::new());
-        let mut is_whole = vec![true; plan.tree.nodes.len()];
+        let mut is_whole = plan.tree.nodes.like(true);
         for cluster in &plan.clusters {
             for v in plan.tree.subtree(cluster.node) {
                 let owner = plan.node_owners[v];
@@ -111,13 +113,14 @@ impl Merging<'_> {
     }
 
     /// Condenses a block or merges the children of an inner node, all of them this rank's.
-    fn own_node(&mut self, v: usize) -> Result<(), Failure> {
-        if let Some(block) = self.condensation.context.blocks.get(&v) {
-            let of_block = self.condensation.condense(v, block, &mut self.condensed)?;
+    fn own_node(&mut self, v: TreeNodeId) -> Result<(), Failure> {
+        let Context { plan, blocks, .. } = self.condensation.context;
+        if let Some((b, block)) = (plan.tree.block(v)).and_then(|b| Some((b, blocks.get(&b)?))) {
+            let of_block = self.condensation.condense(b, block, &mut self.condensed)?;
             self.waiting.insert(v, of_block);
             return Ok(());
         }
-        let children = &self.condensation.context.plan.tree.nodes[v].children;
+        let children = &plan.tree.nodes[v].children;
         let waiting = children
             .iter()
             .filter_map(|child| self.waiting.remove(child));
@@ -126,7 +129,7 @@ impl Merging<'_> {
     }
 
     /// Merges the children of an inner node, which come from several ranks. Collective.
-    fn node_across_ranks(&mut self, v: usize) -> Result<(), Failure> {
+    fn node_across_ranks(&mut self, v: TreeNodeId) -> Result<(), Failure> {
         let plan = self.condensation.context.plan;
         let (me, owner) = (self.condensation.context.comm.rank(), plan.node_owners[v]);
         let children = &plan.tree.nodes[v].children;
@@ -152,7 +155,7 @@ impl Merging<'_> {
         Ok(())
     }
 
-    fn merge(&mut self, v: usize, children: Vec<Condensed>) -> Result<(), Failure> {
+    fn merge(&mut self, v: TreeNodeId, children: Vec<Condensed>) -> Result<(), Failure> {
         let Context { comm, plan, .. } = self.condensation.context;
         let began = comm.times();
         let node = &plan.tree.nodes[v];
@@ -177,12 +180,12 @@ impl Merging<'_> {
         Ok(())
     }
 
-    fn moves(&self, v: usize, dof: InterfaceDof) -> Failure {
+    fn moves(&self, v: TreeNodeId, dof: InterfaceDof) -> Failure {
         let plan = self.condensation.context.plan;
         let under = plan.tree.subtree(v).into_iter();
-        let subdomains: Vec<usize> = under.filter(|&b| b < plan.blocks()).collect();
-        let first = subdomains.iter().min().copied().unwrap_or_default();
-        let body = self.condensation.context.catalog.subdomains[first].body;
+        let subdomains: Vec<BlockId> = under.filter_map(|v| plan.tree.block(v)).collect();
+        let first = (subdomains.iter().min().copied()).unwrap_or(BlockId::new(0));
+        let body = self.condensation.context.catalog.body_of(first);
         Failure::ill_posed(format!(
             "body '{}': its {} subdomains around subdomain {first} can move although their boundary \
              is held (found at node {} of /interface/interface); expected supports or contact that \

@@ -8,8 +8,7 @@
 //! S. Hüeber, G. Stadler, B. Wohlmuth, *A primal-dual active set algorithm for three-dimensional contact problems with
 //! Coulomb friction*, SIAM J. Sci. Comput. 30 (2008).
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{GroupId, OnGroups};
 use serde::{Deserialize, Serialize};
 
 use super::law::PointStatus;
@@ -20,9 +19,6 @@ use crate::vector::larger;
 const SMALLEST: f64 = 1e-3;
 /// Part of the merit, for every part of a step, by which that has to lessen it.
 const LESSENS: f64 = 1e-4;
-
-/// One of a kind for every contact group of this rank; a dense problem is a single group.
-pub type OnGroups<T> = BTreeMap<usize, T>;
 
 /// What answers for given statuses. Its methods are collective.
 pub trait ContactOperator {
@@ -256,7 +252,7 @@ pub fn look<O: ContactOperator>(
     settings: NewtonSettings,
 ) -> (OnGroups<LawResidual>, TotalResidual) {
     let scales = before.map(|_| operator.force_scales(at));
-    let of_group = |(&g, laws): (&usize, &ContactLaws<'_>)| {
+    let of_group = |(&g, laws): (&GroupId, &ContactLaws<'_>)| {
         let known = before.zip(scales.as_ref());
         (
             g,

@@ -1,6 +1,6 @@
 //! Messages along the hierarchy, and the jumps of the contact groups at its nodes.
 
-use std::collections::BTreeMap;
+use contact_dd_partition::id::{GroupId, OnTreeNodes, TreeNodeId};
 
 use crate::bytes::Reals;
 use crate::contact::jumps::{Jumps, NoUnknown};
@@ -13,10 +13,10 @@ use crate::fem::contact_group::ContactGroup;
 /// Collective.
 pub fn carry(
     context: &Context<'_>,
-    v: usize,
-    parent: Option<usize>,
+    v: TreeNodeId,
+    parent: Option<TreeNodeId>,
     mut vector: Option<Vec<f64>>,
-    into: &mut BTreeMap<usize, Vec<f64>>,
+    into: &mut OnTreeNodes<Vec<f64>>,
     direction: Direction,
 ) {
     let Context { comm, plan, .. } = *context;
@@ -53,7 +53,7 @@ pub enum Direction {
 /// A contact point that nothing can be replaced for.
 pub fn resting_limits(
     context: &Context<'_>,
-    g: usize,
+    g: GroupId,
     group: &ContactGroup,
 ) -> Result<Limits, Failure> {
     let jumps = jumps(context, g, group)?;
@@ -66,7 +66,7 @@ pub fn resting_limits(
 ///
 /// # Errors
 /// A contact point that nothing can be replaced for.
-pub fn jumps(context: &Context<'_>, g: usize, group: &ContactGroup) -> Result<Jumps, Failure> {
+pub fn jumps(context: &Context<'_>, g: GroupId, group: &ContactGroup) -> Result<Jumps, Failure> {
     let node = &context.plan.tree.nodes[context.plan.groups[g].node];
     group.jumps(&node.eliminated).map_err(|NoUnknown(j)| {
         let number = group.conditions().nth(j).map_or(0, |condition| condition.point);

@@ -1,7 +1,6 @@
 //! Quantities of the solution and their derivatives, as the report has them.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::OnBlocks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +43,7 @@ pub struct Quantities {
     /// Contact points whose status is about to change, in words.
     pub about_to_change: Vec<String>,
     /// Parts of the cells of every block of this rank in the estimated error of the first one.
-    pub errors_of_cells: BTreeMap<usize, Vec<f64>>,
+    pub errors_of_cells: OnBlocks<Vec<f64>>,
     /// Why there are no derivatives, or none of a quantity, in words.
     pub without_derivatives: Option<String>,
 }

@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{OnPairs, PairId};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +18,7 @@ use crate::contact::pair::{ContactPair, PairResponse};
 pub struct SCon<'a> {
     comm: &'a Comm,
     owners: &'a [usize],
-    pairs: &'a mut BTreeMap<usize, ContactPair>,
+    pairs: &'a mut OnPairs<ContactPair>,
 }
 
 /// The answers of all pairs after an evaluation, on the root.
@@ -67,11 +68,7 @@ type Question = (Reals, Option<(Vec<Status>, Reals)>);
 
 impl<'a> SCon<'a> {
     /// S_CON over `pairs` of this rank; `owners` has the owner of every pair.
-    pub fn new(
-        comm: &'a Comm,
-        owners: &'a [usize],
-        pairs: &'a mut BTreeMap<usize, ContactPair>,
-    ) -> Self {
+    pub fn new(comm: &'a Comm, owners: &'a [usize], pairs: &'a mut OnPairs<ContactPair>) -> Self {
         Self {
             comm,
             owners,
@@ -198,7 +195,7 @@ impl<'a> SCon<'a> {
         let received = (self.comm).scattered(&owners, |i| question(called[i]));
         let received = received.into_iter().map(|(i, asked)| (called[i], asked));
         let mut answers: BTreeMap<usize, A> = received
-            .filter_map(|(p, asked)| Some((p, answer(self.pairs.get_mut(&p)?, asked))))
+            .filter_map(|(p, asked)| Some((p, answer(self.pairs.get_mut(&PairId::new(p))?, asked))))
             .collect();
         self.comm.gather(
             &owners,

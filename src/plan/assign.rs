@@ -1,6 +1,8 @@
 //! Owners: subtrees of the hierarchy are handed out by estimated cost.
 
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::TreeNodeId;
+use contact_dd_partition::numbered::Numbered;
 
 /// Splits that are tried, for every rank.
 const SPLITS: usize = 8;
@@ -8,9 +10,12 @@ const SPLITS: usize = 8;
 /// Least gain of a further split.
 const GAIN: f64 = 0.97;
 
+/// Estimated time of every node.
+type Costs = Numbered<TreeNodeId, f64>;
+
 /// A way to hand out the tree.
 struct Share {
-    owner: Vec<usize>,
+    owner: Numbered<TreeNodeId, usize>,
     /// Estimated time until all clusters are condensed.
     end: f64,
 }
@@ -21,7 +26,12 @@ struct Share {
 /// Each rank gets whole subtrees as far as that balances; the largest ones are split first, and
 /// what is above a split goes to the owner of its most expensive part. Where it is about as good, ranks get clusters that
 /// are together in the hierarchy.
-pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usize) -> Vec<usize> {
+pub(super) fn assign(
+    tree: &Tree,
+    clusters: &[TreeNodeId],
+    costs: &Costs,
+    ranks: usize,
+) -> Numbered<TreeNodeId, usize> {
     let of_subtree = tree.sums(costs);
     let mut tasks = clusters.to_vec();
     let mut best = share(
@@ -63,7 +73,7 @@ pub(super) fn assign(tree: &Tree, clusters: &[usize], costs: &[f64], ranks: usiz
 }
 
 /// The owners of `tasks`, subtrees, the most expensive first, each that of the rank that has least.
-fn by_cost(tasks: &[usize], of_subtree: &[f64], ranks: usize) -> Vec<(usize, usize)> {
+fn by_cost(tasks: &[TreeNodeId], of_subtree: &Costs, ranks: usize) -> Vec<(TreeNodeId, usize)> {
     let mut order = tasks.to_vec();
     order.sort_by(|&a, &b| of_subtree[b].total_cmp(&of_subtree[a]).then(a.cmp(&b)));
     let mut busy = vec![0.0f64; ranks];
@@ -82,14 +92,19 @@ fn by_cost(tasks: &[usize], of_subtree: &[f64], ranks: usize) -> Vec<(usize, usi
 }
 
 /// The owners of `tasks` where each rank gets what is together in the hierarchy: what is above is shared as well.
-fn in_a_row(tree: &Tree, tasks: &[usize], of_subtree: &[f64], ranks: usize) -> Vec<(usize, usize)> {
-    let mut is_task = vec![false; tree.nodes.len()];
+fn in_a_row(
+    tree: &Tree,
+    tasks: &[TreeNodeId],
+    of_subtree: &Costs,
+    ranks: usize,
+) -> Vec<(TreeNodeId, usize)> {
+    let mut is_task = tree.nodes.like(false);
     tasks.iter().for_each(|&task| is_task[task] = true);
     let all = tree.roots().flat_map(|root| tree.subtree(root));
-    let row: Vec<usize> = all.filter(|&v| is_task[v]).collect();
+    let row: Vec<TreeNodeId> = all.filter(|&v| is_task[v]).collect();
     let total: f64 = row.iter().map(|&task| of_subtree[task]).sum();
     let mut before = 0.0;
-    let owner = |task: usize| {
+    let owner = |task: TreeNodeId| {
         let middle = before + 0.5 * of_subtree[task];
         before += of_subtree[task];
         let share = ranks as f64 * middle / total.max(f64::MIN_POSITIVE);
@@ -101,23 +116,23 @@ fn in_a_row(tree: &Tree, tasks: &[usize], of_subtree: &[f64], ranks: usize) -> V
 /// Hands out subtrees, the tasks, to `owners`.
 fn share(
     tree: &Tree,
-    owners: Vec<(usize, usize)>,
-    costs: &[f64],
-    of_subtree: &[f64],
+    owners: Vec<(TreeNodeId, usize)>,
+    costs: &Costs,
+    of_subtree: &Costs,
     ranks: usize,
 ) -> Share {
     const NOBODY: usize = usize::MAX;
-    let mut owner = vec![NOBODY; tree.nodes.len()];
+    let mut owner = tree.nodes.like(NOBODY);
     let mut busy = vec![0.0f64; ranks];
     for (task, rank) in owners {
         busy[rank] += of_subtree[task];
         owner[task] = rank;
     }
-    let mut done: Vec<f64> = (owner.iter())
+    let mut done: Costs = (owner.iter())
         .map(|&owner| if owner == NOBODY { 0.0 } else { busy[owner] })
         .collect();
     let mut end = done.iter().copied().fold(0.0, f64::max);
-    for (v, node) in tree.nodes.iter().enumerate() {
+    for (v, node) in tree.nodes.each() {
         let above_tasks = owner[v] == NOBODY
             && !node.children.is_empty()
             && node.children.iter().all(|&child| owner[child] != NOBODY);
@@ -136,7 +151,7 @@ fn share(
         end = end.max(done[v]);
     }
     // What lies under a task belongs to its owner.
-    for v in (0..tree.nodes.len()).rev() {
+    for v in tree.nodes.ids().rev() {
         if owner[v] == NOBODY {
             owner[v] = tree.nodes[v].parent.map_or(0, |parent| owner[parent]);
         }

@@ -1,6 +1,8 @@
 //! Clusters: what the sweeps see as one block.
 
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::{GroupId, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 
 /// Most contact conditions in a cluster of several groups: its law is dense.
 const MAX_CONDITIONS: usize = 2_000;
@@ -42,11 +44,11 @@ impl Merging {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClusterPlan {
     /// The node.
-    pub node: usize,
+    pub node: TreeNodeId,
     /// The rank that owns the node.
     pub owner: usize,
     /// Its groups, by their place among all of the plan, in the order in which they are merged.
-    pub groups: Vec<usize>,
+    pub groups: Vec<GroupId>,
     /// Number of conditions of its contact points, without those of ties.
     pub conditions: usize,
 }
@@ -60,7 +62,11 @@ impl ClusterPlan {
 
 /// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless contact points
 /// belong to them; what is under a node with contact points is one cluster with it.
-pub(super) fn cluster_nodes(tree: &Tree, merging: Merging, merge_roots: &[usize]) -> Vec<usize> {
+pub(super) fn cluster_nodes(
+    tree: &Tree,
+    merging: Merging,
+    merge_roots: &[TreeNodeId],
+) -> Vec<TreeNodeId> {
     let is_above_merge_roots = above(tree, merge_roots);
     tree.highest(|v| {
         let node = &tree.nodes[v];
@@ -76,8 +82,8 @@ pub(super) fn cluster_nodes(tree: &Tree, merging: Merging, merge_roots: &[usize]
 }
 
 /// Which nodes of `tree` are above all of some.
-fn above(tree: &Tree, nodes: &[usize]) -> Vec<bool> {
-    let mut is_above = vec![true; tree.nodes.len()];
+fn above(tree: &Tree, nodes: &[TreeNodeId]) -> Numbered<TreeNodeId, bool> {
+    let mut is_above = tree.nodes.like(true);
     for v in nodes.iter().flat_map(|&v| tree.subtree(v)) {
         is_above[v] = false;
     }

@@ -6,6 +6,7 @@
 //! of them.
 
 use contact_dd_partition::flops::{Front, condensation};
+use contact_dd_partition::id::TreeNodeId;
 use contact_dd_partition::problem::Catalog;
 
 use super::Plan;
@@ -61,25 +62,27 @@ impl CostEstimate {
 
 impl Plan {
     /// Whether the front of node v is made again for every active set.
-    fn has_active_set_at(&self, v: usize) -> bool {
+    fn has_active_set_at(&self, v: TreeNodeId) -> bool {
         self.merging.has_active_set() && self.tree.nodes[v].conditions > 0
     }
 
     /// The cost of every one of `ranks` ranks.
     pub fn cost_estimates(&self, catalog: &Catalog, ranks: usize) -> Vec<CostEstimate> {
         let mut estimates = vec![CostEstimate::default(); ranks];
-        for (v, &owner) in self.node_owners.iter().enumerate() {
+        for (v, &owner) in self.node_owners.each() {
             if self.merging == Merging::Clusters && self.is_above_merge_roots(v) {
                 continue;
             }
             let front = self.front(v, catalog.dim);
+            let block = self.tree.block(v);
             let estimate = &mut estimates[owner];
-            estimate.flops += match v < self.blocks() {
+            estimate.flops += match block.is_some() {
                 true => condensation(front.eliminated as f64, front.kept as f64, catalog.dim),
                 false => front.flops(),
             };
             let (eliminated, kept) = (front.eliminated as f64, front.kept as f64);
-            if let Some(subdomain) = catalog.subdomains.get(v) {
+            if let Some(block) = block {
+                let subdomain = &catalog.subdomains[block.index()];
                 let n = eliminated.max(1.0);
                 let [least, more] = PER_NODE_OF_CELL;
                 let of_kind = least + more * subdomain.nodes as f64 / subdomain.cells.max(1) as f64;
@@ -117,11 +120,11 @@ impl Plan {
     /// merged into.
     fn waiting(&self, dim: usize, ranks: usize) -> Vec<f64> {
         let (mut now, mut most) = (vec![0.0; ranks], vec![0.0f64; ranks]);
-        let s = |v: usize| PER_ENTRY * (self.front(v, dim).kept as f64).powi(2);
+        let s = |v: TreeNodeId| PER_ENTRY * (self.front(v, dim).kept as f64).powi(2);
         for cluster in &self.clusters {
             for v in self.tree.subtree(cluster.node) {
                 let (owner, children) = (self.node_owners[v], &self.tree.nodes[v].children);
-                let is_elsewhere = |child: &&usize| self.node_owners[**child] != owner;
+                let is_elsewhere = |child: &&TreeNodeId| self.node_owners[**child] != owner;
                 let arrived = children.iter().filter(is_elsewhere).map(|&child| s(child));
                 let merged: f64 = children.iter().map(|&child| s(child)).sum();
                 let all = now[owner] + arrived.sum::<f64>() + s(v) + merged.min(SPARE);
@@ -140,7 +143,7 @@ impl Plan {
     }
 
     /// The front of node v as this plan merges it.
-    fn front(&self, v: usize, dim: usize) -> Front {
+    fn front(&self, v: TreeNodeId, dim: usize) -> Front {
         let front = self.tree.front_of(v, dim, self.merging.has_active_set());
         match self.leaves_its_nodes(v) {
             true => Front {

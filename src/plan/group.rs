@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::hierarchy::tree::Tree;
+use contact_dd_partition::id::TreeNodeId;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 
 /// A contact group: the contact points of one node of the hierarchy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GroupPlan {
     /// The node.
-    pub node: usize,
+    pub node: TreeNodeId,
     /// The nodes of its points, each once, in the order in which the group numbers them, and their numbers on Γ.
     pub nodes: Vec<(SubdomainNode, u32)>,
     /// The group's number of every node that a point names; copies of a node have one.
@@ -20,7 +21,7 @@ pub struct GroupPlan {
 
 impl GroupPlan {
     /// The group of the contact points of node v of `tree`.
-    pub fn new(catalog: &Catalog, tree: &Tree, v: usize) -> Self {
+    pub fn new(catalog: &Catalog, tree: &Tree, v: TreeNodeId) -> Self {
         let mut interface: BTreeMap<SubdomainNode, u32> = BTreeMap::new();
         for &j in &tree.nodes[v].points {
             let point = &catalog.points[j as usize];

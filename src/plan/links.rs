@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 use contact_dd_partition::problem::SubdomainNode;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,15 +17,12 @@ impl Plan {
     pub fn nodes_to_groups<T: Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
-        say: impl Fn(usize, &[(SubdomainNode, u32)]) -> Vec<T>,
-    ) -> BTreeMap<usize, Vec<T>> {
+        say: impl Fn(BlockId, &[(SubdomainNode, u32)]) -> Vec<T>,
+    ) -> OnGroups<Vec<T>> {
         let links = self.links();
-        let owners = &self.node_owners;
-        let mut arrived: BTreeMap<usize, Vec<T>> = BTreeMap::new();
+        let mut arrived: OnGroups<Vec<T>> = BTreeMap::new();
         comm.route(
-            links
-                .iter()
-                .map(|link| (owners[link.block], owners[self.groups[link.group].node])),
+            links.iter().map(|link| self.ends(link)),
             |i| say(links[i].block, links[i].nodes),
             |i, said| arrived.entry(links[i].group).or_default().extend(said),
         );
@@ -35,15 +34,12 @@ impl Plan {
     pub fn nodes_to_blocks<T: Clone + Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
-        said: &BTreeMap<usize, Vec<T>>,
-    ) -> BTreeMap<usize, Vec<(u32, T)>> {
+        said: &OnGroups<Vec<T>>,
+    ) -> OnBlocks<Vec<(u32, T)>> {
         let links = self.links();
-        let owners = &self.node_owners;
-        let mut arrived: BTreeMap<usize, Vec<(u32, T)>> = BTreeMap::new();
+        let mut arrived: OnBlocks<Vec<(u32, T)>> = BTreeMap::new();
         comm.route(
-            links
-                .iter()
-                .map(|link| (owners[self.groups[link.group].node], owners[link.block])),
+            (links.iter().map(|link| self.ends(link))).map(|(block, group)| (group, block)),
             |i| said[&links[i].group][links[i].first..][..links[i].nodes.len()].to_vec(),
             |i, said| {
                 let nodes = links[i].nodes.iter().map(|(node, _)| node.node);
@@ -55,10 +51,10 @@ impl Plan {
     }
 
     /// The nodes of the hierarchy below clusters that have nodes of contact points, and the clusters.
-    pub fn around_contact(&self) -> Vec<bool> {
-        let mut around = vec![false; self.tree.nodes.len()];
+    pub fn around_contact(&self) -> Numbered<TreeNodeId, bool> {
+        let mut around = self.tree.nodes.like(false);
         for link in self.links() {
-            around[link.block] = true;
+            around[link.block.into()] = true;
         }
         for cluster in &self.clusters {
             for v in self.tree.subtree(cluster.node) {
@@ -70,14 +66,21 @@ impl Plan {
         around
     }
 
+    /// The owners of the block and of the group.
+    fn ends(&self, link: &Link<'_>) -> (usize, usize) {
+        let owners = &self.node_owners;
+        let group = owners[self.groups[link.group].node];
+        (owners[link.block.into()], group)
+    }
+
     fn links(&self) -> Vec<Link<'_>> {
         let mut links = Vec::new();
-        for (group, plan) in self.groups.iter().enumerate() {
+        for (group, plan) in self.groups.each() {
             let mut first = 0;
             for nodes in plan.by_subdomain() {
                 links.push(Link {
                     group,
-                    block: nodes[0].0.subdomain as usize,
+                    block: nodes[0].0.block(),
                     first,
                     nodes,
                 });
@@ -90,8 +93,8 @@ impl Plan {
 
 /// Some nodes that a group and a block have.
 struct Link<'a> {
-    group: usize,
-    block: usize,
+    group: GroupId,
+    block: BlockId,
     /// The group's number of the first one.
     first: usize,
     nodes: &'a [(SubdomainNode, u32)],

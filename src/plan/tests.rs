@@ -61,14 +61,14 @@ fn catalog() -> Catalog {
 }
 
 /// The number in the tree of what is node v in the file: two subdomains have nodes that points alone name.
-fn inner(v: usize) -> usize {
-    v + 2
+fn inner(v: usize) -> TreeNodeId {
+    TreeNodeId::new(v + 2)
 }
 
 #[test]
 fn contact_points_belong_where_all_that_have_their_nodes_come_together() {
     let plan = Plan::new(&catalog(), 3, Merging::All);
-    let [group] = &plan.groups[..] else {
+    let [group] = plan.groups.values() else {
         panic!("{:?}", plan.groups);
     };
     assert_eq!((group.node, group.nodes.len()), (inner(5), 4));
@@ -93,7 +93,7 @@ fn the_tree_does_not_depend_on_the_number_of_ranks() {
 
 #[test]
 fn what_picard_merges_has_no_contact() {
-    let clusters = |merging| -> Vec<usize> {
+    let clusters = |merging| -> Vec<TreeNodeId> {
         let plan = Plan::new(&catalog(), 2, merging);
         plan.clusters.iter().map(|c| c.node).collect()
     };
@@ -110,8 +110,12 @@ fn subtrees_are_split_until_ranks_have_about_the_same_to_do() {
     let plan = Plan::new(&catalog(), 2, Merging::All);
     let nodes = [40, 30, 20, 30, 90];
     let of_rank = |rank: usize| -> usize {
-        let own = (0..5).filter(|&b| plan.node_owners[b] == rank);
-        own.map(|b| nodes[b]).sum()
+        let owners = plan.owners();
+        let own = owners
+            .iter()
+            .zip(nodes)
+            .filter(|(owner, _)| **owner == rank);
+        own.map(|(_, nodes)| nodes).sum()
     };
     assert_eq!((of_rank(0), of_rank(1)), (110, 100));
 }

@@ -29,6 +29,7 @@ mod transposed;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::OnGroups;
 use contact_dd_partition::quantity::{Parameter, Quantity, QuantityKind};
 
 use self::derivatives::{Sensitivity, derivatives};
@@ -55,7 +56,7 @@ pub fn quantities_at(
     moment: LoadPoint,
     fixed: &FixedActiveSet<'_>,
     solution: &Solution,
-    before: Option<&BTreeMap<usize, Vec<f64>>>,
+    before: Option<&OnGroups<Vec<f64>>>,
 ) -> Quantities {
     let catalog = fixed.context.catalog;
     if moment.part < 1.0 || catalog.quantities.is_empty() {
@@ -96,7 +97,7 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
         true => MaterialForces::new(context, &solved.solution.discrete),
         false => MaterialForces::default(),
     };
-    let slipping: BTreeMap<usize, SlippingPoints> = (solved.solution.discrete.groups.iter())
+    let slipping: OnGroups<SlippingPoints> = (solved.solution.discrete.groups.iter())
         .map(|(&g, of_group)| (g, SlippingPoints::new(&context.groups[&g], of_group)))
         .collect();
     if has_derivatives {

@@ -1,5 +1,7 @@
 //! The contact points at which a solution breaks the laws of contact most.
 
+use contact_dd_partition::id::PairId;
+
 use super::{DiscreteSolution, GroupSolution};
 use crate::context::Context;
 use crate::fem::contact_group::ContactGroup;
@@ -19,7 +21,9 @@ pub fn names_against_law(
 ) -> Vec<String> {
     let mut points = points_against_law(context, solution);
     if points.is_empty() {
-        let pairs = outcome.iter().flat_map(|o| o.unsettled.iter().enumerate());
+        let pairs = outcome
+            .iter()
+            .flat_map(|o| (0..).map(PairId::new).zip(&o.unsettled));
         points = pairs
             .flat_map(|(p, conditions)| {
                 (context.plan).points_of_conditions(context.catalog, p, conditions)

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{BlockId, OnBlocks};
+
 use crate::contact::status::FixedStatus;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -23,13 +25,13 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
         return None;
     }
     let dim = fixed.context.catalog.dim;
-    let start = |&b: &usize| {
+    let start = |&b: &BlockId| {
         let diagonal = diagonal(fixed, b).iter().enumerate();
         let value = |i: usize| sign(b, i) + sign(b, usize::MAX - i % dim);
         let load = diagonal.map(|(i, d)| d.max(0.0).sqrt() * value(i));
         (b, load.collect())
     };
-    let loads: BTreeMap<usize, Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
+    let loads: OnBlocks<Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
     let held = solution.groups.iter().map(|(&g, of_group)| {
         let closed = of_group.closed.iter();
         (g, closed.map(|closed| FixedStatus::new(!closed)).collect())
@@ -41,7 +43,7 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     let mut largest = 0;
     let (mut sum, mut energy) = (0.0, 0.0);
     fixed.context.comm.gather(
-        fixed.context.plan.owners(),
+        &fixed.context.plan.owners(),
         |b| {
             let answer = answer.get(&b).into_iter().flatten();
             let terms = answer.clone().zip(diagonal(fixed, b));
@@ -61,13 +63,13 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     (fixed.root.is_some() && energy > 0.0).then(|| largest as f64 * sum / energy)
 }
 
-fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: usize) -> &'a [f64] {
+fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: BlockId) -> &'a [f64] {
     let block = fixed.condensed.blocks.get(&b);
     block.map_or(&[], |block| &block.diagonal)
 }
 
 /// The most unknowns that a cell of block b has.
-fn largest_cell(fixed: &FixedActiveSet<'_>, b: usize) -> usize {
+fn largest_cell(fixed: &FixedActiveSet<'_>, b: BlockId) -> usize {
     fixed.context.blocks.get(&b).map_or(0, |block| {
         let nodes = block.cells().map(|cell| cell.kind.nodes()).max();
         nodes.unwrap_or(0) * block.dim
@@ -75,8 +77,8 @@ fn largest_cell(fixed: &FixedActiveSet<'_>, b: usize) -> usize {
 }
 
 /// 1 or −1, as good as by chance and always the same, so that no mode is missed by symmetry.
-fn sign(block: usize, unknown: usize) -> f64 {
-    let mixed = (block as u64 + 1)
+fn sign(block: BlockId, unknown: usize) -> f64 {
+    let mixed = (block.index() as u64 + 1)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)
         .wrapping_add(unknown as u64)
         .wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,6 +1,6 @@
 //! The balance of energy of an increment, where there is friction.
 
-use std::collections::BTreeMap;
+use contact_dd_partition::id::OnBlocks;
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::recover::fixed_active_set::FixedActiveSet;
@@ -11,8 +11,8 @@ use crate::recover::solution::Solution;
 pub fn energies(
     fixed: &FixedActiveSet<'_>,
     solution: &Solution,
-    before: &BTreeMap<usize, BlockEnergy>,
-) -> (BTreeMap<usize, BlockEnergy>, EnergyBalance) {
+    before: &OnBlocks<BlockEnergy>,
+) -> (OnBlocks<BlockEnergy>, EnergyBalance) {
     let context = fixed.context;
     if !context.catalog.has_friction() {
         return Default::default();
@@ -25,7 +25,7 @@ pub fn energies(
         let energy = BlockEnergy::new(block, loads, &balance, &of_block.u, displacement);
         Some((b, energy))
     };
-    let after: BTreeMap<usize, BlockEnergy> = solution
+    let after: OnBlocks<BlockEnergy> = solution
         .discrete
         .blocks
         .iter()
@@ -33,7 +33,7 @@ pub fn energies(
         .collect();
     let mut works = Vec::new();
     context.comm.gather(
-        context.plan.owners(),
+        &context.plan.owners(),
         |b| {
             after
                 .get(&b)

@@ -3,6 +3,9 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs, PairId, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
+
 use crate::bddc::solution::Accuracy;
 use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::TiedJumps;
@@ -47,11 +50,11 @@ pub struct FixedActiveSet<'a> {
     /// The fronts above all contact, where they are eliminated for every active set anew.
     pub fronts: Option<ActiveSetOfStep<'a>>,
     /// The nodes of the hierarchy on which loads act and of which solutions are wanted, as [`Factors`] have them.
-    pub only: Option<&'a [bool]>,
+    pub only: Option<&'a Numbered<TreeNodeId, bool>>,
 }
 
 /// The fronts of the active set that was found last, and the limits of every contact group of this rank.
-pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a BTreeMap<usize, Limits>);
+pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a OnGroups<Limits>);
 
 /// Parts that the root alone holds.
 #[derive(Clone, Copy)]
@@ -66,8 +69,8 @@ pub struct FixedActiveSetRoot<'a> {
     pub moves: bool,
 }
 
-/// The conditions of contact groups, or the limits of clusters, by their number.
-pub type FixedStatuses = BTreeMap<usize, Vec<FixedStatus>>;
+/// The statuses of the conditions of every contact group of this rank.
+pub type FixedStatuses = OnGroups<Vec<FixedStatus>>;
 
 impl FixedActiveSetRoot<'_> {
     /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
@@ -81,9 +84,9 @@ impl FixedActiveSetRoot<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct Change {
     /// Change of the unknowns of every block.
-    pub blocks: BTreeMap<usize, Vec<f64>>,
+    pub blocks: OnBlocks<Vec<f64>>,
     /// Change of the forces of every contact group, 0 where open.
-    pub forces: BTreeMap<usize, Vec<f64>>,
+    pub forces: OnGroups<Vec<f64>>,
 }
 
 impl<'a> FixedActiveSet<'a> {
@@ -130,7 +133,7 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// Balance of forces at the nodes of block b of this rank; `None` for another rank's.
-    pub fn balance(&self, b: usize, solution: &BlockSolution) -> Option<Balance> {
+    pub fn balance(&self, b: BlockId, solution: &BlockSolution) -> Option<Balance> {
         Some(Balance::new(
             self.context.blocks.get(&b)?,
             self.step.loads.blocks.get(&b)?,
@@ -145,9 +148,9 @@ impl<'a> FixedActiveSet<'a> {
     /// presses, in their directions; an iterative solver goes as far as the `tolerance`. Collective.
     pub fn solve(
         &self,
-        loads: BTreeMap<usize, Vec<f64>>,
+        loads: OnBlocks<Vec<f64>>,
         conditions: FixedStatuses,
-        forces: &BTreeMap<usize, Vec<f64>>,
+        forces: &OnGroups<Vec<f64>>,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
@@ -162,7 +165,7 @@ impl<'a> FixedActiveSet<'a> {
             self.solve_interface(&limits, &condensed, |coupled, (r, loads), fixed| {
                 coupled.solve_fixed(r, loads, fixed, moves)
             });
-        let of_cluster = |(p, change): (usize, PairChange<f64>)| {
+        let of_cluster = |(p, change): (PairId, PairChange<f64>)| {
             let limits = self.step.pairs.get(&p)?.limits();
             Some((p, limits.forces(&change.limits)))
         };
@@ -175,7 +178,7 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// No force at any condition of the contact groups of this rank.
-    pub fn no_forces(&self) -> BTreeMap<usize, Vec<f64>> {
+    pub fn no_forces(&self) -> OnGroups<Vec<f64>> {
         let groups = self.context.groups.iter();
         let none = groups.map(|(&g, group)| (g, vec![0.0; group.conditions().count()]));
         none.collect()
@@ -183,7 +186,7 @@ impl<'a> FixedActiveSet<'a> {
 
     /// Missing jumps of ties, where their conditions have these statuses.
     pub fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
-        let of_group = |(&g, tied): (&usize, &Vec<(usize, f64)>)| {
+        let of_group = |(&g, tied): (&GroupId, &Vec<(usize, f64)>)| {
             let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
             (g, tied.iter().map(lacks).collect())
         };
@@ -194,14 +197,14 @@ impl<'a> FixedActiveSet<'a> {
     fn solve_by_fronts(
         &self,
         (fronts, limits): ActiveSetOfStep<'_>,
-        loads: BTreeMap<usize, Vec<f64>>,
+        loads: OnBlocks<Vec<f64>>,
         conditions: FixedStatuses,
-        forces: &BTreeMap<usize, Vec<f64>>,
+        forces: &OnGroups<Vec<f64>>,
         tolerance: f64,
     ) -> Change {
         let factors = self.factors();
         let tied = self.missing_of_ties(&conditions);
-        let (mut open, mut missing): (BTreeMap<usize, Vec<bool>>, OnJumps) = Default::default();
+        let (mut open, mut missing): (OnGroups<Vec<bool>>, OnJumps) = Default::default();
         let mut laws = Laws::new();
         for (g, of_group) in conditions {
             let fixed = limits[&g].fixed(&of_group);
@@ -245,8 +248,8 @@ impl<'a> FixedActiveSet<'a> {
         Change { blocks, forces }
     }
 
-    /// The limits of every cluster in contact of this rank.
-    fn limits(&self, conditions: FixedStatuses) -> FixedStatuses {
+    /// The statuses of the limits of every cluster in contact of this rank, for those of its conditions.
+    fn limits(&self, conditions: OnPairs<Vec<FixedStatus>>) -> OnPairs<Vec<FixedStatus>> {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
             if let Some(pair) = self.step.pairs.get(&p) {
@@ -258,11 +261,7 @@ impl<'a> FixedActiveSet<'a> {
 }
 
 /// Puts the forces at the jumps of ties among those of all conditions, by contact group.
-pub fn put_tied(
-    forces: &mut BTreeMap<usize, Vec<f64>>,
-    of_jumps: &BTreeMap<usize, Vec<f64>>,
-    tied: &TiedJumps,
-) {
+pub fn put_tied(forces: &mut OnGroups<Vec<f64>>, of_jumps: &OnGroups<Vec<f64>>, tied: &TiedJumps) {
     for (g, of_jumps) in of_jumps {
         if let Some(forces) = forces.get_mut(g) {
             for (force, (condition, _)) in of_jumps.iter().zip(&tied[g]) {
@@ -278,7 +277,7 @@ fn follow(
     problem: &SlipProblem<'_>,
     tolerance: f64,
 ) -> Result<ActiveSetSolution, Failure> {
-    let at_rest = |(&g, prescribed): (&usize, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
+    let at_rest = |(&g, prescribed): (&GroupId, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
     let forces: OnJumps = problem.prescribed.iter().map(at_rest).collect();
     let tolerance = match problem.context.catalog.has_friction() {
         true => Accuracy::FULL.tolerance,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{ClusterId, OnPairs, OnTreeNodes};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -32,22 +33,22 @@ impl FixedActiveSet<'_> {
     /// changes of clusters in contact and the unknowns on the boundary of every cluster's node. Collective.
     pub fn solve_interface<S, L>(
         &self,
-        limits: &BTreeMap<usize, Vec<S>>,
-        condensed: &BTreeMap<usize, CondensedLoad>,
+        limits: &OnPairs<Vec<S>>,
+        condensed: &OnTreeNodes<CondensedLoad>,
         solve: impl FnOnce(&CoupledContact<'_>, InterfaceLoad<'_>, &[Vec<S>]) -> CoupledChange<L>,
-    ) -> (BTreeMap<usize, PairChange<L>>, BTreeMap<usize, Vec<f64>>)
+    ) -> (OnPairs<PairChange<L>>, OnTreeNodes<Vec<f64>>)
     where
         S: Clone + Serialize + DeserializeOwned,
         L: Clone + Serialize + DeserializeOwned,
     {
         let plan = self.context.plan;
         let owners = plan.cluster_owners();
-        let boundary = |c: usize| {
+        let boundary = |c: ClusterId| {
             let load = condensed.get(&plan.clusters[c].node);
             load.map_or(&[][..], CondensedLoad::boundary)
         };
         let questions = self.context.comm.gathered(&owners, |c| ClusterQuestion {
-            limits: plan.contact_place(c).and_then(|p| limits.get(&p)).cloned(),
+            limits: plan.pair_of(c).and_then(|p| limits.get(&p)).cloned(),
             load: boundary(c).to_vec(),
         });
         let mut answers = match self.root {
@@ -57,9 +58,9 @@ impl FixedActiveSet<'_> {
         let (mut changes, mut boundaries) = (BTreeMap::new(), BTreeMap::new());
         self.context.comm.scatter(
             &owners,
-            |c| std::mem::take(&mut answers[c]),
+            |c| std::mem::take(&mut answers[c.index()]),
             |c, (change, Reals(x))| {
-                changes.extend(plan.contact_place(c).zip(change));
+                changes.extend(plan.pair_of(c).zip(change));
                 boundaries.insert(plan.clusters[c].node, x);
             },
         );
@@ -96,15 +97,15 @@ impl FixedActiveSetRoot<'_> {
         };
         let CoupledChange { u, pairs } = solve(&coupled, (&r, &loads), &limits);
         let mut pairs = pairs.into_iter();
-        let answer = |c: usize| {
-            let change = plan.contact_place(c).and_then(|_| pairs.next());
+        let answer = |c: ClusterId| {
+            let change = plan.pair_of(c).and_then(|_| pairs.next());
             let mut x = change
                 .as_ref()
                 .map_or_else(Vec::new, |change| change.jumps.clone());
-            let interface_dofs = numbering.interface_dofs[c].iter();
+            let interface_dofs = numbering.interface_dofs[c.index()].iter();
             x.extend(interface_dofs.map(|&i| u[i as usize]));
             (change, Reals(x))
         };
-        (0..numbering.interface_dofs.len()).map(answer).collect()
+        plan.clusters.ids().map(answer).collect()
     }
 }

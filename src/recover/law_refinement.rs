@@ -12,13 +12,15 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{OnBlocks, OnPairs, PairId};
+
 use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::coupled::{CoupledContact, PairChange};
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses, put_tied};
 use crate::recover::{DiscreteSolution, GroupSolution};
 
 /// Numbers on all unknowns of every block of this rank.
-type OnUnknowns = BTreeMap<usize, Vec<f64>>;
+type OnUnknowns = OnBlocks<Vec<f64>>;
 
 impl FixedActiveSet<'_> {
     /// The solution whose contact laws are solved for anew from `before`, under these `loads` that it leaves on the unknowns of
@@ -81,11 +83,8 @@ impl FixedActiveSet<'_> {
     }
 
     /// The forces of all conditions of clusters in contact, and which are closed, where their limits are so.
-    fn conditions_of(
-        &self,
-        changes: BTreeMap<usize, PairChange<LimitState>>,
-    ) -> BTreeMap<usize, Vec<(f64, bool)>> {
-        let of_cluster = |(p, then): (usize, PairChange<LimitState>)| {
+    fn conditions_of(&self, changes: OnPairs<PairChange<LimitState>>) -> OnPairs<Vec<(f64, bool)>> {
+        let of_cluster = |(p, then): (PairId, PairChange<LimitState>)| {
             let limits = self.step.pairs.get(&p)?.limits();
             let closed = then.limits.iter().map(|then| then.status.is_closed());
             let forces: Vec<f64> = then.limits.iter().map(|then| then.force).collect();

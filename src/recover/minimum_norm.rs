@@ -1,6 +1,10 @@
 //! Settling rigid motions that nothing resists: the solution's part along them is taken out.
 
+use std::ops::Range;
+
 use contact_dd_partition::contact_point::ContactPoint;
+use contact_dd_partition::id::GroupId;
+use contact_dd_partition::numbered::Numbered;
 
 use crate::certificate::Certificate;
 use crate::context::Context;
@@ -169,21 +173,20 @@ fn move_nearer(
 /// Takes the forces away from conditions, by their number among those of all groups, which the root knows. Collective.
 fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut DiscreteSolution) {
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
-    let mut firsts = Vec::new();
+    let mut ranges: Numbered<GroupId, Range<usize>> = Numbered::default();
     let mut next = 0;
     comm.gather(
         &plan.group_owners(),
         |g| solution.groups[&g].forces.len(),
         |_, conditions| {
-            firsts.push(next);
+            ranges.push(next..next + conditions);
             next += conditions;
         },
     );
-    firsts.push(next);
     comm.scatter(
         &plan.group_owners(),
         |g| -> Vec<usize> {
-            let of_group = firsts[g]..firsts[g + 1];
+            let of_group = &ranges[g];
             let own = numbers.iter().filter(|j| of_group.contains(j));
             own.map(|j| j - of_group.start).collect()
         },
@@ -200,7 +203,7 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     let mut largest: f64 = 0.0;
     comm.gather(
-        plan.owners(),
+        &plan.owners(),
         |b| largest_entry(&solution.blocks[&b].u),
         |_, of_block| largest = largest.max(of_block),
     );

@@ -1,7 +1,6 @@
 //! Rigid motions of the bodies against fields on the nodes of the blocks, displacements and forces.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::problem::Catalog;
 
 use crate::context::Context;
@@ -32,12 +31,7 @@ pub struct Motions<'a> {
 impl<'a> Motions<'a> {
     /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies
     /// that take part. Collective.
-    pub fn project(
-        &self,
-        context: &Context<'_>,
-        kind: Field,
-        fields: BTreeMap<usize, &mut Vec<f64>>,
-    ) {
+    pub fn project(&self, context: &Context<'_>, kind: Field, fields: OnBlocks<&mut Vec<f64>>) {
         if self.list.is_empty() {
             return;
         }
@@ -53,7 +47,7 @@ impl<'a> Motions<'a> {
         &self,
         context: &Context<'_>,
         kind: Field,
-        fields: &BTreeMap<usize, &mut Vec<f64>>,
+        fields: &OnBlocks<&mut Vec<f64>>,
     ) -> MotionProducts {
         let catalog = context.catalog;
         let dim = catalog.dim;
@@ -61,7 +55,7 @@ impl<'a> Motions<'a> {
         let zeros = || BodyProducts::zeros(BodyFrame::count(dim));
         let mut of_bodies: Vec<BodyProducts> = self.frames.iter().map(|_| zeros()).collect();
         context.comm.gather(
-            context.plan.owners(),
+            &context.plan.owners(),
             |b| {
                 let mut products = zeros();
                 if let (Some(block), Some(field)) = (context.blocks.get(&b), fields.get(&b)) {
@@ -79,7 +73,7 @@ impl<'a> Motions<'a> {
                 }
                 products
             },
-            |b, products| of_bodies[catalog.subdomains[b].body].add(&products),
+            |b, products| of_bodies[catalog.body_of(b)].add(&products),
         );
         let mut total = MotionProducts::zeros(self.list.len());
         for (shares, products) in self.shares().iter().zip(&of_bodies) {
@@ -94,7 +88,7 @@ impl<'a> Motions<'a> {
         context: &Context<'_>,
         kind: Field,
         coefficients: &[f64],
-        fields: BTreeMap<usize, &mut Vec<f64>>,
+        fields: OnBlocks<&mut Vec<f64>>,
     ) {
         let dim = context.catalog.dim;
         let first_of = first_blocks(context.catalog);
@@ -132,9 +126,9 @@ impl<'a> Motions<'a> {
 }
 
 /// The lowest block at every node that several have.
-fn first_blocks(catalog: &Catalog) -> Vec<usize> {
-    let mut first = vec![usize::MAX; catalog.interface_nodes];
-    for (b, nodes) in catalog.interface.iter().enumerate() {
+fn first_blocks(catalog: &Catalog) -> Vec<BlockId> {
+    let mut first = vec![BlockId::new(usize::MAX); catalog.interface_nodes];
+    for (b, nodes) in (0..).map(BlockId::new).zip(&catalog.interface) {
         for &node in nodes {
             let first = &mut first[node as usize];
             *first = b.min(*first);
@@ -144,7 +138,7 @@ fn first_blocks(catalog: &Catalog) -> Vec<usize> {
 }
 
 /// Which nodes of block b no lower one has.
-fn first_in(block: &Block, b: usize, first_of: &[usize]) -> Vec<bool> {
+fn first_in(block: &Block, b: BlockId, first_of: &[BlockId]) -> Vec<bool> {
     let mut is_first = vec![true; block.nodes()];
     for on in &block.subdomain.interface {
         is_first[on.node as usize] = first_of[on.interface as usize] >= b;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::Probe;
+use contact_dd_partition::id::OnBlocks;
 use contact_dd_partition::problem::SubdomainNode;
 
 use crate::context::Context;
@@ -16,7 +17,7 @@ const TOUCHING: f64 = 0.01;
 /// is found. Collective.
 pub fn probe(
     context: &Context<'_>,
-    displacement: &BTreeMap<usize, Vec<f64>>,
+    displacement: &OnBlocks<Vec<f64>>,
     contacts: &mut [ContactResultant],
 ) {
     let &Context {
@@ -29,13 +30,11 @@ pub fn probe(
         return;
     }
     // What each block has of the jumps.
-    let mut of_block: BTreeMap<u32, Vec<(u32, u32, f64)>> = BTreeMap::new();
+    let mut of_block: OnBlocks<Vec<(u32, u32, f64)>> = BTreeMap::new();
     for (row, probe) in (0..).zip(&catalog.probes) {
-        for &(SubdomainNode { subdomain, node }, weight) in &probe.entries {
-            of_block
-                .entry(subdomain)
-                .or_default()
-                .push((row, node, weight));
+        for (at, weight) in &probe.entries {
+            let of_block = of_block.entry(at.block()).or_default();
+            of_block.push((row, at.node, *weight));
         }
     }
     let along = |(row, node, weight): (u32, u32, f64), u: &[f64]| {
@@ -49,10 +48,10 @@ pub fn probe(
     let mut jumps = vec![0.0; catalog.probes.len()];
     let mut size: f64 = 0.0;
     comm.gather(
-        plan.owners(),
+        &plan.owners(),
         |s| match displacement.get(&s) {
             Some(u) => {
-                let own = of_block.get(&(s as u32)).into_iter().flatten();
+                let own = of_block.get(&s).into_iter().flatten();
                 let parts: Vec<(u32, f64)> = own.map(|&entry| along(entry, u)).collect();
                 (largest(u), parts)
             }

@@ -1,6 +1,6 @@
 //! Reactions: what supports carry.
 
-use std::collections::BTreeMap;
+use contact_dd_partition::id::{BlockId, OnBlocks};
 
 use crate::fem::resultants::{Reaction, Resultant};
 use crate::fem::springs::spring_forces;
@@ -9,10 +9,7 @@ use crate::recover::fixed_active_set::FixedActiveSet;
 
 /// Reactions on the bodies of every condition that prescribes displacements; on the root they are those
 /// of the whole solution. Collective.
-pub fn reactions(
-    fixed: &FixedActiveSet<'_>,
-    solutions: &BTreeMap<usize, BlockSolution>,
-) -> Vec<Reaction> {
+pub fn reactions(fixed: &FixedActiveSet<'_>, solutions: &OnBlocks<BlockSolution>) -> Vec<Reaction> {
     let names = fixed.context.catalog.supports.iter();
     let mut reactions: Vec<Reaction> = names
         .map(|support| Reaction {
@@ -21,7 +18,7 @@ pub fn reactions(
         })
         .collect();
     fixed.context.comm.gather(
-        fixed.context.plan.owners(),
+        &fixed.context.plan.owners(),
         |b| match solutions.get(&b) {
             Some(solution) => of_block(fixed, b, solution),
             None => Vec::new(),
@@ -40,7 +37,7 @@ pub fn reactions(
 /// For every support its condition, its position and the reaction.
 fn of_block(
     fixed: &FixedActiveSet<'_>,
-    b: usize,
+    b: BlockId,
     solution: &BlockSolution,
 ) -> Vec<(u32, [f64; 3], [f64; 3])> {
     let mut reactions = Vec::new();

@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
+
 use crate::certificate::check::BlockCheck;
 use crate::certificate::most::Most;
 use crate::certificate::shared::at_shared_nodes;
@@ -223,7 +225,7 @@ fn decide(fixed: &FixedActiveSet<'_>, decision: bool) -> bool {
 /// The certificate, on the root. Collective.
 fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate {
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
-    let of_block = |b: usize| {
+    let of_block = |b: BlockId| {
         let (block, of_block) = (fixed.context.blocks.get(&b)?, solution.blocks.get(&b)?);
         let balance = fixed.balance(b, of_block)?;
         let loads = fixed.step.loads.blocks.get(&b)?;
@@ -233,7 +235,7 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
         check.most.driven = check.most.driven.max(fixed.closing_motions);
         Some((check, shared))
     };
-    let mut own: BTreeMap<usize, BlockCheck> = BTreeMap::new();
+    let mut own: OnBlocks<BlockCheck> = BTreeMap::new();
     let mut parts = vec![Vec::new(); comm.size()];
     for &b in fixed.context.blocks.keys() {
         let (check, shared) = of_block(b).unwrap_or_default();
@@ -255,7 +257,7 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
     }
     let mut checks = Vec::new();
     comm.gather(
-        plan.owners(),
+        &plan.owners(),
         |b| own.remove(&b).unwrap_or_default(),
         |_, check| checks.push(check),
     );
@@ -286,7 +288,7 @@ pub fn correct_once(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution)
 /// springs at the motions' pins would bear it each at one node.
 fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let context = &fixed.context;
-    let prescribed: BTreeMap<usize, Vec<bool>> = (solution.groups.keys())
+    let prescribed: OnGroups<Vec<bool>> = (solution.groups.keys())
         .map(|&g| (g, prescribed(context, g)))
         .collect();
     let conditions: FixedStatuses = (solution.groups.iter_mut())
@@ -318,16 +320,12 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
 }
 
 /// The forces that a solution leaves unbalanced on the unknowns of the blocks of this rank, but those that drive free motions. Collective.
-fn unbalanced(
-    fixed: &FixedActiveSet<'_>,
-    solution: &DiscreteSolution,
-) -> BTreeMap<usize, Vec<f64>> {
+fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBlocks<Vec<f64>> {
     let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
-    let mut residuals: BTreeMap<usize, Vec<f64>> =
-        solution.blocks.iter().filter_map(residual).collect();
+    let mut residuals: OnBlocks<Vec<f64>> = solution.blocks.iter().filter_map(residual).collect();
     let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
     fixed.free.project(&fixed.context, Field::Summed, fields);
-    let on_unknowns = |(b, residual): (usize, Vec<f64>)| {
+    let on_unknowns = |(b, residual): (BlockId, Vec<f64>)| {
         let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
         let mut load = vec![0.0; dofs.len()];
         dofs.add_load(&residual, &mut load);
@@ -337,7 +335,7 @@ fn unbalanced(
 }
 
 /// Which conditions of contact group g have jumps that supports prescribe; in the plane friction doesn't ask.
-fn prescribed(context: &Context<'_>, g: usize) -> Vec<bool> {
+fn prescribed(context: &Context<'_>, g: GroupId) -> Vec<bool> {
     let group = &context.groups[&g];
     let of = match context.catalog.dim == 3 && !group.friction().is_empty() {
         true => jumps(context, g, group).map(|jumps| jumps.of),

@@ -1,6 +1,6 @@
 //! The solution of a load step on the blocks of this rank, and what it says of itself.
 
-use std::collections::BTreeMap;
+use contact_dd_partition::id::{BlockId, OnBlocks};
 
 use crate::certificate::Certificate;
 use crate::fem::estimate::CellError;
@@ -27,9 +27,9 @@ pub struct Solution {
     /// Displacement without the bodies' closing motions, contact forces and closed points.
     pub discrete: DiscreteSolution,
     /// Displacement with it, node by node (m).
-    pub displacement: BTreeMap<usize, Vec<f64>>,
+    pub displacement: OnBlocks<Vec<f64>>,
     /// Stresses, unless they are left out.
-    pub stress: Option<BTreeMap<usize, Stress>>,
+    pub stress: Option<OnBlocks<Stress>>,
     /// The check of the full discrete problem; on the root.
     pub certificate: Certificate,
     /// The condition number; on the root, where it can be made.
@@ -47,7 +47,7 @@ pub struct Solution {
     /// The estimate of the mesh's error, where there are stresses; on the root.
     pub estimate: Option<CellError>,
     /// The largest strain of a cell, where there are stresses, and the block that has it; on the root.
-    pub largest_strain: Option<(usize, LargestStrain)>,
+    pub largest_strain: Option<(BlockId, LargestStrain)>,
 }
 
 impl Solution {

@@ -1,7 +1,6 @@
 //! Stress intensity factors of crack tips.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::QuantityKind;
 use nalgebra::Vector2;
@@ -44,7 +43,7 @@ pub fn check_quantities(catalog: &Catalog) -> Result<(), Failure> {
 /// without near fields have none. Collective.
 pub fn stress_intensities(
     context: &Context<'_>,
-    solutions: &BTreeMap<usize, BlockSolution>,
+    solutions: &OnBlocks<BlockSolution>,
     step: usize,
 ) -> Vec<StressIntensity> {
     let catalog = context.catalog;
@@ -66,11 +65,11 @@ pub fn stress_intensities(
 fn sums(
     context: &Context<'_>,
     discs: &[TipDisc<'_>],
-    solutions: &BTreeMap<usize, BlockSolution>,
+    solutions: &OnBlocks<BlockSolution>,
     step: usize,
 ) -> Vec<Integrals> {
     let mut sums = vec![Integrals::default(); discs.len()];
-    let of_block = |b: usize| -> Vec<(usize, Integrals)> {
+    let of_block = |b: BlockId| -> Vec<(usize, Integrals)> {
         let (Some(block), Some(solution)) = (context.blocks.get(&b), solutions.get(&b)) else {
             return Vec::new();
         };
@@ -80,7 +79,7 @@ fn sums(
         all.filter_map(|(d, disc)| Some((d, integrals(disc)?)))
             .collect()
     };
-    (context.comm).gather(context.plan.owners(), of_block, |_, of_block| {
+    (context.comm).gather(&context.plan.owners(), of_block, |_, of_block| {
         for (d, integrals) in of_block {
             for (sum, part) in sums[d].iter_mut().zip(integrals) {
                 *sum = [sum[0] + part[0], sum[1] + part[1]];

@@ -1,8 +1,9 @@
 //! Stresses and the estimate of the mesh's error: what blocks know in parts of nodes on Γ goes to all
 //! ranks that share them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
+use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::problem::Catalog;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -54,12 +55,12 @@ impl Part for (Polynomial, f64) {
 /// Stresses of this rank's blocks in load step `step`. Collective.
 pub fn stresses(
     comm: &Comm,
-    blocks: &BTreeMap<usize, Block>,
-    solutions: &BTreeMap<usize, BlockSolution>,
+    blocks: &OnBlocks<Block>,
+    solutions: &OnBlocks<BlockSolution>,
     catalog: &Catalog,
     plan: &Plan,
     step: usize,
-) -> BTreeMap<usize, Stress> {
+) -> OnBlocks<Stress> {
     // Fresh memory for every block would cost more than what is done with it.
     let mut patches = Vec::new();
     let found = solutions.iter().filter_map(|(b, solution)| {
@@ -68,7 +69,7 @@ pub fn stresses(
         let stress = BlockStress::new(block, materials, catalog.plane, u, &mut patches);
         Some((*b, (block, stress)))
     });
-    let mut stresses: BTreeMap<usize, (&Block, BlockStress)> = found.collect();
+    let mut stresses: OnBlocks<(&Block, BlockStress)> = found.collect();
     let exchange = Exchange::new(comm, catalog, plan);
     exchange.sum(
         &mut stresses,
@@ -90,7 +91,7 @@ pub fn stresses(
         },
         |recovery, block, place, (sum, count)| recovery.set_neighbours(block, place, sum, count),
     );
-    let recover = |(b, (block, mut stress)): (usize, (&Block, BlockStress))| {
+    let recover = |(b, (block, mut stress)): (BlockId, (&Block, BlockStress))| {
         let u = &solutions.get(&b)?.u;
         let initial = block.subdomain.initial_stress_in(step);
         let recovered = stress.recover(block, &catalog.materials, u, &initial.cells);
@@ -125,7 +126,7 @@ struct Exchange<'a> {
 }
 
 /// A part: number on Γ, material, block.
-type Place = (u32, usize, usize);
+type Place = (u32, usize, BlockId);
 
 impl<'a> Exchange<'a> {
     fn new(comm: &'a Comm, catalog: &Catalog, plan: &Plan) -> Self {
@@ -154,7 +155,7 @@ impl<'a> Exchange<'a> {
     /// to `set`. Sums run in the order of blocks, whoever owns them. Collective.
     fn sum<P: Part>(
         &self,
-        stresses: &mut BTreeMap<usize, (&Block, BlockStress)>,
+        stresses: &mut OnBlocks<(&Block, BlockStress)>,
         parts: impl Fn(&Recovery, &Block) -> Vec<(usize, P)>,
         set: impl Fn(&mut Recovery, &Block, usize, P),
     ) {
@@ -213,10 +214,10 @@ impl<'a> Exchange<'a> {
 }
 
 /// The estimate for all cells, on the root. Collective.
-pub fn error_estimate(comm: &Comm, stresses: &BTreeMap<usize, Stress>, plan: &Plan) -> CellError {
+pub fn error_estimate(comm: &Comm, stresses: &OnBlocks<Stress>, plan: &Plan) -> CellError {
     let mut total = CellError::default();
     comm.gather(
-        plan.owners(),
+        &plan.owners(),
         |b| {
             let mut sum = CellError::default();
             for &error in stresses.get(&b).iter().flat_map(|s| &s.errors) {
@@ -232,12 +233,12 @@ pub fn error_estimate(comm: &Comm, stresses: &BTreeMap<usize, Stress>, plan: &Pl
 /// The largest strain of a cell, and the block that has it, on the root; of equal ones the first. Collective.
 pub fn largest_strain(
     comm: &Comm,
-    stresses: &BTreeMap<usize, Stress>,
+    stresses: &OnBlocks<Stress>,
     plan: &Plan,
-) -> (usize, LargestStrain) {
-    let mut largest = (0, LargestStrain::default());
+) -> (BlockId, LargestStrain) {
+    let mut largest = (BlockId::new(0), LargestStrain::default());
     comm.gather(
-        plan.owners(),
+        &plan.owners(),
         |b| (stresses.get(&b)).map_or_else(LargestStrain::default, |s| s.largest_strain),
         |b, strain: LargestStrain| {
             if largest.1.add(strain) {

@@ -24,13 +24,13 @@ pub(super) fn body_frames(context: &Context<'_>) -> Vec<BodyFrame> {
     let Context { comm, catalog, .. } = *context;
     let mut bounds = vec![BoundingBox::EMPTY; catalog.bodies.len()];
     comm.gather(
-        context.plan.owners(),
+        &context.plan.owners(),
         |s| {
             let BoundingBox { low, high } = BoundingBox::around(context.blocks[&s].points());
             (low, high)
         },
         |s, (low, high)| {
-            bounds[catalog.subdomains[s].body].include(&BoundingBox { low, high });
+            bounds[catalog.body_of(s)].include(&BoundingBox { low, high });
         },
     );
     let frame = |BoundingBox { low, high }| BodyFrame::new(low, high);
@@ -61,9 +61,9 @@ pub(super) fn body_states(
         .collect();
     let mut of_springs = vec![vec![0.0; modes * modes]; states.len()];
     comm.gather(
-        context.plan.owners(),
+        &context.plan.owners(),
         |s| {
-            let frame = &frames[catalog.subdomains[s].body];
+            let frame = &frames[catalog.body_of(s)];
             let block = &context.blocks[&s];
             let mut part = of_subdomain(block, &loads.blocks[&s], frame);
             part.springs = against_motions(block, frame);
@@ -77,17 +77,13 @@ pub(super) fn body_states(
             part
         },
         |s, part| {
-            let state = &mut states[catalog.subdomains[s].body];
-            axpy(
-                1.0,
-                &part.springs,
-                &mut of_springs[catalog.subdomains[s].body],
-            );
+            let state = &mut states[catalog.body_of(s)];
+            axpy(1.0, &part.springs, &mut of_springs[catalog.body_of(s)]);
             state.supports.extend(part.supports);
             axpy(1.0, &part.load, &mut state.load);
             state.load_scale += part.load_scale;
             let candidates = part.candidates.into_iter();
-            (state.candidates).extend(candidates.map(|(node, x)| (s as u32, node, x)));
+            (state.candidates).extend(candidates.map(|(node, x)| (s.index() as u32, node, x)));
         },
     );
     for (state, of_springs) in states.iter_mut().zip(&of_springs) {

@@ -1,8 +1,7 @@
 //! Gathering what the analysis of rigid motions needs, and handing out what it found.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::element::geometry::{dot, length};
+use contact_dd_partition::id::{BlockId, OnBlocks, OnPairs};
 use serde::{Deserialize, Serialize};
 
 use super::analysis::RigidMotions;
@@ -28,7 +27,7 @@ pub struct RigidBodyAnalysis {
     pub closing_motions: Vec<Vec<f64>>,
     /// For every cluster in contact of this rank, its conditions against the motions that supports
     /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
-    pub cluster_modes: BTreeMap<usize, RigidModes>,
+    pub cluster_modes: OnPairs<RigidModes>,
     /// Whether supports leave any rigid motion to any body.
     pub movable: bool,
     /// The scene of bodies and conditions, on the root.
@@ -169,14 +168,14 @@ fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
 /// The displacement of every block, node by node: that of its solution and the bodies' closing motions.
 pub fn with_closing_motions<'a>(
     context: &Context<'_>,
-    solutions: impl Iterator<Item = (usize, &'a [f64])>,
+    solutions: impl Iterator<Item = (BlockId, &'a [f64])>,
     analysis: &RigidBodyAnalysis,
-) -> BTreeMap<usize, Vec<f64>> {
+) -> OnBlocks<Vec<f64>> {
     let (dim, stays) = (
         context.catalog.dim,
         analysis.longest_closing_motion() == 0.0,
     );
-    let of_block = |(b, u): (usize, &[f64])| {
+    let of_block = |(b, u): (BlockId, &[f64])| {
         let block = context.blocks.get(&b)?;
         let mut u = u.to_vec();
         if stays {

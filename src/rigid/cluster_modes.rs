@@ -1,7 +1,6 @@
 //! Contact conditions against the rigid motions of the bodies that lie wholly in a cluster.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{ClusterId, GroupId, OnPairs};
 use faer::Mat;
 use nalgebra::DMatrix;
 
@@ -92,10 +91,10 @@ impl Scene {
     }
 
     /// The numbers of the conditions of these groups.
-    pub fn conditions_of(&self, groups: &[usize]) -> Vec<usize> {
-        let of_group = |&g: &usize| {
-            let first: usize = self.conditions[..g].iter().sum();
-            first..first + self.conditions[g]
+    pub fn conditions_of(&self, groups: &[GroupId]) -> Vec<usize> {
+        let of_group = |&g: &GroupId| {
+            let first: usize = self.conditions[..g.index()].iter().sum();
+            first..first + self.conditions[g.index()]
         };
         groups.iter().flat_map(of_group).collect()
     }
@@ -107,9 +106,9 @@ pub(super) fn cluster_modes(
     context: &Context<'_>,
     scene: &Scene,
     fixing_dofs: &[FixingDof],
-) -> BTreeMap<usize, RigidModes> {
+) -> OnPairs<RigidModes> {
     let Context { catalog, plan, .. } = *context;
-    let mut home: Vec<Option<usize>> = vec![None; catalog.bodies.len()];
+    let mut home: Vec<Option<ClusterId>> = vec![None; catalog.bodies.len()];
     let mut elsewhere = vec![false; catalog.bodies.len()];
     let clusters = plan.clusters_of_blocks();
     for (subdomain, &cluster) in catalog.subdomains.iter().zip(&clusters) {
@@ -117,8 +116,8 @@ pub(super) fn cluster_modes(
         elsewhere[subdomain.body] |= *known != cluster;
     }
     let kinematics = Kinematics::new(scene.dim, &scene.bodies);
-    context.comm.scattered(&plan.contact_owners(), |p| {
-        let cluster = plan.contact[p];
+    context.comm.scattered(&plan.pair_owners(), |p| {
+        let cluster = plan.pairs[p];
         let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
         // Where the cluster leaves its nodes to the interface problem, bodies move these.
         let inside = !plan.leaves_its_nodes(plan.clusters[cluster].node);

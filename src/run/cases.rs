@@ -1,9 +1,9 @@
 //! The cases of a study: values of parameters that leave all factors as they are.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
+use contact_dd_partition::id::{OnBlocks, OnGroups};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::{Parameter, ParameterKind};
 use serde::{Deserialize, Serialize};
@@ -104,8 +104,8 @@ impl Cases {
 /// The parts of a problem that differ from case to case.
 pub struct Varied {
     catalog: Catalog,
-    blocks: BTreeMap<usize, Block>,
-    groups: BTreeMap<usize, ContactGroup>,
+    blocks: OnBlocks<Block>,
+    groups: OnGroups<ContactGroup>,
 }
 
 impl Varied {

@@ -140,7 +140,7 @@ fn layout(context: &Context<'_>, settings: &Settings) -> Layout {
         blocks,
         ..
     } = context;
-    let mut connectivity = comm.gathered(plan.owners(), |s| {
+    let mut connectivity = comm.gathered(&plan.owners(), |s| {
         (blocks.get(&s)).map_or(0, |block| block.subdomain.cells.connectivity().len())
     });
     comm.broadcast(&mut connectivity);

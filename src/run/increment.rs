@@ -3,6 +3,8 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{OnBlocks, OnGroups, OnPairs, OnTreeNodes};
+
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
 use crate::comm::ranks::RankSeconds;
@@ -53,9 +55,9 @@ pub struct Increments<'a> {
 /// An increment that was solved, or tried.
 pub struct Increment {
     /// The clusters in contact of this rank.
-    pairs: BTreeMap<usize, ContactPair>,
+    pairs: OnPairs<ContactPair>,
     /// The statuses of the contact groups of this rank, where the tree solves for them.
-    statuses: BTreeMap<usize, Statuses>,
+    statuses: OnGroups<Statuses>,
     /// Outcome of the sweeps; on the root.
     pub outcome: Option<SweepOutcome>,
     /// Solution on the blocks of this rank.
@@ -63,7 +65,7 @@ pub struct Increment {
     /// Slips of the tangential conditions.
     pub slips: Slips,
     /// Data for the balance of energy of the next increment.
-    energies: BTreeMap<usize, BlockEnergy>,
+    energies: OnBlocks<BlockEnergy>,
     /// The balance of this one, and of those before it in the load step; on the root.
     pub energy: EnergyBalance,
     /// The scales of this one and those before, as far as they converged; on the root.
@@ -237,8 +239,8 @@ impl Increments<'_> {
     /// A signal stopped the sweeps.
     fn sweep(&self, step: &mut StepProblem<'_>, start: Start) -> Result<Swept, Failure> {
         let (context, log) = (&self.context, self.log);
-        let owners = context.plan.contact_owners();
-        let mut s_con = SCon::new(context.comm, &owners, &mut step.pairs);
+        let owners = context.plan.pair_owners();
+        let mut s_con = SCon::new(context.comm, owners.values(), &mut step.pairs);
         let solved = match &step.interface {
             None => {
                 s_con.serve();
@@ -279,8 +281,8 @@ impl Increments<'_> {
         &self,
         fronts: &RefCell<ActiveSetFronts>,
         step: &StepProblem<'_>,
-        limits: &BTreeMap<usize, Limits>,
-        before: &BTreeMap<usize, Statuses>,
+        limits: &OnGroups<Limits>,
+        before: &OnGroups<Statuses>,
     ) -> Result<Swept, Failure> {
         let (context, log, mut fronts) = (&self.context, self.log, fronts.borrow_mut());
         log.sweeps(true);
@@ -304,7 +306,7 @@ impl Increments<'_> {
         &'a self,
         step: &'a StepProblem<'a>,
         analysis: &'a RigidBodyAnalysis,
-        limits: &'a BTreeMap<usize, Limits>,
+        limits: &'a OnGroups<Limits>,
         outcome: Option<&SweepOutcome>,
     ) -> FixedActiveSet<'a> {
         let Operators {
@@ -365,7 +367,7 @@ impl Increments<'_> {
 }
 
 /// Boundaries of clusters, and forces and closed conditions of contact groups, as the tree has them.
-type InTree = (BTreeMap<usize, Vec<f64>>, BTreeMap<usize, Vec<(f64, bool)>>);
+type InTree = (OnTreeNodes<Vec<f64>>, OnGroups<Vec<(f64, bool)>>);
 
 /// The end of the sweeps, on this rank.
 #[derive(Default)]
@@ -373,7 +375,7 @@ struct Swept {
     /// Their outcome; on the root.
     outcome: Option<SweepOutcome>,
     /// The statuses of the contact groups, where the tree solved for them.
-    statuses: BTreeMap<usize, Statuses>,
+    statuses: OnGroups<Statuses>,
     in_tree: Option<InTree>,
 }
 

@@ -108,7 +108,7 @@ impl Operators {
         let limits = limits_of_clusters(context, &limits_of_groups(context, loads)?);
         let mut all: Vec<Vec<TangentialLimit>> = Vec::new();
         context.comm.gather(
-            &context.plan.contact_owners(),
+            &context.plan.pair_owners(),
             |p| {
                 limits
                     .get(&p)

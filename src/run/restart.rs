@@ -179,12 +179,12 @@ impl Finished {
         let Context { comm, plan, .. } = *context;
         let mut kept = self.kept.take().unwrap_or_default();
         let groups = plan.group_owners();
-        let pairs = comm.scattered(&plan.contact_owners(), |p| kept.pairs[p].clone());
-        let slips = comm.scattered(&groups, |g| Reals(take(&mut kept.slips[g])));
-        let statuses = comm.scattered(&groups, |g| take(&mut kept.statuses[g]));
+        let pairs = comm.scattered(&plan.pair_owners(), |p| kept.pairs[p.index()].clone());
+        let slips = comm.scattered(&groups, |g| Reals(take(&mut kept.slips[g.index()])));
+        let statuses = comm.scattered(&groups, |g| take(&mut kept.statuses[g.index()]));
         let statuses = statuses.into_iter();
         let energies = match context.catalog.has_friction() {
-            true => comm.scattered(plan.owners(), |b| take(&mut kept.energies[b])),
+            true => comm.scattered(&plan.owners(), |b| take(&mut kept.energies[b.index()])),
             false => BTreeMap::new(),
         };
         StepState {
@@ -235,11 +235,11 @@ pub fn keep(
 ) -> Result<(), Failure> {
     let Context { comm, plan, .. } = *context;
     let groups = plan.group_owners();
-    let pairs = comm.gathered(&plan.contact_owners(), |p| state.pairs[&p].clone());
+    let pairs = comm.gathered(&plan.pair_owners(), |p| state.pairs[&p].clone());
     let slips = comm.gathered(&groups, |g| Reals(state.slips[&g].clone()));
     let statuses = comm.gathered(&groups, |g| state.statuses.get(&g).cloned());
     let energies = match context.catalog.has_friction() {
-        true => comm.gathered(plan.owners(), |b| state.energies[&b].clone()),
+        true => comm.gathered(&plan.owners(), |b| state.energies[&b].clone()),
         false => Vec::new(),
     };
     let write = |result: &mut ResultFile| -> Result<(), Failure> {

@@ -1,8 +1,8 @@
 //! A stage: load steps in which the same bodies and contacts are there, and which share one factorization.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
+use contact_dd_partition::id::{OnBlocks, OnGroups};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
 use contact_dd_partition::problem::stage::Stage;
@@ -42,8 +42,8 @@ pub struct Stages<'a> {
 pub struct Parts {
     /// The owners of everything.
     pub plan: Plan,
-    blocks: BTreeMap<usize, Block>,
-    groups: BTreeMap<usize, ContactGroup>,
+    blocks: OnBlocks<Block>,
+    groups: OnGroups<ContactGroup>,
     costs: Vec<CostEstimate>,
     available: f64,
     /// Why contact conditions are solved for as they are, in words.

@@ -1,5 +1,6 @@
 //! The totals of a load step: what is kept of its solution for the report.
 
+use contact_dd_partition::id::BlockId;
 use contact_dd_partition::magnitude::short;
 use contact_dd_partition::problem::Catalog;
 
@@ -60,11 +61,11 @@ impl StepTotals {
 }
 
 /// The warning of the largest strain, that of a block, where it isn't small.
-fn large_strain((block, largest): (usize, LargestStrain), catalog: &Catalog) -> Option<String> {
+fn large_strain((block, largest): (BlockId, LargestStrain), catalog: &Catalog) -> Option<String> {
     if largest.large <= SEEN * largest.whole {
         return None;
     }
-    let body = &catalog.bodies[catalog.subdomains[block].body].name;
+    let body = &catalog.bodies[catalog.body_of(block)].name;
     let at = largest.at.map(short);
     Some(format!(
         "body '{body}': strains of up to {} at ({}) {}, where small ones are meant, above {} in {} % of the bodies; are the \

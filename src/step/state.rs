@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use contact_dd_partition::destination::unfinished;
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs};
 
 use crate::bytes::Reals;
 use crate::certificate::energy::BlockEnergy;
@@ -26,14 +27,14 @@ pub struct StepState {
     /// U, and the statuses of every cluster in contact; on the root.
     pub interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact of this rank, by their place among those.
-    pub pairs: BTreeMap<usize, PairState>,
+    pub pairs: OnPairs<PairState>,
     /// The statuses of the contact groups of this rank, where the tree solves for them; none where they weren't found.
-    pub statuses: BTreeMap<usize, Statuses>,
+    pub statuses: OnGroups<Statuses>,
     /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
     /// were unloaded (m).
-    pub slips: BTreeMap<usize, Vec<f64>>,
+    pub slips: OnGroups<Vec<f64>>,
     /// Data of the blocks of this rank for the balance of energy, where there is friction.
-    pub energies: BTreeMap<usize, BlockEnergy>,
+    pub energies: OnBlocks<BlockEnergy>,
     /// The scales of the load steps that converged so far; on the root.
     pub scales: Scales,
 }
@@ -43,9 +44,9 @@ impl StepState {
     /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
     /// bilateral solution leaves closed.
     pub fn after(
-        (pairs, statuses): (BTreeMap<usize, ContactPair>, BTreeMap<usize, Statuses>),
-        slips: BTreeMap<usize, Vec<f64>>,
-        energies: BTreeMap<usize, BlockEnergy>,
+        (pairs, statuses): (OnPairs<ContactPair>, OnGroups<Statuses>),
+        slips: OnGroups<Vec<f64>>,
+        energies: OnBlocks<BlockEnergy>,
         (outcome, scales): (Option<&SweepOutcome>, Scales),
         method: Method,
     ) -> Self {
@@ -90,17 +91,17 @@ impl StepState {
         };
         let (mut slips, mut energies) = (BTreeMap::new(), BTreeMap::new());
         comm.route(
-            ways(&before.group_owners(), &plan.group_owners()),
-            |g| self.slips.remove(&g).map(Reals),
-            |g, of_group| {
-                slips.extend(of_group.map(|Reals(of_group)| (g, of_group)));
+            ways(before.group_owners().values(), plan.group_owners().values()),
+            |i| self.slips.remove(&GroupId::new(i)).map(Reals),
+            |i, of_group| {
+                slips.extend(of_group.map(|Reals(of_group)| (GroupId::new(i), of_group)));
             },
         );
         comm.route(
-            ways(before.owners(), plan.owners()),
-            |b| self.energies.remove(&b),
-            |b, energy| {
-                energies.extend(energy.map(|energy| (b, energy)));
+            ways(before.owners().values(), plan.owners().values()),
+            |i| self.energies.remove(&BlockId::new(i)),
+            |i, energy| {
+                energies.extend(energy.map(|energy| (BlockId::new(i), energy)));
             },
         );
         Self {

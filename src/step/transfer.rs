@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{advance, dot, padded};
+use contact_dd_partition::id::{GroupId, OnBlocks, OnGroups};
 use contact_dd_partition::problem::stage::Stage;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 use serde::{Deserialize, Serialize};
@@ -30,9 +31,9 @@ pub struct StageTransfer {
 #[derive(Clone, Copy)]
 pub struct StageEnd<'a> {
     /// The displacement of every block of this rank, node by node (m).
-    pub displacement: &'a BTreeMap<usize, Vec<f64>>,
+    pub displacement: &'a OnBlocks<Vec<f64>>,
     /// The tangential jumps of every contact group of this rank (m).
-    pub slips: &'a BTreeMap<usize, Vec<f64>>,
+    pub slips: &'a OnGroups<Vec<f64>>,
     /// The closing motions of bodies.
     pub closing_motions: &'a [Vec<f64>],
 }
@@ -74,7 +75,7 @@ impl StageTransfer {
     pub fn between_sets(
         context: &Context<'_>,
         stage: &Stage<'_>,
-        slips: &BTreeMap<usize, Vec<f64>>,
+        slips: &OnGroups<Vec<f64>>,
         outside: &BTreeMap<usize, [f64; 3]>,
         whole: &Catalog,
     ) -> Self {
@@ -97,7 +98,7 @@ impl StageTransfer {
         if self.since.is_empty() {
             return StepState::default();
         }
-        let of_group = |g: usize| {
+        let of_group = |g: GroupId| {
             let points = &context.plan.tree.nodes[context.plan.groups[g].node].points;
             let of_group = context.groups[&g].points.iter().zip(points);
             let slips =
@@ -125,7 +126,7 @@ pub fn jumps_of(
     places: &[usize],
     context: &Context<'_>,
     whole: &Catalog,
-    displacement: &BTreeMap<usize, Vec<f64>>,
+    displacement: &OnBlocks<Vec<f64>>,
 ) -> Vec<[f64; 3]> {
     let points = places.iter().map(|&j| whole.points[j].clone());
     jumps_of_points(&points.collect::<Vec<_>>(), context, displacement)
@@ -135,28 +136,28 @@ pub fn jumps_of(
 pub fn jumps_of_points(
     points: &[ContactPoint<SubdomainNode>],
     context: &Context<'_>,
-    displacement: &BTreeMap<usize, Vec<f64>>,
+    displacement: &OnBlocks<Vec<f64>>,
 ) -> Vec<[f64; 3]> {
     let (comm, dim) = (context.comm, context.catalog.dim);
-    let mut wanted: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    let mut wanted: OnBlocks<Vec<u32>> = BTreeMap::new();
     for (at, _) in points.iter().flat_map(|point| &point.entries) {
-        wanted.entry(at.subdomain).or_default().push(at.node);
+        wanted.entry(at.block()).or_default().push(at.node);
     }
     let mut moved = BTreeMap::new();
     comm.gather(
-        context.plan.owners(),
+        &context.plan.owners(),
         |b| {
             let u = &displacement[&b];
-            let nodes = wanted.get(&(b as u32)).into_iter().flatten();
+            let nodes = wanted.get(&b).into_iter().flatten();
             let of_node = |&node: &u32| padded(&u[node as usize * dim..][..dim]);
             nodes.map(of_node).collect::<Vec<[f64; 3]>>()
         },
         |b, u| {
-            moved.insert(b as u32, u.into_iter());
+            moved.insert(b, u.into_iter());
         },
     );
     let mut of_node = |at: &SubdomainNode| {
-        let u = moved.get_mut(&at.subdomain).and_then(Iterator::next);
+        let u = moved.get_mut(&at.block()).and_then(Iterator::next);
         u.unwrap_or_default()
     };
     let own = points.iter().filter(|_| comm.is_root());
@@ -169,7 +170,7 @@ fn slips_of_points(
     context: &Context<'_>,
     stage: &Stage<'_>,
     whole: &Catalog,
-    slips: &BTreeMap<usize, Vec<f64>>,
+    slips: &OnGroups<Vec<f64>>,
 ) -> BTreeMap<usize, Vec<f64>> {
     let &Context { comm, plan, .. } = context;
     let mut of_points = BTreeMap::new();

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::dot;
+use contact_dd_partition::id::OnBlocks;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 use contact_dd_partition::solver::Method;
 use serde::{Deserialize, Serialize};
@@ -155,7 +156,7 @@ impl WorkingSet {
         &mut self,
         context: &Context<'_>,
         whole: &Catalog,
-        displacement: &BTreeMap<usize, Vec<f64>>,
+        displacement: &OnBlocks<Vec<f64>>,
     ) -> Outside {
         let jumps = self.jumps_outside(context, whole, displacement);
         let gaps = gaps_left(whole, &jumps);
@@ -173,7 +174,7 @@ impl WorkingSet {
         &self,
         context: &Context<'_>,
         whole: &Catalog,
-        displacement: &BTreeMap<usize, Vec<f64>>,
+        displacement: &OnBlocks<Vec<f64>>,
     ) -> BTreeMap<usize, [f64; 3]> {
         let places: Vec<usize> = self.outside.keys().copied().collect();
         let jumps = jumps_of(&places, context, whole, displacement);

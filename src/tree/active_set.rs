@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::comm::Comm;
 use crate::contact::active_equalities::ActiveEqualities;
@@ -20,7 +22,7 @@ use crate::tree::update::{ActiveSetUpdate, Descent};
 #[derive(Clone, Debug, Default)]
 struct Faults {
     /// Normal jumps by group that should be open and are closed, or the other way round.
-    wrong: BTreeMap<usize, Vec<usize>>,
+    wrong: OnGroups<Vec<usize>>,
     /// How many there are on all ranks.
     count: usize,
     /// Closed ones on all ranks.
@@ -31,7 +33,7 @@ struct Faults {
 
 /// Open conditions, and the solution with them.
 pub(super) struct Settled {
-    pub open: BTreeMap<usize, Vec<bool>>,
+    pub open: OnGroups<Vec<bool>>,
     pub solution: ActiveSetSolution,
     /// Whether nothing is wrong.
     pub is_right: bool,
@@ -46,7 +48,7 @@ pub(super) fn settle(
     problem: &TreeProblem<'_>,
     fronts: &mut ActiveSetFronts,
     steps: &mut Steps<'_>,
-    (mut open, most): (BTreeMap<usize, Vec<bool>>, usize),
+    (mut open, most): (OnGroups<Vec<bool>>, usize),
 ) -> Result<Settled, Failure> {
     let context = problem.context;
     let (mut update, mut descent) = (ActiveSetUpdate::default(), Descent::default());
@@ -134,7 +136,7 @@ impl Search<'_> {
     /// Some part of the scene moves freely.
     fn step(
         &mut self,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         share: f64,
     ) -> Result<(ActiveSetSolution, Faults), Failure> {
         let context = self.problem.context;
@@ -164,7 +166,7 @@ impl Search<'_> {
     /// Some part of the scene moves freely.
     fn solve(
         &mut self,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         tolerance: f64,
         start: Option<&ActiveSetSolution>,
     ) -> Result<(ActiveSetSolution, Faults), Failure> {
@@ -186,11 +188,7 @@ impl Search<'_> {
 }
 
 /// The largest force and jump of a solution, or bound, on all ranks. Collective.
-fn scales(
-    comm: &Comm,
-    solution: &ActiveSetSolution,
-    bounds: &BTreeMap<usize, Vec<f64>>,
-) -> [f64; 2] {
+fn scales(comm: &Comm, solution: &ActiveSetSolution, bounds: &OnGroups<Vec<f64>>) -> [f64; 2] {
     let is_finite = |x: &&f64| x.is_finite();
     let forces = solution.at.values().flat_map(|at| &at.forces);
     let jumps = solution.at.values().flat_map(|at| &at.jumps);
@@ -206,12 +204,12 @@ impl Faults {
     fn of(
         problem: &TreeProblem<'_>,
         solution: &ActiveSetSolution,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         least: f64,
     ) -> Self {
         let (comm, plan) = (problem.context.comm, problem.context.plan);
         let scales = scales(comm, solution, &problem.bounds).map(|x| x.max(f64::MIN_POSITIVE));
-        let of_group = |g: usize| {
+        let of_group = |g: GroupId| {
             let (mut wrong, mut largest, mut active) = (Vec::new(), 0.0_f64, 0);
             let sticks = &problem.laws[&g].is_tangential;
             let rows = problem.laws[&g].rows;

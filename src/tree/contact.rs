@@ -8,10 +8,12 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes};
+
 use crate::contact::friction::Status;
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::limits::Limits;
-use crate::contact::newton::{Found, NewtonSettings, OnGroups, newton};
+use crate::contact::newton::{Found, NewtonSettings, newton};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::s_con::ConTotals;
@@ -34,11 +36,11 @@ const ACCEPTABLE: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub struct TreeContact {
     /// Forces and closed conditions of every contact group.
-    pub conditions: BTreeMap<usize, Vec<(f64, bool)>>,
+    pub conditions: OnGroups<Vec<(f64, bool)>>,
     /// The unknowns on the boundary of every cluster.
-    pub boundaries: BTreeMap<usize, Vec<f64>>,
+    pub boundaries: OnTreeNodes<Vec<f64>>,
     /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
-    pub statuses: BTreeMap<usize, Statuses>,
+    pub statuses: OnGroups<Statuses>,
     /// How they got there; the same on all ranks but for times.
     pub outcome: SweepOutcome,
 }
@@ -69,8 +71,8 @@ fn begin(
 pub fn solve(
     context: &Context<'_>,
     fronts: &mut ActiveSetFronts,
-    limits: &BTreeMap<usize, Limits>,
-    (loads, before): (&BTreeMap<usize, Vec<f64>>, &BTreeMap<usize, Statuses>),
+    limits: &OnGroups<Limits>,
+    (loads, before): (&OnTreeNodes<Vec<f64>>, &OnGroups<Statuses>),
     max_steps: Option<usize>,
     observer: &mut dyn FnMut(&SweepRecord),
 ) -> Result<TreeContact, Failure> {
@@ -176,7 +178,7 @@ fn conclude(
     outcome.is_settled = is_finite && outcome.records[sweep].changed == Some(0);
     end(&mut outcome);
     solution.cut();
-    let mut conditions: BTreeMap<usize, Vec<(f64, bool)>> = (problem.limits.iter())
+    let mut conditions: OnGroups<Vec<(f64, bool)>> = (problem.limits.iter())
         .map(|(&g, limits)| (g, conditions(limits, &problem.laws[&g], &found, g)))
         .collect();
     for (g, of_group) in &mut conditions {
@@ -202,7 +204,7 @@ fn conditions(
     limits: &Limits,
     laws: &ContactLaws<'_>,
     found: &Found,
-    g: usize,
+    g: GroupId,
 ) -> Vec<(f64, bool)> {
     let of_limit = |(force, is_tangential): (&f64, &bool)| match (force.is_finite(), is_tangential)
     {

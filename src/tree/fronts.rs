@@ -4,6 +4,7 @@ mod elimination;
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnClusters, OnGroups, OnTreeNodes, TreeNodeId};
 use faer::Mat;
 
 use crate::bddc::Bddc;
@@ -40,15 +41,15 @@ pub(super) struct ActiveSetFront {
 #[derive(Debug)]
 pub struct ActiveSetFronts {
     /// The nodes of the hierarchy above all clusters, children before parents, on all ranks the same.
-    pub(super) nodes: Vec<usize>,
-    pub(super) fronts: BTreeMap<usize, ActiveSetFront>,
+    pub(super) nodes: Vec<TreeNodeId>,
+    pub(super) fronts: OnTreeNodes<ActiveSetFront>,
     /// S of clusters and fronts, at the owner of the node that they are merged into.
-    merged: BTreeMap<usize, Condensed>,
+    merged: OnTreeNodes<Condensed>,
     /// S of those that nothing here is above.
-    pub(super) merge_roots: BTreeMap<usize, ClusterSchur>,
-    replaced: BTreeMap<usize, Vec<Replaced>>,
+    pub(super) merge_roots: OnTreeNodes<ClusterSchur>,
+    replaced: OnTreeNodes<Vec<Replaced>>,
     /// The dependent rows of every contact group of this rank.
-    rows: BTreeMap<usize, DependentConstraints>,
+    rows: OnGroups<DependentConstraints>,
     spring: f64,
     spare: Spare,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
@@ -66,11 +67,11 @@ impl ActiveSetFronts {
     /// A contact point that nothing can be replaced for.
     pub fn new(
         condensation: &Condensation<'_>,
-        mut clusters: BTreeMap<usize, Condensed>,
+        mut clusters: OnClusters<Condensed>,
     ) -> Result<Self, Failure> {
         let context = &condensation.context;
         let plan = context.plan;
-        let mut is_between = vec![false; plan.tree.nodes.len()];
+        let mut is_between = plan.tree.nodes.like(false);
         for v in plan.merge_roots.iter().flat_map(|&v| plan.tree.subtree(v)) {
             is_between[v] = true;
         }
@@ -101,7 +102,7 @@ impl ActiveSetFronts {
             solves: 0,
             bddc: None,
         };
-        for (c, cluster) in plan.clusters.iter().enumerate() {
+        for (c, cluster) in plan.clusters.each() {
             fronts.pass_up(context, cluster.node, clusters.remove(&c));
         }
         Ok(fronts)
@@ -114,7 +115,7 @@ impl ActiveSetFronts {
     }
 
     /// Closes those of the slipping `limits` of group g that don't follow from what isn't `open`.
-    pub(super) fn hold(&self, g: usize, limits: impl Iterator<Item = usize>, open: &mut [bool]) {
+    pub(super) fn hold(&self, g: GroupId, limits: impl Iterator<Item = usize>, open: &mut [bool]) {
         let rows = &self.rows[&g];
         for t in limits {
             let follows = !rows.is_empty()
@@ -136,7 +137,7 @@ impl ActiveSetFronts {
     pub fn fix(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         let is_known = self.fronts_known(context);
         self.make(context, open, is_known, false)
@@ -149,7 +150,7 @@ impl ActiveSetFronts {
     pub fn renew(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         match self.bddc.as_ref().is_some_and(Bddc::is_stale) {
             true => self.make(context, open, true, true),
@@ -165,7 +166,7 @@ impl ActiveSetFronts {
     pub fn make_better(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         if let Some(bddc) = self.bddc.as_mut().filter(|bddc| !bddc.is_stale()) {
             bddc.look_deeper();
@@ -176,7 +177,7 @@ impl ActiveSetFronts {
     fn make(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         is_known: bool,
         renewed: bool,
     ) -> Result<(), Failure> {
@@ -194,7 +195,7 @@ impl ActiveSetFronts {
     pub fn release(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<bool, Failure> {
         if self.spring == 0.0 {
             return Ok(false);
@@ -217,7 +218,7 @@ impl ActiveSetFronts {
     fn factorize(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         is_known: bool,
         renewed: bool,
     ) -> Result<(), Failure> {
@@ -225,7 +226,7 @@ impl ActiveSetFronts {
         let touched = self.touched(context, open, is_known);
         let result = self.eliminate(context, open, &touched);
         comm.agree(result)?;
-        if plan.has_one_cluster() || !renewed && !touched.contains(&true) {
+        if plan.has_one_cluster() || !renewed && !touched.values().contains(&true) {
             return Ok(());
         }
         let mut bddc = match self.bddc.take() {
@@ -234,7 +235,7 @@ impl ActiveSetFronts {
         };
         let renewed = renewed || !is_known;
         // What was made before, with another preconditioner, can't move, nor can what springs hold.
-        let is_sound = self.spring > 0.0 || !touched.contains(&true) && !bddc.is_stale();
+        let is_sound = self.spring > 0.0 || !touched.values().contains(&true) && !bddc.is_stale();
         let mut fixed = bddc.fix(
             context,
             &self.merge_roots,

@@ -1,10 +1,12 @@
 //! The tree of fronts as an operator of Newton's method on the laws of contact: it answers for statuses by eliminating again
 //! what is above those that changed, and for slip forces by GMRES over its answers.
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use crate::bddc::solution::Accuracy;
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, LawResidual, Statuses};
-use crate::contact::newton::{ContactOperator, NewtonStep, OnGroups, StepAccuracy, TotalResidual};
+use crate::contact::newton::{ContactOperator, NewtonStep, StepAccuracy, TotalResidual};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
@@ -82,7 +84,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         let laws: Laws = (statuses.iter())
             .map(|(&g, statuses)| (g, slip_laws(&all_laws[&g], statuses)))
             .collect();
-        let open = |(&g, statuses): (&usize, &Statuses)| {
+        let open = |(&g, statuses): (&GroupId, &Statuses)| {
             let known = all_laws[&g].known(statuses);
             (g, known.iter().map(|known| !known).collect())
         };
@@ -133,7 +135,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         to: &OnGroups<Iterate>,
         part: f64,
     ) -> OnGroups<Iterate> {
-        let of_group = |(&g, from): (&usize, &Iterate)| {
+        let of_group = |(&g, from): (&GroupId, &Iterate)| {
             let jumps = between(&from.jumps, &to[&g].jumps, part);
             let forces = between(&from.forces, &to[&g].forces, part);
             (g, Iterate { jumps, forces })
@@ -163,7 +165,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         let displaced = comm.largest(boundaries.flatten());
         // Of a rough answer no more than of an exact one.
         let share = STIFFNESS_SHARE * (ROUND_OFF / self.accuracy) * displaced;
-        let of_group = |&g: &usize| {
+        let of_group = |&g: &GroupId| {
             let own = self.problem.stiffest[&g].iter();
             (g, own.map(|k| scale + share * k).collect())
         };

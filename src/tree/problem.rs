@@ -1,11 +1,11 @@
 //! The contact problem of a load step, and the steps that are made towards its solution.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
+
+use contact_dd_partition::id::{OnGroups, OnTreeNodes};
 
 use crate::contact::laws::ContactLaws;
 use crate::contact::limits::Limits;
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;
@@ -25,7 +25,7 @@ pub(super) struct TreeProblem<'a> {
     /// Where closed jumps are, and those of ties (m).
     pub bounds: OnGroups<Vec<f64>>,
     /// Loads on the boundaries of clusters, by node.
-    pub loads: &'a BTreeMap<usize, Vec<f64>>,
+    pub loads: &'a OnTreeNodes<Vec<f64>>,
 }
 
 impl<'a> TreeProblem<'a> {
@@ -33,7 +33,7 @@ impl<'a> TreeProblem<'a> {
     pub fn new(
         context: &'a Context<'a>,
         limits: &'a OnGroups<Limits>,
-        loads: &'a BTreeMap<usize, Vec<f64>>,
+        loads: &'a OnTreeNodes<Vec<f64>>,
     ) -> Self {
         let mut problem = Self {
             context,

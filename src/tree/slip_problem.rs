@@ -7,12 +7,12 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes};
 use faer::linalg::solvers::SolveLstsq;
 use faer::{Col, Mat};
 
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::contact::laws::{ContactLaws, Iterate};
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
@@ -36,9 +36,9 @@ const PRODUCT: f64 = 0.3;
 const LEAST_EXACT: f64 = 1e-2;
 
 /// A number for every jump of the contact groups of this rank.
-pub type OnJumps = BTreeMap<usize, Vec<f64>>;
+pub type OnJumps = OnGroups<Vec<f64>>;
 /// The laws of the slipping points of every contact group of this rank.
-pub type Laws = BTreeMap<usize, Vec<SlipLaw>>;
+pub type Laws = OnGroups<Vec<SlipLaw>>;
 
 /// Fixes what is `open`, of which what slips by `laws` is held if it was or has to be, and returns whether it is. Collective.
 ///
@@ -47,11 +47,11 @@ pub type Laws = BTreeMap<usize, Vec<SlipLaw>>;
 pub fn fix(
     context: &Context<'_>,
     fronts: &mut ActiveSetFronts,
-    open: &mut BTreeMap<usize, Vec<bool>>,
+    open: &mut OnGroups<Vec<bool>>,
     laws: &Laws,
     was_held: bool,
 ) -> Result<bool, Failure> {
-    let hold = |fronts: &ActiveSetFronts, open: &mut BTreeMap<usize, Vec<bool>>| {
+    let hold = |fronts: &ActiveSetFronts, open: &mut OnGroups<Vec<bool>>| {
         for (g, laws) in laws {
             if let Some(open) = open.get_mut(g) {
                 let limits = laws.iter().flat_map(SlipLaw::limits);
@@ -78,11 +78,11 @@ pub struct SlipProblem<'a> {
     /// What the run works on.
     pub context: &'a Context<'a>,
     /// Which jumps are open, by contact group of this rank; those that slip are unless they are held.
-    pub open: &'a BTreeMap<usize, Vec<bool>>,
+    pub open: &'a OnGroups<Vec<bool>>,
     /// Whether what slips is held, unless its slip follows from what is closed.
     pub is_held: bool,
     /// Loads on the boundaries of clusters, by node.
-    pub clusters: &'a BTreeMap<usize, Vec<f64>>,
+    pub clusters: &'a OnTreeNodes<Vec<f64>>,
     /// The values of the closed jumps of every group, and of those that slip before they do (m).
     pub prescribed: &'a OnJumps,
     /// The laws of the slipping points.
@@ -98,7 +98,7 @@ impl SlipProblem<'_> {
     fn respond(
         &self,
         fronts: &mut ActiveSetFronts,
-        (clusters, prescribed): (&BTreeMap<usize, Vec<f64>>, &OnJumps),
+        (clusters, prescribed): (&OnTreeNodes<Vec<f64>>, &OnJumps),
         forces: &OnJumps,
         accuracy: Accuracy<'_>,
     ) -> Result<ActiveSetSolution, Failure> {
@@ -123,7 +123,7 @@ impl SlipProblem<'_> {
 
     /// These forces where limits are open.
     fn on_open(&self, forces: &OnJumps) -> OnJumps {
-        let of_group = |(&g, forces): (&usize, &Vec<f64>)| {
+        let of_group = |(&g, forces): (&GroupId, &Vec<f64>)| {
             let both = forces.iter().zip(&self.open[&g]);
             let on_open = both.map(|(force, open)| if *open { *force } else { 0.0 });
             (g, on_open.collect())
@@ -133,7 +133,7 @@ impl SlipProblem<'_> {
 
     /// The forces from which a solution begins near these iterates.
     pub fn first(&self, laws: &OnGroups<ContactLaws<'_>>, from: &OnGroups<Iterate>) -> OnJumps {
-        let of_group = |(&g, from): (&usize, &Iterate)| {
+        let of_group = |(&g, from): (&GroupId, &Iterate)| {
             let mut forces = vec![0.0; from.jumps.len()];
             let mut holding = forces.clone();
             for law in &self.laws[&g] {
@@ -175,7 +175,7 @@ impl SlipProblem<'_> {
         let mut solution = respond(fronts, &forces, start)?;
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let slip = |g: usize, i: usize| solution.at[&g].jumps[i] - self.prescribed[&g][i];
+            let slip = |g: GroupId, i: usize| solution.at[&g].jumps[i] - self.prescribed[&g][i];
             let missed = self.missed(&solution, slip, false);
             let size = self.context.comm.largest(missed.values().flatten());
             let all = solution.at.values().flat_map(|at| &at.forces);
@@ -197,10 +197,10 @@ impl SlipProblem<'_> {
     fn missed(
         &self,
         solution: &ActiveSetSolution,
-        slip: impl Fn(usize, usize) -> f64,
+        slip: impl Fn(GroupId, usize) -> f64,
         is_change: bool,
     ) -> OnJumps {
-        let of_group = |(&g, at): (&usize, &Iterate)| {
+        let of_group = |(&g, at): (&GroupId, &Iterate)| {
             let mut missed = vec![0.0; at.forces.len()];
             for law in self.laws.get(&g).into_iter().flatten() {
                 law.add_missed(&at.forces, |i| slip(g, i), is_change, &mut missed);
@@ -267,7 +267,7 @@ impl SlipProblem<'_> {
 
     /// The slips that forces would make at points as stiff as these are (m).
     fn slips(&self, forces: &OnJumps) -> OnJumps {
-        let of_group = |(&g, forces): (&usize, &Vec<f64>)| {
+        let of_group = |(&g, forces): (&GroupId, &Vec<f64>)| {
             let mut slips = vec![0.0; forces.len()];
             for law in self.laws.get(&g).into_iter().flatten() {
                 law.add_slips(forces, &mut slips);
@@ -284,14 +284,16 @@ impl SlipProblem<'_> {
         forces: &OnJumps,
         tolerance: f64,
     ) -> Result<(OnJumps, usize), Failure> {
-        let none = |(&k, values): (&usize, &Vec<f64>)| (k, vec![0.0; values.len()]);
-        let clusters = self.clusters.iter().map(none).collect();
-        let prescribed = self.prescribed.iter().map(none).collect();
         let accuracy = Accuracy {
             tolerance,
             start: None,
         };
-        let response = self.respond(fronts, (&clusters, &prescribed), forces, accuracy)?;
+        let response = self.respond(
+            fronts,
+            (&zeros(self.clusters), &zeros(self.prescribed)),
+            forces,
+            accuracy,
+        )?;
         let product = self.missed(&response, |g, i| response.at[&g].jumps[i], true);
         Ok((product, response.iterations))
     }
@@ -317,6 +319,13 @@ fn add(to: &mut OnJumps, others: &OnJumps) {
             axpy(1.0, others, to);
         }
     }
+}
+
+/// 0 in the place of every number.
+fn zeros<K: Copy + Ord>(of: &BTreeMap<K, Vec<f64>>) -> BTreeMap<K, Vec<f64>> {
+    let all = of.iter();
+    all.map(|(&k, values)| (k, vec![0.0; values.len()]))
+        .collect()
 }
 
 fn scaled(of_jumps: &OnJumps, factor: f64) -> OnJumps {

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{OnGroups, OnTreeNodes, TreeNodeId};
+
 use super::fronts::{ActiveSetFront, ActiveSetFronts};
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
-use crate::contact::newton::OnGroups;
 use crate::context::Context;
 use crate::context::hierarchy::{Direction, carry};
 use crate::error::Failure;
@@ -14,7 +15,7 @@ use crate::schur::local::CondensedLoad;
 use crate::vector::{axpy, dot};
 
 /// The condensed loads of the fronts of this rank, and the values of their closed jumps.
-type CondensedLoads = BTreeMap<usize, (CondensedLoad, Vec<f64>)>;
+type CondensedLoads = OnTreeNodes<(CondensedLoad, Vec<f64>)>;
 
 /// What a load does where the active set is fixed, on this rank.
 #[derive(Clone, Debug, Default)]
@@ -24,9 +25,9 @@ pub struct ActiveSetSolution {
     /// The forces at the jumps of the ties of every contact group above clusters.
     pub tied: OnGroups<Vec<f64>>,
     /// The unknowns on the boundary of every cluster.
-    pub boundaries: BTreeMap<usize, Vec<f64>>,
+    pub boundaries: OnTreeNodes<Vec<f64>>,
     /// The unknowns of the nodes between which an iterative solver works.
-    pub merge_roots: BTreeMap<usize, Vec<f64>>,
+    pub merge_roots: OnTreeNodes<Vec<f64>>,
     /// Its iterations.
     pub iterations: usize,
     /// Whether the preconditioner was too bad, and can be made better.
@@ -62,7 +63,7 @@ impl ActiveSetFronts {
     pub fn solve(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         loads: ClusterLoads<'_>,
         accuracy: Accuracy<'_>,
     ) -> Result<ActiveSetSolution, Failure> {
@@ -126,10 +127,10 @@ impl ActiveSetFronts {
         &self,
         context: &Context<'_>,
         loads: ClusterLoads<'_>,
-    ) -> (CondensedLoads, BTreeMap<usize, Vec<f64>>) {
+    ) -> (CondensedLoads, OnTreeNodes<Vec<f64>>) {
         let plan = context.plan;
         let (mut condensed, mut arrived) = (CondensedLoads::new(), BTreeMap::new());
-        let pass_up = |v: usize, load, arrived: &mut BTreeMap<usize, Vec<f64>>| {
+        let pass_up = |v: TreeNodeId, load, arrived: &mut OnTreeNodes<Vec<f64>>| {
             let above = plan.merged_into(v);
             carry(context, v, above, load, arrived, Direction::Up);
         };
@@ -167,12 +168,12 @@ impl ActiveSetFronts {
         &self,
         context: &Context<'_>,
         condensed: &CondensedLoads,
-        (mut below, loads): (BTreeMap<usize, Vec<f64>>, ClusterLoads<'_>),
+        (mut below, loads): (OnTreeNodes<Vec<f64>>, ClusterLoads<'_>),
         solution: &mut ActiveSetSolution,
     ) {
         let plan = context.plan;
         for &v in self.nodes.iter().rev() {
-            let mut of_children: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+            let mut of_children: OnTreeNodes<Vec<f64>> = BTreeMap::new();
             if let (Some(front), Some((load, values)), Some(x)) =
                 (self.fronts.get(&v), condensed.get(&v), below.remove(&v))
             {

@@ -7,8 +7,9 @@
 
 use std::collections::BTreeMap;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use crate::contact::laws::{ContactLaws, Iterate};
-use crate::contact::newton::OnGroups;
 use crate::contact::projection::project;
 use crate::context::Context;
 use crate::tree::problem::TreeProblem;
@@ -56,7 +57,7 @@ impl ActiveSetUpdate {
 
 /// Normal jumps that penetrate nowhere, by group of this rank, from which the energy descends.
 #[derive(Debug, Default)]
-pub(super) struct Descent(Option<BTreeMap<usize, Vec<f64>>>);
+pub(super) struct Descent(Option<OnGroups<Vec<f64>>>);
 
 impl Descent {
     /// Goes towards the jumps that a step of a `problem` `found` where those limits were `open`, of which some are `wrong`,
@@ -65,9 +66,9 @@ impl Descent {
     pub fn update(
         &mut self,
         problem: &TreeProblem<'_>,
-        wrong: &BTreeMap<usize, Vec<usize>>,
+        wrong: &OnGroups<Vec<usize>>,
         found: &OnGroups<Iterate>,
-        open: &mut BTreeMap<usize, Vec<bool>>,
+        open: &mut OnGroups<Vec<bool>>,
     ) -> Option<usize> {
         let Context { comm, plan, .. } = *problem.context;
         let bounds = &problem.bounds;
@@ -80,7 +81,7 @@ impl Descent {
         let begun = self.0.is_some();
         let all = || found.iter().map(|(&g, at)| (g, at.jumps.clone())).collect();
         let jumps = self.0.get_or_insert_with(all);
-        let part_of = |g: usize| match (begun, wrong.get(&g)) {
+        let part_of = |g: GroupId| match (begun, wrong.get(&g)) {
             (true, Some(wrong)) => {
                 part(&jumps[&g], &found[&g].jumps, &bounds[&g], &open[&g], wrong)
             }

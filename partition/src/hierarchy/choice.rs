@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use super::cost::ACTIVE_SETS;
 use super::tree::Tree;
+use crate::id::TreeNodeId;
 use crate::problem::Catalog;
 
 /// Flops that the dense contact problem takes, over the cube of its size: it is condensed some nine times onto what touches.
@@ -39,13 +40,13 @@ pub fn iteration_flops(size: f64) -> f64 {
 /// Estimated number of coarse unknowns between the clusters of a tree: of the nodes that the same clusters share, their
 /// rigid motions.
 pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
-    let mut clusters: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    let mut clusters: BTreeMap<u32, Vec<TreeNodeId>> = BTreeMap::new();
     for &c in &tree.clusters {
         for &node in &tree.nodes[c].kept {
             clusters.entry(node).or_default().push(c);
         }
     }
-    let mut classes: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
+    let mut classes: BTreeMap<Vec<TreeNodeId>, usize> = BTreeMap::new();
     for of_node in clusters.into_values().filter(|list| list.len() > 1) {
         *classes.entry(of_node).or_default() += 1;
     }
@@ -97,7 +98,7 @@ impl OperatorTimes {
             FEW_CONDITIONS
         };
         let sum = |has_active_set| {
-            let nodes = 0..tree.nodes.len();
+            let nodes = tree.nodes.ids();
             nodes
                 .map(|v| tree.time(v, dim, has_active_set))
                 .sum::<f64>()
@@ -114,7 +115,7 @@ impl OperatorTimes {
         };
         if conditions > few {
             let again = if has_friction { WITH_FRICTION } else { 1.0 };
-            let above = (tree.subdomains..tree.nodes.len())
+            let above = (tree.nodes.ids().skip(tree.subdomains))
                 .filter(|&v| tree.nodes[v].conditions > 0)
                 .map(|v| tree.time(v, dim, true));
             let time = sum(true) + (again - 1.0) * above.sum::<f64>();
@@ -148,7 +149,7 @@ impl OperatorTimes {
     }
 
     fn add_iterations(&mut self, tree: &Tree, dim: usize) {
-        let of_cluster = |&c: &usize| {
+        let of_cluster = |&c: &TreeNodeId| {
             let below = tree.subtree(c).into_iter();
             let below: f64 = below.map(|v| tree.time(v, dim, true)).sum();
             below + iteration_flops(tree.nodes[c].dofs[1] as f64)

@@ -2,17 +2,18 @@
 
 use super::tree::Tree;
 use crate::flops::{Front, condensation};
+use crate::id::TreeNodeId;
 
 /// Active sets that it takes, about.
 pub const ACTIVE_SETS: f64 = 8.0;
 
 impl Tree {
     /// The unknowns that node v eliminates and keeps, of a subdomain `dim` at each of its nodes.
-    pub fn front(&self, v: usize, dim: usize) -> Front {
+    pub fn front(&self, v: TreeNodeId, dim: usize) -> Front {
         let node = &self.nodes[v];
         let [eliminated, kept] = node.dofs;
         let kept = kept + node.conditions;
-        let eliminated = match v < self.subdomains {
+        let eliminated = match self.block(v).is_some() {
             true => (dim * node.of_subdomain).saturating_sub(kept),
             false => eliminated.saturating_sub(self.own_conditions(v) + node.tied),
         };
@@ -20,7 +21,7 @@ impl Tree {
     }
 
     /// The front of node v where every active set is fixed, so that no jump of what is under the node is kept.
-    pub fn active_set_front(&self, v: usize, dim: usize) -> Front {
+    pub fn active_set_front(&self, v: TreeNodeId, dim: usize) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
         Front {
             eliminated: front.eliminated,
@@ -29,7 +30,7 @@ impl Tree {
     }
 
     /// The front of node v, which keeps all normal jumps under it unless active sets are fixed.
-    pub fn front_of(&self, v: usize, dim: usize, has_active_set: bool) -> Front {
+    pub fn front_of(&self, v: TreeNodeId, dim: usize, has_active_set: bool) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
         match has_active_set {
             true => Front {
@@ -42,9 +43,9 @@ impl Tree {
 
     /// Estimated time of node v, in flops: its arithmetic, and what goes with it; over all active sets where these are
     /// fixed.
-    pub fn time(&self, v: usize, dim: usize, has_active_set: bool) -> f64 {
+    pub fn time(&self, v: TreeNodeId, dim: usize, has_active_set: bool) -> f64 {
         let front = self.front_of(v, dim, has_active_set);
-        match v < self.subdomains {
+        match self.block(v).is_some() {
             true => front.time_to_condense(dim),
             false if has_active_set && self.nodes[v].conditions > 0 => ACTIVE_SETS * front.time(),
             false => front.time(),
@@ -52,9 +53,9 @@ impl Tree {
     }
 
     /// Estimated flops of condensing a subdomain, or of merging what lies under an inner node.
-    pub fn flops(&self, v: usize, dim: usize) -> f64 {
+    pub fn flops(&self, v: TreeNodeId, dim: usize) -> f64 {
         let front = self.front(v, dim);
-        match v < self.subdomains {
+        match self.block(v).is_some() {
             true => condensation(front.eliminated as f64, front.kept as f64, dim),
             false => front.flops(),
         }

@@ -12,13 +12,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::interface::{Interface, UnsharedNode};
 use crate::disjoint_sets::DisjointSets;
+use crate::id::{BlockId, TreeNodeId};
+use crate::numbered::Numbered;
 use crate::problem::{Catalog, Hierarchy};
 
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree {
     /// Its nodes: the subdomains, then the inner ones, children before parents.
-    pub nodes: Vec<TreeNode>,
+    pub nodes: Numbered<TreeNodeId, TreeNode>,
     /// Number of subdomains.
     pub subdomains: usize,
     /// Number of nodes of Γ: those that several subdomains share, then those that one has and contact points name.
@@ -26,16 +28,16 @@ pub struct Tree {
     /// The second kind, subdomain by subdomain.
     pub unshared: Vec<UnsharedNode>,
     /// The nodes between which an iterative interface solver works, ascending; none where the file doesn't say.
-    pub clusters: Vec<usize>,
+    pub clusters: Vec<TreeNodeId>,
 }
 
 /// A node of the tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TreeNode {
     /// The node that it is merged into.
-    pub parent: Option<usize>,
+    pub parent: Option<TreeNodeId>,
     /// The nodes that are merged into it, ascending.
-    pub children: Vec<usize>,
+    pub children: Vec<TreeNodeId>,
     /// Mesh nodes of a subdomain, on Γ or not; none of an inner one.
     pub of_subdomain: usize,
     /// Nodes of Γ that are eliminated here, ascending.
@@ -67,7 +69,7 @@ impl Tree {
     fn along(catalog: &Catalog, hierarchy: &Hierarchy) -> Self {
         let interface = Interface::new(catalog);
         let mut tree = Self {
-            nodes: vec![TreeNode::default(); catalog.subdomains.len()],
+            nodes: vec![TreeNode::default(); catalog.subdomains.len()].into(),
             subdomains: catalog.subdomains.len(),
             interface_nodes: interface.subdomains.len(),
             unshared: Vec::new(),
@@ -86,59 +88,64 @@ impl Tree {
         for (node, summary) in self.nodes.iter_mut().zip(&catalog.subdomains) {
             node.of_subdomain = summary.nodes;
         }
-        let mut above: Vec<usize> = (0..subdomains).collect();
+        let mut above: Vec<TreeNodeId> = self.nodes.ids().collect();
         for own in &interface.unshared {
             let subdomain = own.at.subdomain as usize;
-            if above[subdomain] == subdomain {
-                above[subdomain] = self.nodes.len();
-                self.nodes[subdomain].parent = Some(self.nodes.len());
-                self.nodes.push(TreeNode::default());
+            if above[subdomain].index() == subdomain {
+                let inner = self.nodes.push(TreeNode::default());
+                self.nodes[TreeNodeId::new(subdomain)].parent = Some(inner);
+                above[subdomain] = inner;
             }
         }
         let shift = self.nodes.len() - subdomains;
         let parents = &hierarchy.parent;
-        self.nodes
-            .resize(parents.len() + shift, TreeNode::default());
-        for (node, parent) in parents.iter().enumerate() {
-            let node = above.get(node).copied().unwrap_or(node + shift);
-            self.nodes[node].parent = parent.map(|p| p as usize + shift);
+        for _ in subdomains..parents.len() {
+            self.nodes.push(TreeNode::default());
         }
-        let place = |&v: &u32| above.get(v as usize).copied().unwrap_or(v as usize + shift);
-        self.clusters = hierarchy.clusters.iter().map(place).collect();
+        let inner = |v: u32| TreeNodeId::new(v as usize + shift);
+        let place = |v: u32| above.get(v as usize).copied().unwrap_or_else(|| inner(v));
+        for (node, parent) in (0..).zip(parents) {
+            self.nodes[place(node)].parent = parent.map(inner);
+        }
+        self.clusters = hierarchy.clusters.iter().map(|&v| place(v)).collect();
         self.clusters.sort_unstable();
     }
 
     /// Puts a new root above all roots that a node of Γ or a contact point links.
     fn join_roots(&mut self, interface: &Interface) {
-        let mut root: Vec<usize> = (0..self.nodes.len()).collect();
-        for v in (0..self.nodes.len()).rev() {
+        let mut root: Numbered<TreeNodeId, TreeNodeId> = self.nodes.ids().collect();
+        for v in self.nodes.ids().rev() {
             root[v] = self.nodes[v].parent.map_or(v, |parent| root[parent]);
         }
+        let root_of = |s: u32| root[TreeNodeId::new(s as usize)].index() as u32;
         let mut sets = DisjointSets::new(self.nodes.len());
         for subdomains in interface.subdomains.iter() {
             for pair in subdomains.windows(2) {
-                let [a, b] = [pair[0], pair[1]].map(|s| root[s as usize] as u32);
+                let [a, b] = [pair[0], pair[1]].map(root_of);
                 sets.unite(a, b);
             }
         }
         for numbers in &interface.of_points {
             for pair in numbers.windows(2) {
                 let first = |number: u32| interface.subdomains.of(number as usize)[0];
-                let [a, b] = [pair[0], pair[1]].map(|n| root[first(n) as usize] as u32);
+                let [a, b] = [pair[0], pair[1]].map(|n| root_of(first(n)));
                 sets.unite(a, b);
             }
         }
-        let mut joined: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-        for v in (0..self.nodes.len()).filter(|&v| root[v] == v) {
-            joined.entry(sets.find(v as u32)).or_default().push(v);
+        let mut joined: BTreeMap<u32, Vec<TreeNodeId>> = BTreeMap::new();
+        for v in self.nodes.ids().filter(|&v| root[v] == v) {
+            joined
+                .entry(sets.find(v.index() as u32))
+                .or_default()
+                .push(v);
         }
         for roots in joined.into_values().filter(|roots| roots.len() > 1) {
+            let above = self.nodes.push(TreeNode::default());
             for v in roots {
-                self.nodes[v].parent = Some(self.nodes.len());
+                self.nodes[v].parent = Some(above);
             }
-            self.nodes.push(TreeNode::default());
         }
-        for v in 0..self.nodes.len() {
+        for v in self.nodes.ids() {
             if let Some(parent) = self.nodes[v].parent {
                 self.nodes[parent].children.push(v);
             }
@@ -148,16 +155,17 @@ impl Tree {
     /// Finds what every node eliminates and keeps, and its contact points.
     fn place(&mut self, catalog: &Catalog, interface: &Interface) {
         // The lowest node above all subdomains of a node of Γ, not a subdomain itself.
-        let mut ends: Vec<usize> = (interface.subdomains.iter())
+        let mut ends: Vec<TreeNodeId> = (interface.subdomains.iter())
             .map(|list| {
-                let first = list[0] as usize;
+                let leaf = |s: u32| TreeNodeId::new(s as usize);
+                let first = leaf(list[0]);
                 let first = self.nodes[first].parent.unwrap_or(first);
-                let others = list[1..].iter().map(|&s| s as usize);
+                let others = list[1..].iter().map(|&s| leaf(s));
                 others.fold(first, |v, s| self.lowest_above(v, s))
             })
             .collect();
         let systems = interface.systems(catalog);
-        let mut homes = vec![0; interface.of_points.len()];
+        let mut homes = vec![TreeNodeId::new(0); interface.of_points.len()];
         for system in &systems {
             let points = || system.points.iter().map(|&j| j as usize);
             let of_nodes = points().flat_map(|j| &interface.of_points[j]);
@@ -166,7 +174,7 @@ impl Tree {
             let all = of_nodes.chain(of_others);
             let home = all
                 .reduce(|v, w| self.lowest_above(v, w))
-                .unwrap_or_default();
+                .unwrap_or(TreeNodeId::new(0));
             points().for_each(|j| homes[j] = home);
             self.nodes[home].points.extend(&system.points);
         }
@@ -179,19 +187,17 @@ impl Tree {
         for (number, &end) in (0..).zip(&ends) {
             self.nodes[end].eliminated.push(number);
         }
-        for (subdomain, number) in (0..).zip(interface.numbers.iter()) {
-            let mut kept = number.to_vec();
-            kept.sort_unstable();
-            let node: &mut TreeNode = &mut self.nodes[subdomain];
-            node.kept = kept;
+        for (node, numbers) in self.nodes.iter_mut().zip(interface.numbers.iter()) {
+            node.kept = numbers.to_vec();
+            node.kept.sort_unstable();
         }
         self.sum_up(catalog, &ends);
         self.count_dofs(catalog, interface);
     }
 
     /// Finds what inner nodes keep, where nodes of Γ have these `ends`, and how many conditions are under every node.
-    fn sum_up(&mut self, catalog: &Catalog, ends: &[usize]) {
-        for v in 0..self.nodes.len() {
+    fn sum_up(&mut self, catalog: &Catalog, ends: &[TreeNodeId]) {
+        for v in self.nodes.ids() {
             let mut kept: Vec<u32> = Vec::new();
             let points = self.nodes[v].points.iter();
             let points = points.map(|&j| &catalog.points[j as usize]);
@@ -208,7 +214,7 @@ impl Tree {
             let node = &mut self.nodes[v];
             node.points.sort_unstable();
             (node.conditions, node.tied) = (conditions, tied);
-            if v >= self.subdomains {
+            if v.index() >= self.subdomains {
                 kept.sort_unstable();
                 kept.dedup();
                 kept.retain(|&number| ends[number as usize] != v);
@@ -233,8 +239,13 @@ impl Tree {
         }
     }
 
+    /// The block that node v is, if it is no inner one.
+    pub fn block(&self, v: TreeNodeId) -> Option<BlockId> {
+        (v.index() < self.subdomains).then(|| BlockId::new(v.index()))
+    }
+
     /// The lowest node above both, or one of them.
-    pub fn lowest_above(&self, mut v: usize, mut w: usize) -> usize {
+    pub fn lowest_above(&self, mut v: TreeNodeId, mut w: TreeNodeId) -> TreeNodeId {
         while v != w {
             let lower = if v < w { &mut v } else { &mut w };
             match self.nodes[*lower].parent {
@@ -246,21 +257,21 @@ impl Tree {
     }
 
     /// The nodes that nothing is above.
-    pub fn roots(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.nodes.len()).filter(|&v| self.nodes[v].parent.is_none())
+    pub fn roots(&self) -> impl Iterator<Item = TreeNodeId> + '_ {
+        (self.nodes.ids()).filter(|&v| self.nodes[v].parent.is_none())
     }
 
     /// Number of conditions of the contact points that belong to node v, without those of ties.
-    pub fn own_conditions(&self, v: usize) -> usize {
+    pub fn own_conditions(&self, v: TreeNodeId) -> usize {
         let children = self.nodes[v].children.iter();
         let below: usize = children.map(|&child| self.nodes[child].conditions).sum();
         self.nodes[v].conditions - below
     }
 
     /// For every node, the sum of `costs` over it and all that is under it.
-    pub fn sums(&self, costs: &[f64]) -> Vec<f64> {
-        let mut sums = costs.to_vec();
-        for v in 0..self.nodes.len() {
+    pub fn sums(&self, costs: &Numbered<TreeNodeId, f64>) -> Numbered<TreeNodeId, f64> {
+        let mut sums = costs.clone();
+        for v in self.nodes.ids() {
             for &child in &self.nodes[v].children {
                 sums[v] += sums[child];
             }
@@ -269,11 +280,11 @@ impl Tree {
     }
 
     /// The highest nodes for which `is_whole` holds, ascending; leaves do at the latest.
-    pub fn highest(&self, is_whole: impl Fn(usize) -> bool) -> Vec<usize> {
-        let whole = |v: usize| self.nodes[v].children.is_empty() || is_whole(v);
-        let mut inside = vec![false; self.nodes.len()];
+    pub fn highest(&self, is_whole: impl Fn(TreeNodeId) -> bool) -> Vec<TreeNodeId> {
+        let whole = |v: TreeNodeId| self.nodes[v].children.is_empty() || is_whole(v);
+        let mut inside = self.nodes.like(false);
         let mut highest = Vec::new();
-        for v in (0..self.nodes.len()).rev() {
+        for v in self.nodes.ids().rev() {
             let within = self.nodes[v].parent.is_some_and(|parent| inside[parent]);
             inside[v] = within || whole(v);
             if inside[v] && !within {
@@ -285,7 +296,7 @@ impl Tree {
     }
 
     /// The nodes under `v` and `v` itself, children before parents.
-    pub fn subtree(&self, v: usize) -> Vec<usize> {
+    pub fn subtree(&self, v: TreeNodeId) -> Vec<TreeNodeId> {
         let mut nodes = Vec::new();
         let mut stack = vec![(v, false)];
         while let Some((v, children_done)) = stack.pop() {

@@ -3,6 +3,8 @@
 use super::choice::{Operator, OperatorTimes, iteration_flops};
 use super::tree::Tree;
 use crate::flops::Front;
+use crate::id::TreeNodeId;
+use crate::numbered::Numbered;
 use crate::problem::Catalog;
 
 /// The cost of the nodes of a problem's hierarchy.
@@ -27,23 +29,23 @@ impl Work {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let operators = OperatorTimes::new(catalog);
         let has_active_set = operators.direct().next() == Some(Operator::Tree);
-        let front = |v: usize| match has_active_set {
+        let front = |v: TreeNodeId| match has_active_set {
             true => tree.active_set_front(v, dim),
             false => tree.front(v, dim),
         };
         let (times, coarse) = match operators.fastest() {
             Operator::Clusters => (times_to_clusters(&tree, dim), operators.coarse),
             _ => {
-                let nodes = 0..tree.nodes.len();
+                let nodes = tree.nodes.ids();
                 (
                     nodes.map(|v| tree.time(v, dim, has_active_set)).collect(),
                     0.0,
                 )
             }
         };
-        let nodes = 0..tree.nodes.len();
-        let costs: Vec<f64> = nodes.map(|v| tree.flops(v, dim)).collect();
-        let inner = tree.subdomains..tree.nodes.len();
+        let nodes = tree.nodes.ids();
+        let costs: Numbered<TreeNodeId, f64> = nodes.map(|v| tree.flops(v, dim)).collect();
+        let inner = tree.nodes.ids().skip(tree.subdomains);
         Self {
             fronts: inner.map(front).collect(),
             uneven_halves: uneven_halves(&tree, &tree.sums(&costs)),
@@ -72,8 +74,8 @@ impl Work {
 }
 
 /// Times of all nodes where nothing is merged above clusters, with those of iterations between them.
-fn times_to_clusters(tree: &Tree, dim: usize) -> Vec<f64> {
-    let mut times = vec![0.0; tree.nodes.len()];
+fn times_to_clusters(tree: &Tree, dim: usize) -> Numbered<TreeNodeId, f64> {
+    let mut times = tree.nodes.like(0.0);
     for &cluster in &tree.clusters {
         for v in tree.subtree(cluster) {
             times[v] = tree.time(v, dim, true);
@@ -85,22 +87,21 @@ fn times_to_clusters(tree: &Tree, dim: usize) -> Vec<f64> {
 
 /// `times` are those of all nodes, `coarse` that of a sparse problem behind them: of nested dissection in space, two
 /// thirds lie on one way.
-fn speed_up(tree: &Tree, times: &[f64], coarse: f64) -> f64 {
+fn speed_up(tree: &Tree, times: &Numbered<TreeNodeId, f64>, coarse: f64) -> f64 {
     let mut all = coarse;
-    let mut ways = vec![0.0f64; tree.nodes.len()];
-    for (v, &own) in times.iter().enumerate() {
+    let mut ways = tree.nodes.like(0.0f64);
+    for (v, &own) in times.each() {
         let children = tree.nodes[v].children.iter().map(|&child| ways[child]);
         ways[v] = own + children.fold(0.0, f64::max);
         all += own;
     }
-    let way = ways.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    let way = ways.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     all / (way + 2.0 / 3.0 * coarse)
 }
 
 /// `below` has the work of every node with all that is under it.
-fn uneven_halves(tree: &Tree, below: &[f64]) -> f64 {
-    let roots = (0..tree.nodes.len()).filter(|&v| tree.nodes[v].parent.is_none());
-    let heaviest = roots.max_by(|&a, &b| below[a].total_cmp(&below[b]));
+fn uneven_halves(tree: &Tree, below: &Numbered<TreeNodeId, f64>) -> f64 {
+    let heaviest = tree.roots().max_by(|&a, &b| below[a].total_cmp(&below[b]));
     let children = heaviest.map_or(&[][..], |root| &tree.nodes[root].children);
     let work = children.iter().map(|&child| below[child]);
     let (largest, sum) = (work.clone().fold(0.0, f64::max), work.sum::<f64>());

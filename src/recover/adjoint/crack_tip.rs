@@ -36,7 +36,7 @@ impl Functional {
         // L u and m.
         let mut sums = [[0.0; 2]; 2];
         (context.comm).gather(
-            context.plan.owners(),
+            &context.plan.owners(),
             |b| {
                 weights
                     .get(&b)

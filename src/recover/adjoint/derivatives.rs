@@ -1,5 +1,6 @@
 //! Derivatives of a quantity with respect to the parameters of a scene, from the solution of its transposed problem.
 
+use contact_dd_partition::id::{BlockId, GroupId};
 use contact_dd_partition::quantity::{Parameter, ParameterKind, QuantityKind};
 
 use super::functional::{Functional, MaterialForces};
@@ -30,7 +31,7 @@ pub fn derivatives(of: &Sensitivity<'_>) -> Vec<f64> {
     let parameters = &context.catalog.parameters;
     let mut sums = vec![0.0; parameters.len()];
     context.comm.gather(
-        context.plan.owners(),
+        &context.plan.owners(),
         |b| Reals(of.of_block(b)),
         |_, Reals(parts)| {
             sums.iter_mut()
@@ -58,7 +59,7 @@ pub fn derivatives(of: &Sensitivity<'_>) -> Vec<f64> {
 
 impl Sensitivity<'_> {
     /// The parts of a block in all derivatives: w·df − w·dK u + η·dv.
-    fn of_block(&self, b: usize) -> Vec<f64> {
+    fn of_block(&self, b: BlockId) -> Vec<f64> {
         let context = &self.solved.fixed.context;
         let parameters = &context.catalog.parameters;
         let mut parts = vec![0.0; parameters.len()];
@@ -107,7 +108,7 @@ impl Sensitivity<'_> {
     }
 
     /// The part of a contact group in a derivative: ν·dg − τ'·dφ.
-    fn of_group(&self, g: usize, parameter: &Parameter) -> f64 {
+    fn of_group(&self, g: GroupId, parameter: &Parameter) -> f64 {
         let (Some(group), Some(of_group)) = (
             self.solved.fixed.context.groups.get(&g),
             self.state.discrete.groups.get(&g),
@@ -183,7 +184,7 @@ impl Sensitivity<'_> {
         let context = &self.solved.fixed.context;
         let mut terms = Vec::new();
         context.comm.gather(
-            context.plan.owners(),
+            &context.plan.owners(),
             |b| self.reciprocity_of_block(b),
             |_, part: [f64; 2]| terms.push(part),
         );
@@ -198,7 +199,7 @@ impl Sensitivity<'_> {
     }
 
     /// The part of a block in the difference of both sides, and the size of its terms.
-    fn reciprocity_of_block(&self, b: usize) -> [f64; 2] {
+    fn reciprocity_of_block(&self, b: BlockId) -> [f64; 2] {
         let fixed = self.solved.fixed;
         let solution = &self.solved.solution.discrete;
         let (Some(block), Some(of_block), Some(w)) = (
@@ -235,7 +236,7 @@ impl Sensitivity<'_> {
         [off, size]
     }
 
-    fn reciprocity_of_group(&self, g: usize) -> [f64; 2] {
+    fn reciprocity_of_group(&self, g: GroupId) -> [f64; 2] {
         let fixed = self.solved.fixed;
         let (Some(of_group), Some(state), Some(loads)) = (
             self.solved.solution.discrete.groups.get(&g),

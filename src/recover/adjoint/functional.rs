@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{cross, difference, dot as along};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::{Quantity, QuantityKind};
 
@@ -18,7 +19,7 @@ use crate::vector::{axpy, dot};
 
 /// K_m u of every material m, by block and node by node (N/m).
 #[derive(Default)]
-pub struct MaterialForces(BTreeMap<usize, BTreeMap<usize, Vec<f64>>>);
+pub struct MaterialForces(OnBlocks<BTreeMap<usize, Vec<f64>>>);
 
 impl MaterialForces {
     /// Those of the blocks of this rank.
@@ -59,14 +60,14 @@ impl MaterialForces {
     }
 
     /// w·K_m u over block b, for some materials.
-    pub fn work(&self, b: usize, w: &[f64], materials: &[u32]) -> f64 {
+    pub fn work(&self, b: BlockId, w: &[f64], materials: &[u32]) -> f64 {
         let of_block = self.0.get(&b).into_iter().flatten();
         let of_block = of_block.filter(|(material, _)| materials.contains(&(**material as u32)));
         of_block.map(|(_, forces)| dot(w, forces)).sum()
     }
 
     /// K u of block b, node by node.
-    fn of_block(&self, b: usize) -> impl Iterator<Item = &Vec<f64>> {
+    fn of_block(&self, b: BlockId) -> impl Iterator<Item = &Vec<f64>> {
         self.0
             .get(&b)
             .into_iter()
@@ -87,13 +88,13 @@ pub struct Functional {
     /// Tag of its node, −1 where there is none; of a largest pressure on the root.
     pub node: i64,
     /// ∂q/∂u of the blocks that it depends on, the parts of blocks add up.
-    pub of_nodes: BTreeMap<usize, Vec<f64>>,
+    pub of_nodes: OnBlocks<Vec<f64>>,
     /// ∂q/∂ρ of every support of the blocks that it depends on.
-    pub of_supports: BTreeMap<usize, Vec<f64>>,
+    pub of_supports: OnBlocks<Vec<f64>>,
     /// ∂q/∂λ of every condition of the contact groups that it depends on.
-    pub of_forces: BTreeMap<usize, Vec<f64>>,
+    pub of_forces: OnGroups<Vec<f64>>,
     /// ∂q/∂g of every condition of the contact groups that it depends on.
-    pub of_gaps: BTreeMap<usize, Vec<f64>>,
+    pub of_gaps: OnGroups<Vec<f64>>,
 }
 
 impl Functional {
@@ -228,11 +229,11 @@ impl Functional {
     fn find_largest(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let contact = quantity.of[0];
-        let pressure = |g: usize, (j, point): (usize, &ContactPoint<u32>)| {
+        let pressure = |g: GroupId, (j, point): (usize, &ContactPoint<u32>)| {
             let force = solved.solution.discrete.groups[&g].forces[j];
             (force / point.area, j, point.tag())
         };
-        let mut largest: Option<(f64, usize, usize, i64)> = None;
+        let mut largest: Option<(f64, GroupId, usize, i64)> = None;
         context.comm.gather(
             &context.plan.group_owners(),
             |g| {
@@ -320,14 +321,14 @@ fn area(catalog: &Catalog, contact: u32) -> f64 {
 
 impl Context<'_> {
     /// The sum over all blocks, in their order; on the root. Collective.
-    pub(super) fn sum_of_blocks(&self, of_block: impl FnMut(usize) -> f64) -> f64 {
+    pub(super) fn sum_of_blocks(&self, of_block: impl FnMut(BlockId) -> f64) -> f64 {
         let mut sum = 0.0;
-        (self.comm).gather(self.plan.owners(), of_block, |_, part: f64| sum += part);
+        (self.comm).gather(&self.plan.owners(), of_block, |_, part: f64| sum += part);
         sum
     }
 
     /// The sum over all contact groups, in their order; on the root. Collective.
-    pub(super) fn sum_of_groups(&self, of_group: impl FnMut(usize) -> f64) -> f64 {
+    pub(super) fn sum_of_groups(&self, of_group: impl FnMut(GroupId) -> f64) -> f64 {
         let mut sum = 0.0;
         (self.comm).gather(&self.plan.group_owners(), of_group, |_, part: f64| {
             sum += part

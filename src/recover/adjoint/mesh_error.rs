@@ -13,8 +13,7 @@
 //! of stresses that vary from cell to cell, as those around the tip of a crack do, make σ(w) as rough as they are: there recovery
 //! tells nothing of its error.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::quantity::{Quantity, QuantityKind};
 
 use super::solved::Solved;
@@ -32,7 +31,7 @@ pub struct MeshError {
     /// The whole; on the root.
     pub error: f64,
     /// The parts of the cells of every block of this rank.
-    pub of_cells: BTreeMap<usize, Vec<f64>>,
+    pub of_cells: OnBlocks<Vec<f64>>,
 }
 
 impl MeshError {
@@ -51,7 +50,7 @@ impl MeshError {
         }
         let context = &solved.fixed.context;
         let (u, w) = (&solved.solution.discrete.blocks, &of.discrete.blocks);
-        let size = |of: &BTreeMap<usize, BlockSolution>| {
+        let size = |of: &OnBlocks<BlockSolution>| {
             let all = of.values().flat_map(|of_block| &of_block.u);
             context.comm.largest(all)
         };
@@ -65,13 +64,13 @@ impl MeshError {
             _ => 1.0,
         };
         let factor = -part / (4.0 * scale);
-        let of_block = |(&b, ahead): (&usize, &Stress)| {
+        let of_block = |(&b, ahead): (&BlockId, &Stress)| {
             let cells = ahead.errors.iter().zip(&back.get(&b)?.errors);
             let errors = cells.map(|(ahead, back)| factor * (ahead.error - back.error));
             Some((b, errors.collect()))
         };
-        let of_cells: BTreeMap<usize, Vec<f64>> = ahead.iter().filter_map(of_block).collect();
-        let sum = |b: usize| of_cells.get(&b).map_or(0.0, |errors| errors.iter().sum());
+        let of_cells: OnBlocks<Vec<f64>> = ahead.iter().filter_map(of_block).collect();
+        let sum = |b: BlockId| of_cells.get(&b).map_or(0.0, |errors| errors.iter().sum());
         Some(Self {
             error: context.sum_of_blocks(sum),
             of_cells,
@@ -82,13 +81,10 @@ impl MeshError {
 /// The stresses of u + factor w. Collective.
 fn both(
     solved: Solved<'_>,
-    (u, w): (
-        &BTreeMap<usize, BlockSolution>,
-        &BTreeMap<usize, BlockSolution>,
-    ),
+    (u, w): (&OnBlocks<BlockSolution>, &OnBlocks<BlockSolution>),
     factor: f64,
-) -> BTreeMap<usize, Stress> {
-    let of_block = |(&b, of_block): (&usize, &BlockSolution)| {
+) -> OnBlocks<Stress> {
+    let of_block = |(&b, of_block): (&BlockId, &BlockSolution)| {
         let all = of_block.u.iter().zip(&w.get(&b)?.u);
         let u = all.map(|(u, w)| u + factor * w).collect();
         let pushes = Vec::new();

@@ -17,7 +17,7 @@ impl TransposedProblem<'_> {
         let context = &self.solved.fixed.context;
         let blocks = self.solved.solution.discrete.blocks.iter();
         let zeros = blocks
-            .filter(|(b, _)| self.around_contact[**b])
+            .filter(|(b, _)| self.around_contact[(**b).into()])
             .map(|(&b, of_block)| {
                 let (u, pushes) = (vec![0.0; of_block.u.len()], Vec::new());
                 (b, BlockSolution { u, pushes })

@@ -1,6 +1,6 @@
 //! The points that slip: how their forces follow what presses and how they slip, λ_s = M λ_n + Q s + φ.
 
-use std::collections::BTreeMap;
+use contact_dd_partition::id::OnGroups;
 
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
@@ -112,7 +112,7 @@ impl SlippingPoints {
 }
 
 /// A number for every condition of the contact groups of this rank.
-pub type OnConditions = BTreeMap<usize, Vec<f64>>;
+pub type OnConditions = OnGroups<Vec<f64>>;
 
 /// A change z of the conditions of what slips, and W (I − G) z.
 pub type Direction = (OnConditions, OnConditions);

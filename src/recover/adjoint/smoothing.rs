@@ -5,6 +5,7 @@
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{difference, length};
+use contact_dd_partition::id::GroupId;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 use contact_dd_partition::quantity::Quantity;
 
@@ -95,7 +96,7 @@ impl Functional {
         let context = &solved.fixed.context;
         let plan = context.plan;
         let surface = Surface::new(context.catalog, quantity);
-        let places = |g: usize| &plan.tree.nodes[plan.groups[g].node].points;
+        let places = |g: GroupId| &plan.tree.nodes[plan.groups[g].node].points;
         let mut forces = vec![0.0; context.catalog.points.len()];
         context.comm.gather(
             &plan.group_owners(),

@@ -8,7 +8,9 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use contact_dd_partition::element::geometry::padded;
+use contact_dd_partition::id::{BlockId, OnBlocks, OnGroups, TreeNodeId};
 use contact_dd_partition::model::Support;
+use contact_dd_partition::numbered::Numbered;
 
 use super::functional::Functional;
 use super::slipping::{Direction, OnConditions, SlippingPoints, add};
@@ -36,11 +38,11 @@ const ENOUGH: f64 = 1e-9;
 pub struct TransposedProblem<'a> {
     pub(super) solved: Solved<'a>,
     /// The points that slip.
-    pub slipping: &'a BTreeMap<usize, SlippingPoints>,
+    pub slipping: &'a OnGroups<SlippingPoints>,
     /// The directions in which slips were looked into.
     pub(super) directions: &'a RefCell<Vec<Direction>>,
     /// The nodes of the hierarchy that have nodes of contact points, with all above them.
-    pub(super) around_contact: Vec<bool>,
+    pub(super) around_contact: Numbered<TreeNodeId, bool>,
     /// a, and as what supports prescribe −r; at conditions b.
     pub(super) loads: Loads,
 }
@@ -50,7 +52,7 @@ pub struct Transposed {
     /// w, ν and the forces at what slips, and what is left of the jumps that conditions ask for.
     pub discrete: DiscreteSolution,
     /// Residuals on the nodes of every block of this rank: a − K w − Bᵀν.
-    pub residuals: BTreeMap<usize, Vec<f64>>,
+    pub residuals: OnBlocks<Vec<f64>>,
     /// a, r and b, and what the conditions of slipping points ask for.
     loads: Loads,
 }
@@ -60,10 +62,7 @@ impl<'a> TransposedProblem<'a> {
     pub fn new(
         solved: Solved<'a>,
         functional: &Functional,
-        (slipping, directions): (
-            &'a BTreeMap<usize, SlippingPoints>,
-            &'a RefCell<Vec<Direction>>,
-        ),
+        (slipping, directions): (&'a OnGroups<SlippingPoints>, &'a RefCell<Vec<Direction>>),
     ) -> Self {
         let context = &solved.fixed.context;
         let mut loads = Loads::default();
@@ -103,7 +102,7 @@ impl<'a> TransposedProblem<'a> {
             around_contact: match solved.fixed.free.list.is_empty() {
                 true => context.plan.around_contact(),
                 // What is projected is loaded everywhere.
-                false => vec![true; context.plan.tree.nodes.len()],
+                false => context.plan.tree.nodes.like(true),
             },
             loads,
         }
@@ -175,7 +174,7 @@ impl<'a> TransposedProblem<'a> {
     }
 
     /// No force at any condition, with these displacements.
-    pub(super) fn at_rest(&self, blocks: BTreeMap<usize, BlockSolution>) -> DiscreteSolution {
+    pub(super) fn at_rest(&self, blocks: OnBlocks<BlockSolution>) -> DiscreteSolution {
         let groups = self.solved.solution.discrete.groups.iter();
         let groups = groups.map(|(&g, of_group)| {
             let (forces, gaps) = (vec![0.0; of_group.forces.len()], Vec::new());
@@ -196,9 +195,9 @@ impl<'a> TransposedProblem<'a> {
     }
 
     /// Residuals of `loads` on the nodes of every block of this rank.
-    fn left(&self, loads: &Loads, state: &DiscreteSolution) -> BTreeMap<usize, Vec<f64>> {
+    fn left(&self, loads: &Loads, state: &DiscreteSolution) -> OnBlocks<Vec<f64>> {
         let context = &self.solved.fixed.context;
-        let of_block = |(&b, of_block): (&usize, &BlockSolution)| {
+        let of_block = |(&b, of_block): (&BlockId, &BlockSolution)| {
             let (block, loads) = (context.blocks.get(&b)?, loads.blocks.get(&b)?);
             if of_block.u.iter().all(|&w| w == 0.0) {
                 return Some((b, without_displacement(block, loads, &of_block.pushes)));
@@ -230,7 +229,7 @@ impl<'a> TransposedProblem<'a> {
         let mut residuals = self.left(loads, state);
         let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
         fixed.free.project(&fixed.context, Field::Summed, fields);
-        let on_unknowns = |(b, residual): (usize, Vec<f64>)| {
+        let on_unknowns = |(b, residual): (BlockId, Vec<f64>)| {
             let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
             let mut load = vec![0.0; dofs.len()];
             dofs.add_load(&residual, &mut load);

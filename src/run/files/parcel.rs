@@ -4,6 +4,7 @@ use std::iter::repeat_n;
 use std::ops::Range;
 
 use contact_dd_partition::element::geometry::padded;
+use contact_dd_partition::id::BlockId;
 
 use crate::comm::Comm;
 use crate::context::Context;
@@ -31,7 +32,7 @@ impl Parcel {
         let mut ends: Vec<usize> = slabs.iter().map(|slab| slab.end).collect();
         comm.broadcast(&mut ends);
         let owners = plan.owners();
-        cut(ends.into_iter(), |s| owners[s])
+        cut(ends.into_iter(), |s| owners[BlockId::new(s)])
     }
 
     /// Appends what was found on its subdomains; called on their owner.
@@ -44,8 +45,8 @@ impl Parcel {
         let &Context {
             catalog, blocks, ..
         } = context;
-        for index in self.subdomains.clone() {
-            match blocks.get(&index).zip(solution.displacement.get(&index)) {
+        for b in self.subdomains.clone().map(BlockId::new) {
+            match blocks.get(&b).zip(solution.displacement.get(&b)) {
                 Some((block, displacement)) => {
                     append_block(results, block, displacement);
                     if catalog.has_stages() {
@@ -53,10 +54,10 @@ impl Parcel {
                         let cells = block.subdomain.cells.len();
                         results.present.extend(repeat_n(u8::from(is_there), cells));
                     }
-                    if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&index)) {
+                    if let Some(stress) = solution.stress.as_ref().and_then(|all| all.get(&b)) {
                         append_stress(results, stress, block.body_nodes());
                         if !catalog.quantities.is_empty() {
-                            let errors = solution.quantities.errors_of_cells.get(&index);
+                            let errors = solution.quantities.errors_of_cells.get(&b);
                             let none = || vec![f64::NAN; stress.cells.len()];
                             let errors = errors.cloned().unwrap_or_else(none);
                             results.quantity_error.extend(errors);

@@ -1,7 +1,6 @@
 //! The bolts of a load step, for the report.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::OnBlocks;
 use contact_dd_partition::problem::ContactKind;
 
 use crate::context::Context;
@@ -13,7 +12,7 @@ use crate::step::transfer::jumps_of_points;
 /// root. Collective.
 pub fn tightened_bolts(
     context: &Context<'_>,
-    displacement: &BTreeMap<usize, Vec<f64>>,
+    displacement: &OnBlocks<Vec<f64>>,
     contacts: &[ContactResultant],
     step: usize,
 ) -> Vec<TightenedBolt> {

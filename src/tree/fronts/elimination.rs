@@ -1,7 +1,7 @@
 //! The elimination of the fronts that a change of the active set touches, children before parents.
 
-use std::collections::BTreeMap;
-
+use contact_dd_partition::id::{GroupId, OnGroups, TreeNodeId};
+use contact_dd_partition::numbered::Numbered;
 use faer::Mat;
 
 use super::{ActiveSetFront, ActiveSetFronts};
@@ -16,7 +16,7 @@ impl ActiveSetFronts {
     pub(super) fn pass_up(
         &mut self,
         context: &Context<'_>,
-        v: usize,
+        v: TreeNodeId,
         mut condensed: Option<Condensed>,
     ) {
         let Context { comm, plan, .. } = *context;
@@ -39,11 +39,11 @@ impl ActiveSetFronts {
     pub(super) fn touched(
         &self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
+        open: &OnGroups<Vec<bool>>,
         is_known: bool,
-    ) -> Vec<bool> {
+    ) -> Numbered<TreeNodeId, bool> {
         let Context { comm, plan, .. } = *context;
-        let changed = |g: usize| {
+        let changed = |g: GroupId| {
             let front = self
                 .fronts
                 .get(&plan.groups[g].node)
@@ -52,7 +52,7 @@ impl ActiveSetFronts {
             // Of ties alone nothing ever changes.
             !open[&g].is_empty() && front.or_else(between) != Some(&open[&g])
         };
-        let mut touched = vec![!is_known; plan.tree.nodes.len()];
+        let mut touched = plan.tree.nodes.like(!is_known);
         comm.gather(&plan.group_owners(), changed, |g, changed| {
             touched[plan.groups[g].node] |= changed;
         });
@@ -65,8 +65,8 @@ impl ActiveSetFronts {
     pub(super) fn eliminate(
         &mut self,
         context: &Context<'_>,
-        open: &BTreeMap<usize, Vec<bool>>,
-        touched: &[bool],
+        open: &OnGroups<Vec<bool>>,
+        touched: &Numbered<TreeNodeId, bool>,
     ) -> Result<(), Failure> {
         let mut result = Ok(());
         self.smallest_pivot = f64::INFINITY;
@@ -93,8 +93,8 @@ impl ActiveSetFronts {
     fn merge(
         &mut self,
         context: &Context<'_>,
-        v: usize,
-        open: &BTreeMap<usize, Vec<bool>>,
+        v: TreeNodeId,
+        open: &OnGroups<Vec<bool>>,
     ) -> Result<Option<Condensed>, Failure> {
         let Context { plan, par, .. } = *context;
         let node = &plan.tree.nodes[v];
@@ -104,7 +104,7 @@ impl ActiveSetFronts {
         };
         let none = Vec::new();
         let replaced = self.replaced.get(&v).unwrap_or(&none);
-        let of_group = |g: usize| FrontJumps::new(&self.rows[&g], &open[&g]);
+        let of_group = |g: GroupId| FrontJumps::new(&self.rows[&g], &open[&g]);
         let jumps = plan.group_of(v).map(of_group).unwrap_or_default();
         let own = OwnJumps {
             replaced: &jumps.replaced(replaced),

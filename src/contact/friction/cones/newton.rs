@@ -2,12 +2,14 @@
 
 use std::convert::Infallible;
 
+use contact_dd_partition::id::{GroupId, OnGroups};
+
 use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::contact::laws::{Iterate, LawResidual, Statuses};
 use crate::contact::newton::{
-    ContactOperator, NewtonSettings, NewtonStep, OnGroups, StepAccuracy, TotalResidual, newton,
+    ContactOperator, NewtonSettings, NewtonStep, StepAccuracy, TotalResidual, newton,
 };
 use crate::vector::{between, dot, largest};
 
@@ -227,7 +229,7 @@ impl FrictionCones<'_> {
 struct Dense<'d, 'a>(&'d FrictionCones<'a>);
 
 /// The number of its group.
-const ONLY: usize = 0;
+const ONLY: GroupId = GroupId::new(0);
 
 fn only<T>(of_group: T) -> OnGroups<T> {
     OnGroups::from([(ONLY, of_group)])
