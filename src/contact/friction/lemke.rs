@@ -20,13 +20,12 @@ mod polygon;
 mod responses;
 
 use self::path::{End, Path};
-use self::polygon::Polygons;
+use self::polygon::{ATTEMPTS, Polygons};
 use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
-/// Attempts, each of which goes another way, in the plane and in space.
-const ATTEMPTS: usize = 4;
+/// Attempts in space, where each goes on with finer polygons.
 const IN_SPACE: usize = 2;
 /// How often polygons become finer.
 const FINER: usize = 3;

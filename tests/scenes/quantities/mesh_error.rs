@@ -6,6 +6,7 @@ use super::quantities;
 use crate::support::blocks::Blocks;
 use crate::support::scenes::model;
 use crate::support::solver::solve;
+use crate::support::sorts::sort;
 
 /// Cells along sides over those of the coarsest mesh, of which the last stands for the exact solution.
 const FINE: [usize; 4] = [1, 2, 4, 16];
@@ -49,7 +50,8 @@ fn scene(law: &str) -> String {
 
 fn solved(law: &str, fine: usize) -> Value {
     let blocks = Blocks::new().rectangle("block", [0.0, 2.0], [0.0, 1.0], [8 * fine, 4 * fine]);
-    solve(&model(&scene(law), blocks.mesh), 4).report
+    let mesh = sort("quad4").of(&blocks.mesh);
+    solve(&model(&scene(law), mesh), 4).report
 }
 
 #[test]

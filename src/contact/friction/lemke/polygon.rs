@@ -7,9 +7,10 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use super::ATTEMPTS;
 use crate::contact::tangent::TangentialLimit;
 
+/// Attempts, each of which goes another way.
+pub(super) const ATTEMPTS: usize = 4;
 /// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
 /// where it is steep the path ends at the solution, but has further to go.
 const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-6, 1e-8, 1e-10];
