@@ -19,7 +19,7 @@ pub struct ActiveEqualities {
 pub struct ActiveEquality {
     /// The normal jump that follows from others.
     pub pivot: usize,
-    /// Those others.
+    /// The other jumps, and their factors.
     pub others: Terms,
     /// The closed rows that it is made of, and their shares.
     shares: Terms,

@@ -59,7 +59,7 @@ pub struct Limits {
     pub conditions: usize,
     /// The largest displacement prescribed in the pair, initial gaps among them (m).
     pub scale: f64,
-    /// Those of tangential jumps, ascending.
+    /// The limits of tangential jumps, ascending.
     pub tangents: Vec<TangentialLimit>,
     prescribed_slips: Vec<PrescribedSlip>,
     /// The conditions of ties and their jumps (m), of one group alone.

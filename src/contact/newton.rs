@@ -20,7 +20,7 @@ const SMALLEST: f64 = 1e-3;
 /// Part of the merit, for every part of a step, by which that has to lessen it.
 const LESSENS: f64 = 1e-4;
 
-/// What answers for given statuses. Its methods are collective.
+/// An operator that answers for given statuses. Its methods are collective.
 pub trait ContactOperator {
     /// Why there is no answer: some part of the scene moves freely, or a signal has asked the run to stop.
     type Error;
@@ -86,7 +86,7 @@ pub enum StepAccuracy {
     Full,
 }
 
-/// What all groups on all ranks miss of the laws.
+/// The residual of the laws of all groups on all ranks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct TotalResidual {
     /// Σ x²/r of what limits miss, then its square root.
@@ -137,11 +137,11 @@ pub struct NewtonSettings {
     pub most: usize,
     /// Most steps in a row without a smaller merit.
     pub patience: usize,
-    /// What may be missed of the laws, relative to the scales of forces.
+    /// Residual of the laws that is accepted, relative to the scales of forces.
     pub tolerance: f64,
     /// The same where steps make it no smaller and no status is wrong.
     pub acceptable: f64,
-    /// What can't be less, for which no step is made once the tolerance is met.
+    /// Round-off of the residual, for which no step is made once the tolerance is met.
     pub round_off: f64,
     /// The merit, relative to what acts, above which forces are no measure: what slides away has small ones beside the terms
     /// of its way.
@@ -157,7 +157,7 @@ pub struct Found {
     pub at: OnGroups<Iterate>,
     /// The statuses whose equations these fulfil.
     pub statuses: OnGroups<Statuses>,
-    /// What is missed of the laws, relative to the scales of forces; infinite where the method doesn't converge.
+    /// Residual of the laws, relative to the scales of forces; infinite where the method doesn't converge.
     pub missed: f64,
     /// Linear systems solved.
     pub steps: usize,
@@ -242,7 +242,7 @@ pub fn newton<O: ContactOperator>(
     }))
 }
 
-/// What the laws say of an iterate, which within round-off keeps the statuses `before`; only the merit counts where these
+/// The residual of the laws at an iterate, which within round-off keeps the statuses `before`; only the merit counts where these
 /// aren't known. Collective.
 pub fn look<O: ContactOperator>(
     operator: &O,

@@ -110,7 +110,7 @@ impl FixedStatus {
 pub struct LimitState {
     /// Its force (N/m).
     pub force: f64,
-    /// What its jump has left, g − t, or the way back to where it stuck (m).
+    /// The gap that is left, g − t, or the way back to where it stuck (m).
     pub gap: f64,
     /// Its status.
     pub status: Status,

@@ -74,7 +74,7 @@ pub struct CoupledChange<L> {
 pub struct PairChange<L> {
     /// Changes of jumps (m).
     pub jumps: Vec<f64>,
-    /// What is asked for of every limit.
+    /// The answer at every limit.
     pub limits: Vec<L>,
 }
 

@@ -13,7 +13,7 @@ use crate::error::Failure;
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
 
-/// What a study varies, and the values in every case.
+/// The parameters that a study varies, and the values in every case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cases {
@@ -109,7 +109,7 @@ pub struct Varied {
 }
 
 impl Varied {
-    /// Those of a case with these values of some parameters.
+    /// A case with these values of some parameters.
     pub fn new(base: &Context<'_>, parameters: &[&Parameter], values: &[f64]) -> Self {
         let mut varied = Self {
             catalog: base.catalog.clone(),

@@ -287,7 +287,7 @@ impl Merge {
 /// The unknowns under a front.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recovered {
-    /// Those on the boundary of every child.
+    /// The unknowns on the boundary of every child.
     pub children: Vec<Vec<f64>>,
     /// The front's own jumps that are unknowns.
     pub jumps: Vec<f64>,

@@ -44,7 +44,7 @@ pub struct ClosestApproaches {
 }
 
 impl ClosestApproaches {
-    /// Those of so many points before the first load step.
+    /// The closest approaches of so many points before the first load step.
     pub fn new(count: usize) -> Self {
         Self {
             closed: vec![false; count],
@@ -53,7 +53,7 @@ impl ClosestApproaches {
     }
 }
 
-/// What the points outside of a working set are at the end of a load step.
+/// The statuses of points outside of a working set at the end of a load step.
 pub enum Outside {
     /// All open, with these rows.
     Open(Vec<ContactRow>),

@@ -18,7 +18,7 @@ use crate::tree::problem::{Steps, TreeProblem};
 use crate::tree::solution::ActiveSetSolution;
 use crate::tree::update::{ActiveSetUpdate, Descent};
 
-/// What is wrong with the active set.
+/// The wrong statuses of the active set.
 #[derive(Clone, Debug, Default)]
 struct Faults {
     /// Normal jumps by group that should be open and are closed, or the other way round.
@@ -200,7 +200,7 @@ fn scales(comm: &Comm, solution: &ActiveSetSolution, bounds: &OnGroups<Vec<f64>>
 }
 
 impl Faults {
-    /// What is wrong, by more than `least`, where the conditions that are `open` led to this solution. Collective.
+    /// The wrong statuses, by more than `least`, where the conditions that are `open` led to this solution. Collective.
     fn of(
         problem: &TreeProblem<'_>,
         solution: &ActiveSetSolution,

@@ -28,11 +28,11 @@ use crate::tree::solution::ActiveSetSolution;
 const MAX_STEPS: usize = 400;
 /// Most steps in a row without a smaller merit.
 const PATIENCE: usize = 20;
-/// What may be missed of the laws, relative to the largest force, where steps make it no smaller: the rest is round-off,
+/// Residual of the laws that is accepted, relative to the largest force, where steps make it no smaller: the rest is round-off,
 /// which refinement takes off.
 const ACCEPTABLE: f64 = 1e-7;
 
-/// What the steps found, on this rank.
+/// The solution of the contact problem in the tree, on this rank.
 #[derive(Clone, Debug)]
 pub struct TreeContact {
     /// Forces and closed conditions of every contact group.
@@ -158,7 +158,7 @@ fn with_friction(
     }
 }
 
-/// What was found: forces at the conditions, unknowns at the clusters, and how that went. Collective.
+/// The solution: forces at the conditions, unknowns at the clusters, and how that went. Collective.
 fn conclude(
     problem: &TreeProblem<'_>,
     found: Found,
@@ -218,7 +218,7 @@ fn conditions(
     limits.forces(&forces).into_iter().zip(closed).collect()
 }
 
-/// What is said where a linear problem has no finite solution.
+/// The message where a linear problem has no finite solution.
 fn not_finite(sweep: usize) -> SweepStatus {
     SweepStatus::NotConverged(format!(
         "newton stopped after {sweep} sweeps: with the contacts that are closed then, forces and displacements aren't \

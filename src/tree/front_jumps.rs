@@ -26,7 +26,7 @@ pub(super) struct FrontJumps {
     pub open: Vec<bool>,
     /// The closed rows that say more than the closed jumps.
     equalities: ActiveEqualities,
-    /// What others share with closed rows that say no more.
+    /// The shares of other jumps in closed rows that follow from independent ones.
     sharing: ForceSharing,
 }
 
@@ -105,7 +105,7 @@ impl FrontJumps {
             .collect()
     }
 
-    /// What given forces on open limits are on every jump (N/m).
+    /// The forces on every jump of given ones on open limits (N/m).
     fn given(&self, of_limits: &[f64]) -> Vec<f64> {
         let m = self.open.len() - self.rows.len();
         let is_open = |(force, open): (&f64, &bool)| if *open { *force } else { 0.0 };

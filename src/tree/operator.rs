@@ -17,9 +17,9 @@ use crate::tree::solution::ActiveSetSolution;
 use crate::tree::update::LOOSE;
 use crate::vector::between;
 
-/// What is none beside the largest force or displacement.
+/// Round-off, relative to the largest force or displacement.
 pub(super) const ROUND_OFF: f64 = 1e-12;
-/// What may be missed where directions of slip turn, relative to the scales of forces, for the next step to be exact.
+/// Residual that is accepted where directions of slip turn, relative to the scales of forces, for the next step to be exact.
 const NEARLY: f64 = 1e-5;
 /// Share of the stiffness at a point, times the displacements, in the scale of forces: their round-off is relative to it.
 const STIFFNESS_SHARE: f64 = 1e-3;

@@ -14,7 +14,7 @@ use crate::tree::fronts::ActiveSetFronts;
 
 /// The contact problem of a load step on this rank.
 pub(super) struct TreeProblem<'a> {
-    /// What the run works on.
+    /// The context of the run.
     pub context: &'a Context<'a>,
     /// The limits of every contact group.
     pub limits: &'a OnGroups<Limits>,

@@ -72,10 +72,10 @@ pub fn fix(
     Ok(true)
 }
 
-/// What a fixed active set is solved for with.
+/// The loads and laws that a fixed active set is solved for with.
 #[derive(Clone, Copy)]
 pub struct SlipProblem<'a> {
-    /// What the run works on.
+    /// The context of the run.
     pub context: &'a Context<'a>,
     /// Which jumps are open, by contact group of this rank; those that slip are unless they are held.
     pub open: &'a OnGroups<Vec<bool>>,
@@ -193,7 +193,7 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// What the forces of a solution miss of the laws, where `slip` tells the slip of a jump of a group.
+    /// The residual of the laws at the forces of a solution, where `slip` tells the slip of a jump of a group.
     fn missed(
         &self,
         solution: &ActiveSetSolution,

@@ -17,7 +17,7 @@ use crate::vector::{axpy, dot};
 /// The condensed loads of the fronts of this rank, and the values of their closed jumps.
 type CondensedLoads = OnTreeNodes<(CondensedLoad, Vec<f64>)>;
 
-/// What a load does where the active set is fixed, on this rank.
+/// The answer to a load where the active set is fixed, on this rank.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveSetSolution {
     /// The jumps and forces of every contact group; no force where open.

@@ -76,9 +76,9 @@ pub(super) struct Pair {
 /// The nodes of a slave that `ADJUST` moves.
 #[derive(Clone, Copy)]
 pub(super) enum Adjust {
-    /// Those that are no farther from the master, and all that overlap it.
+    /// The slave nodes that are no farther from the master, and all that overlap it.
     Within(f64),
-    /// Those of a set.
+    /// The nodes of a set.
     Set,
 }
 
@@ -378,7 +378,7 @@ impl Interaction {
     }
 }
 
-/// What `ADJUST` says, a distance or a set of nodes.
+/// The value of `ADJUST`, a distance or a set of nodes.
 fn adjust(places: &Places, block: &Block) -> Result<Option<Adjust>, InputError> {
     let source = places.source;
     let Some(item) = block.parameter("ADJUST") else {

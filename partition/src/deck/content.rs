@@ -38,7 +38,7 @@ pub(super) struct Content {
     pub(super) contacts: Contacts,
     pub(super) ties: Ties,
     equations: Equations,
-    /// What equations and supports leave that isn't a prescribed displacement.
+    /// The terms that equations and supports leave beside prescribed displacements.
     pub(super) conditions: Vec<Condition>,
     pub(super) couplings: Couplings,
     pub(super) springs: Springs,
@@ -46,7 +46,7 @@ pub(super) struct Content {
     pub(super) sectors: Sectors,
     pub(super) prints: Requests,
     pub(super) steps: Steps,
-    /// What comes and goes.
+    /// The sets that come and go.
     pub(super) changes: Changes,
     /// The first step that asks for large displacements.
     pub(super) nlgeom: Option<LinePlace>,

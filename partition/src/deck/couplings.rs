@@ -20,7 +20,7 @@ const OF_RIGID_BODIES: [(&str, Of); 4] = [
 
 /// The nodes of a coupling.
 enum Coupled {
-    /// Those of a surface, by name in capitals.
+    /// The nodes of a surface, by name in capitals.
     Surface(String),
     Nodes(Vec<u32>),
 }

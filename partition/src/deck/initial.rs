@@ -12,7 +12,7 @@ use crate::scene::material::PlaneState;
 /// A stress xx, yy, zz, xy, xz, yz.
 type Stress = [f64; 6];
 
-/// What is there before anything acts.
+/// Stresses and temperatures before anything acts.
 #[derive(Default)]
 pub(super) struct Initial {
     /// Temperatures of nodes.

@@ -16,7 +16,7 @@ struct Change {
     comes: bool,
 }
 
-/// What comes or goes.
+/// A set that comes or goes.
 enum Changed {
     /// A pair, by its place among all.
     Pair(usize),

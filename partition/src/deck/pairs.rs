@@ -72,7 +72,7 @@ impl Content {
 }
 
 impl Pair {
-    /// What its contact is called, where another one isn't.
+    /// The name of its contact, where another one hasn't got it.
     pub(super) fn plain_name(&self) -> String {
         format!("{} on {}", self.slave, self.master)
     }

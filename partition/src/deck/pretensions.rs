@@ -25,7 +25,7 @@ struct Section {
 #[derive(Default)]
 pub(super) struct Pretensions(Vec<Section>);
 
-/// What stands at the node in a step.
+/// The load or displacement of the node in a step.
 #[derive(Clone, Copy, PartialEq)]
 enum Given {
     Force(f64),
@@ -139,7 +139,7 @@ impl Pretensions {
 }
 
 impl Section {
-    /// What stands at its node in every step.
+    /// The load or displacement of its node in every step.
     fn given(
         &self,
         groups: &Groups,

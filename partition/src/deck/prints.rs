@@ -10,7 +10,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Of, Source};
 use crate::name;
 
-/// What can be printed of nodes and of elements.
+/// The quantities that can be printed of nodes and of elements.
 const OF_NODES: [&str; 2] = ["U", "RF"];
 const OF_ELEMENTS: [&str; 3] = ["S", "E", "EVOL"];
 
@@ -67,7 +67,7 @@ pub(super) struct Requests {
     elements: BTreeMap<String, Vec<u32>>,
     /// Whether some of those of nodes, and of elements, are asked for along local axes.
     has_local: [bool; 2],
-    /// What isn't printed, in words.
+    /// The quantities that aren't printed, in words.
     pub(super) left_out: BTreeSet<String>,
 }
 

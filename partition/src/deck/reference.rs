@@ -24,7 +24,7 @@ pub(super) struct Reference {
     pub(super) coupled: [bool; FREEDOMS],
 }
 
-/// What acts on a reference node at the end of a step, and what is prescribed there.
+/// The loads on a reference node at the end of a step, and the displacements that are prescribed there.
 #[derive(Clone, Default)]
 pub(super) struct AtReference {
     pub(super) load: [f64; FREEDOMS],
@@ -57,7 +57,7 @@ impl Reference {
 }
 
 impl AtReference {
-    /// Those of all reference nodes, from what acts and what is prescribed by node and component.
+    /// The states of all reference nodes, from loads and prescribed displacements by node and component.
     pub(super) fn all(
         loads: Vec<(NodeAxis, f64)>,
         held: Vec<(NodeAxis, f64)>,

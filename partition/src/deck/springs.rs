@@ -35,7 +35,7 @@ struct Elements {
     ends: Vec<(i64, Vec<u32>)>,
 }
 
-/// What a set of elements exerts.
+/// The springs of a set of elements.
 struct Property {
     place: LinePlace,
     /// By name in capitals.

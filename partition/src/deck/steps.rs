@@ -22,7 +22,7 @@ pub(super) struct LoadStep {
     /// Time since the deck's beginning.
     pub(super) time: f64,
     pub(super) supports: Held,
-    /// What is prescribed along local axes that are none of the scene.
+    /// The displacements prescribed along local axes that are none of the scene.
     pub(super) turned: BTreeMap<NodeAxis, f64>,
     pub(super) forces: BTreeMap<u32, [f64; 3]>,
     pub(super) faces: BTreeMap<(u32, usize), f64>,
@@ -30,7 +30,7 @@ pub(super) struct LoadStep {
     pub(super) tractions: BTreeMap<(String, usize), f64>,
     pub(super) bodies: BTreeMap<usize, f64>,
     pub(super) temperatures: BTreeMap<u32, f64>,
-    /// What acts on reference nodes.
+    /// The loads on reference nodes.
     pub(super) references: BTreeMap<u32, AtReference>,
 }
 

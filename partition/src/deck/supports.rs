@@ -34,7 +34,7 @@ const REFUSED: [&str; 6] = [
 const SPACE: usize = 3;
 const ROTATIONS: i64 = 6;
 
-/// What isn't needed of a support.
+/// The part of a support that isn't needed.
 const NO_ROTATIONS: &str = "*BOUNDARY (degrees of freedom 4 to 6, which nodes of solids haven't)";
 
 impl Loads {

@@ -33,7 +33,7 @@ pub(super) enum Auxiliary {
 pub(super) type AuxiliaryNodes = BTreeMap<u32, Vec<(usize, Auxiliary)>>;
 
 impl Auxiliary {
-    /// Those of a point.
+    /// The auxiliary nodes that a point has.
     fn of<N: Copy>(point: &ContactPoint<N>) -> impl Iterator<Item = Self> + use<N> {
         let all = [
             (!point.motion.is_empty(), Self::Moving),

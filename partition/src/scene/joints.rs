@@ -11,7 +11,7 @@ use super::step::LoadStep;
 use super::{Scene, suggest};
 
 impl Pretension {
-    /// What is given in every load step, or at once where there is none.
+    /// The tightening in every load step, or the one that is given where there is none.
     pub fn in_steps(&self, steps: &[LoadStep]) -> Vec<Tightening> {
         if steps.is_empty() {
             return vec![self.own];

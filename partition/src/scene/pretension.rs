@@ -16,11 +16,11 @@ pub struct Pretension {
     pub on: Names,
     /// The direction along which it is tightened; the mean normal of the cut where it isn't given.
     pub direction: Option<ConstantVector>,
-    /// What is given, where no step says otherwise.
+    /// The force or shortening, where no step says otherwise.
     pub own: Tightening,
 }
 
-/// What is given of a bolt.
+/// The force or shortening of a bolt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tightening {
     /// The force across the cut (N).
@@ -31,7 +31,7 @@ pub enum Tightening {
     Locked(f64),
 }
 
-/// What a step says of a bolt.
+/// A bolt in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "StepKeys")]
 pub enum PretensionChange {

@@ -44,7 +44,7 @@ pub struct LoadStep {
     /// Loads and prescribed motions of the reference points of the couplings of these names, where they are given here in
     /// place of what the scene says.
     pub coupling: BTreeMap<String, CouplingLoads>,
-    /// What is given of the pretensions of these names from here on.
+    /// The pretensions of these names from here on.
     pub pretension: BTreeMap<String, PretensionChange>,
     /// In place of all tractions of the scene.
     #[serde(deserialize_with = "list")]

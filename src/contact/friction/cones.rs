@@ -16,8 +16,8 @@ use crate::contact::open_factor::scale_of;
 use crate::contact::status::FixedStatus;
 use crate::contact::tangent::Beside;
 
-/// What may be missed, relative to the terms of forces, where steps make it no less: round-off of points whose own stiffness is
-/// far above that of others. The certificate has the last word.
+/// Residual that is accepted, relative to the terms of forces, where steps make it no less: round-off of points whose own
+/// stiffness is far above that of others. The certificate has the last word.
 const ACCEPTABLE: f64 = 1e-10;
 
 /// A dense problem whose points have cones.

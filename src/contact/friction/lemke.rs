@@ -103,7 +103,7 @@ impl FrictionProblem<'_> {
         None
     }
 
-    /// What a limit's jump is multiplied by in the scale of energies, and its force divided.
+    /// The factors of all limits' jumps in the scale of energies; forces are divided by them.
     fn scales(&self) -> Vec<f64> {
         let gap = &self.contact;
         let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();

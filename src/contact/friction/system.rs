@@ -23,7 +23,7 @@ pub(super) struct System {
     pub a: Mat<f64>,
     /// Which limits the unknowns are of: jumps that aren't closed, then rows that are closed or slip.
     pub unknowns: Vec<usize>,
-    /// What an unknown is in that scale: jump or force times this.
+    /// The factors of unknowns, jumps and forces, in that scale.
     pub scale: Vec<f64>,
     /// A spring on every jump, and what gives way in every closed row, where A is singular.
     pub springs: Vec<f64>,

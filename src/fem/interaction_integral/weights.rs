@@ -40,7 +40,8 @@ impl TipDisc<'_> {
         [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1]]
     }
 
-    /// What is linear in the displacements of a cell's nodes, from which the amplitudes of its modes follow, in the frame of the tip.
+    /// The terms that are linear in the displacements of a cell's nodes, from which the amplitudes of its modes follow, in the
+    /// frame of the tip.
     fn without_modes(&self, cell: &LocalCell, found: &OfCell) -> Vec<f64> {
         let (nodes, modes) = found.slopes.split_at(cell.nodes.len());
         let (mut of_nodes, modes) = (nodes.concat(), modes.concat());

@@ -72,7 +72,7 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
     lines
 }
 
-/// What bolts and crack tips have.
+/// The lines of bolts and crack tips.
 fn places(resultants: &Resultants, units: Units, dim: usize) -> Vec<String> {
     let mut lines = bolts(&resultants.pretensions, units, dim);
     lines.extend(tips(&resultants.crack_tips, units));

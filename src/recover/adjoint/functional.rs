@@ -22,7 +22,7 @@ use crate::vector::{axpy, dot};
 pub struct MaterialForces(OnBlocks<BTreeMap<usize, Vec<f64>>>);
 
 impl MaterialForces {
-    /// Those of the blocks of this rank.
+    /// The forces of the blocks of this rank.
     pub fn new(context: &Context<'_>, solution: &DiscreteSolution) -> Self {
         let mut all = BTreeMap::new();
         let mut k = ElementMatrix::default();

@@ -32,7 +32,7 @@ pub struct SlippingPoint {
 }
 
 impl SlippingPoints {
-    /// Those of a group with a solution: what is at its bound in the direction of its force.
+    /// The slipping points of a group with a solution, whose forces are at their bounds, in these directions.
     pub fn new(group: &ContactGroup, solution: &GroupSolution) -> Self {
         let mut all = Vec::new();
         for law in group.point_laws() {

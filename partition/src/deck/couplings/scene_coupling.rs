@@ -174,7 +174,7 @@ impl Coupling {
             .collect()
     }
 
-    /// What acts on its reference node in every step, per thickness of plane sections; of distributing ones along their own axes.
+    /// The loads on its reference node in every step, per thickness of plane sections; of distributing ones along their own axes.
     fn acting(
         &self,
         groups: &Groups,

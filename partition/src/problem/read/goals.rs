@@ -124,7 +124,7 @@ impl ShareSlices {
         })
     }
 
-    /// Those of a subdomain of so many `nodes`, in space of `dim` dimensions.
+    /// The rows of a subdomain of so many `nodes`, in space of `dim` dimensions.
     pub fn take(
         &self,
         contents: &Contents,

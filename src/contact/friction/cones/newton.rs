@@ -17,9 +17,9 @@ use crate::vector::{between, dot, largest};
 const STEPS: usize = 40;
 /// The same between two changes of the viscosity.
 const DAMPED_STEPS: usize = 15;
-/// What may be missed of the law, relative to what acts.
+/// Residual of the law that is accepted, relative to the forces that act.
 const LAW: f64 = 1e-9;
-/// What is missed that can't be less.
+/// Round-off of the residual.
 const ROUND_OFF: f64 = 1e-15;
 /// Force, relative to its terms, up to which a limit keeps its status.
 const STAYS: f64 = 1e-15;
@@ -28,7 +28,7 @@ const VISCOSITIES: [f64; 3] = [0.1, 1e-4, 10.0];
 /// Part of the way before that isn't less, and how often that may be.
 const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
-/// What resists a motion relative to springs, that is round-off: nothing does.
+/// Resistance to a motion, relative to that of springs, that is round-off.
 const NO_RESISTANCE: f64 = 1e-10;
 /// Work of loads along a motion that friction doesn't take, relative to the terms that it is a sum of, that is no round-off.
 const SURPLUS: f64 = 1e-9;

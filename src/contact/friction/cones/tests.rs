@@ -177,7 +177,7 @@ fn a_second_start_finds_other_solutions_in_space() {
     }
 }
 
-/// What opens where it sticks or slips under all of its cohesion, and penetrates without any.
+/// A contact that opens where it sticks or slips under all of its cohesion, and penetrates without any.
 #[test]
 fn a_contact_about_to_open_slips_under_part_of_its_cohesion_in_any_direction() {
     let bound = ForceBound {

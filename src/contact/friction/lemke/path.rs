@@ -26,14 +26,14 @@ const YIELD: f64 = 1e-8;
 /// Stiffness of springs on all jumps, for motions that nothing resists.
 const SPRING: f64 = 1e-10;
 
-/// What is 0 at a limit or a point, or may not be negative there.
+/// A quantity that is 0 at a limit or a point, or may not be negative there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
     /// The gap of a limit, or its way back to where it sticks.
     Way(usize),
     /// The normal force of a limit, with what θ adds.
     Force(usize),
-    /// What a tangential force lacks of its bound along the normal of a side; the steep one of two bounds or not.
+    /// The missing part of the bound of a tangential force along the normal of a side; the steep one of two bounds or not.
     Bound {
         point: usize,
         side: usize,
@@ -65,12 +65,12 @@ pub(super) struct Path {
     at_start: Vec<f64>,
     /// Number of independent jumps.
     independent: usize,
-    /// What is 0: one for a normal limit, as many for a point as it has tangents.
+    /// The quantities that are 0: one for a normal limit, as many for a point as it has tangents.
     zero: Vec<Quantity>,
     bounds: Vec<f64>,
-    /// What jumps are multiplied by in that scale.
+    /// The factors of jumps in that scale.
     scale: Vec<f64>,
-    /// What θ adds to normal forces.
+    /// The parts of normal forces that are in proportion to θ.
     added: Vec<f64>,
     points: Vec<FrictionPolygon>,
     /// The limits that aren't tangential.
@@ -289,7 +289,7 @@ impl Path {
         polygon.only_closed && polygon.normal.is_some_and(|n| self.is_open(n))
     }
 
-    /// What may not be negative.
+    /// The quantities that may not be negative.
     fn bounded(&self) -> Vec<Quantity> {
         let of_normal = |&i: &usize| match self.is_open(i) {
             true => Quantity::Way(i),

@@ -33,13 +33,13 @@ pub(super) struct FrictionPolygon {
     pub normal: Option<usize>,
     /// The limits of its tangential jumps.
     pub tangents: [Option<usize>; 2],
-    /// What forces of both limits are multiplied by in that scale, and slips divided.
+    /// The factors of the forces of both limits in that scale; slips are divided by them.
     pub weights: [f64; 2],
     /// The coefficient of friction.
     pub coefficient: f64,
     /// The bound without normal force.
     pub cohesion: f64,
-    /// What θ adds to the bound.
+    /// The part of the bound that is in proportion to θ.
     pub added: f64,
     /// How the bound falls to 0 where it does before the contact opens.
     pub steep: Option<f64>,
@@ -61,12 +61,12 @@ pub(super) struct Polygons {
     /// Angle between sides, near these.
     angle: f64,
     line: Rc<[[f64; 2]]>,
-    /// Those with equal sides in space.
+    /// Normals of equal sides in space.
     equal: Rc<[[f64; 2]]>,
 }
 
 impl Polygons {
-    /// Those with which an attempt begins.
+    /// The polygons with which an attempt begins.
     pub(super) fn new(attempt: usize) -> Self {
         let angle = TAU / SIDES[attempt] as f64;
         let equal = (0..SIDES[attempt]).map(|side| unit((side as f64 + TURNED[attempt]) * angle));

@@ -48,7 +48,7 @@ impl Responses {
         }
     }
 
-    /// What column i is made of: an own one, and the pivots since.
+    /// The origin of column i: an own one, and the pivots since.
     fn origin(&self, i: usize) -> (&[f64], usize) {
         match self.pivots.iter().rposition(|one| one.limit == i) {
             Some(k) => (&self.pivots[k].column, k + 1),
@@ -67,7 +67,7 @@ impl Responses {
         column
     }
 
-    /// What this sum is for a unit of the i-th quantity.
+    /// The value of this sum for a unit of the i-th quantity.
     pub(super) fn share(&self, i: usize, terms: &Terms) -> f64 {
         sum(terms, &self.column(i))
     }

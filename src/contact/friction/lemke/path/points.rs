@@ -19,7 +19,7 @@ impl Path {
         }
     }
 
-    /// What may not be negative at a point.
+    /// The quantities that may not be negative at a point.
     pub(super) fn bounded_at(&self, point: usize) -> Vec<Quantity> {
         let polygon = &self.points[point];
         let mut bounded = Vec::new();
@@ -69,7 +69,7 @@ impl Path {
         }
     }
 
-    /// What vanishes with a normal force slips as it opens, and from where it closes towards its slip.
+    /// Friction that vanishes with a normal force: the point slips as it opens, and from where it closes towards its slip.
     pub(super) fn turn(&mut self, theta: f64, point: usize, quantity: Quantity) {
         let polygon = self.points[point].clone();
         let sides = match (quantity, self.place(point)) {
