@@ -25,10 +25,8 @@ use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
-/// Attempts in space, where each goes on with finer polygons.
-const IN_SPACE: usize = 2;
-/// How often polygons become finer.
-const FINER: usize = 3;
+/// How often polygons become finer in each attempt: where they have few sides at first.
+const FINER: [usize; ATTEMPTS] = [3, 0, 3, 0];
 /// Limits up to which the path is followed: its matrix is dense.
 const MOST_LIMITS: usize = 3000;
 /// Pivots between which its round-off may grow, but for that of large problems.
@@ -78,18 +76,14 @@ impl FrictionProblem<'_> {
     }
 
     /// Offers the ends of paths, with the pivots that each took, until one of them is taken as the beginning of a solution:
-    /// in space every attempt goes on with polygons that are finer where points slip in the path before.
+    /// in space some attempts go on with polygons that are finer where points slip in the path before.
     pub(super) fn try_paths<T>(
         &self,
         mut take: impl FnMut(Option<&End>, usize) -> Option<T>,
     ) -> Option<T> {
-        let in_space = self
-            .tangents
-            .iter()
-            .any(|tangent| matches!(tangent.of_point(), Some(([_, Some(_)], _))));
-        for attempt in 0..if in_space { IN_SPACE } else { ATTEMPTS } {
+        for attempt in 0..ATTEMPTS {
             let mut polygons = Polygons::new(attempt);
-            for _ in 0..=FINER {
+            for _ in 0..=FINER[attempt] {
                 let (end, pivots) = self.follow(&polygons);
                 if let Some(taken) = take(end.as_ref(), pivots) {
                     return Some(taken);

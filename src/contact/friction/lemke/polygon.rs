@@ -15,9 +15,9 @@ pub(super) const ATTEMPTS: usize = 4;
 /// where it is steep the path ends at the solution, but has further to go.
 const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-6, 1e-8, 1e-10];
 /// Sides in space at first.
-const SIDES: [usize; ATTEMPTS] = [16, 24, 48, 96];
+const SIDES: [usize; ATTEMPTS] = [16, 96, 24, 48];
 /// Part of the angle of a side by which the first is turned: no slip along an axis is along a normal.
-const TURNED: [f64; ATTEMPTS] = [0.27, 0.63, 0.21, 0.41];
+const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
 /// Sides on either hand of a direction near which a polygon is fine, and those of the rest of it.
 const BESIDE: usize = 6;
 const REST: usize = 14;
