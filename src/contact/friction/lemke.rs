@@ -81,9 +81,9 @@ impl FrictionProblem<'_> {
         &self,
         mut take: impl FnMut(Option<&End>, usize) -> Option<T>,
     ) -> Option<T> {
-        for attempt in 0..ATTEMPTS {
+        for (attempt, finer) in FINER.into_iter().enumerate() {
             let mut polygons = Polygons::new(attempt);
-            for _ in 0..=FINER[attempt] {
+            for _ in 0..=finer {
                 let (end, pivots) = self.follow(&polygons);
                 if let Some(taken) = take(end.as_ref(), pivots) {
                     return Some(taken);
