@@ -38,8 +38,32 @@ pub struct Statuses {
     pub closed: Vec<bool>,
     /// The points with friction.
     pub points: Vec<PointStatus>,
-    /// Which points have been open since the search began.
-    pub opened: Vec<bool>,
+    /// The past of every point in the search.
+    pub past: Vec<Past>,
+}
+
+/// The past of a point whose cohesion vanishes as it opens.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Past {
+    /// Never open since the search began.
+    #[default]
+    Closed,
+    /// Open once: where it would open again it parts first.
+    Opened,
+    /// Beyond its cohesion as it parted, and not open since: where it parts and is beyond it again, neither sticking nor
+    /// slipping is right, and it opens.
+    Exceeded,
+}
+
+impl Past {
+    /// The past after a step in which a point had the first status and should have the second.
+    fn after(self, was: PointStatus, right: PointStatus) -> Self {
+        match (was, right) {
+            (_, PointStatus::Open) => Self::Opened,
+            (PointStatus::Parts { .. }, PointStatus::Slips { .. }) => Self::Exceeded,
+            _ => self,
+        }
+    }
 }
 
 /// Jumps and forces of an iterate.
@@ -60,6 +84,8 @@ pub struct LawResidual {
     pub wrong: Vec<usize>,
     /// Σ x²/r of what every limit misses of its law, as a force x.
     pub squares: f64,
+    /// Σ λ²/r of the forces.
+    pub forces: f64,
     /// The largest of what they miss, relative to the scales of forces, where these are known.
     pub missed: f64,
 }
@@ -146,7 +172,7 @@ impl<'a> ContactLaws<'a> {
             PointStatus::Slips { .. } | PointStatus::Sticks
                 if now.points[k] == PointStatus::Open =>
             {
-                (before.opened[k] && way + size > 0.0).then(parts)
+                (before.past[k] != Past::Closed && way + size > 0.0).then(parts)
             }
             PointStatus::Parts { direction, .. } if along(force, direction) < 0.0 || way == 0.0 => {
                 Some(PointStatus::Open)
@@ -154,7 +180,10 @@ impl<'a> ContactLaws<'a> {
             PointStatus::Parts { direction, .. } if along(slip, direction) < 0.0 => {
                 Some(PointStatus::Sticks)
             }
-            PointStatus::Parts { .. } if size > bound.cohesion => Some(point.status(&here, 0.0)),
+            PointStatus::Parts { .. } if size > bound.cohesion => match before.past[k] {
+                Past::Exceeded => Some(PointStatus::Open),
+                Past::Closed | Past::Opened => Some(point.status(&here, 0.0)),
+            },
             PointStatus::Parts { .. } => Some(parts()),
             _ => None,
         }
@@ -201,7 +230,7 @@ impl<'a> ContactLaws<'a> {
         Statuses {
             points: self.points.iter().map(of_point).collect(),
             closed,
-            opened: vec![false; self.points.len()],
+            past: vec![Past::Closed; self.points.len()],
         }
     }
 
@@ -253,7 +282,7 @@ impl<'a> ContactLaws<'a> {
         let mut statuses = Statuses {
             points: self.points.iter().enumerate().map(of_point).collect(),
             closed,
-            opened: Vec::new(),
+            past: Vec::new(),
         };
         if let Some((before, _)) = before {
             for (k, point) in self.points.iter().enumerate() {
@@ -264,19 +293,25 @@ impl<'a> ContactLaws<'a> {
                     statuses.points[k] = right;
                 }
             }
-            let open = statuses.points.iter().map(|s| *s == PointStatus::Open);
-            statuses.opened = open.zip(&before.opened).map(|(a, b)| a || *b).collect();
+            let points = before.points.iter().zip(&statuses.points);
+            let past = before.past.iter().zip(points);
+            statuses.past = past
+                .map(|(past, (&was, &right))| past.after(was, right))
+                .collect();
         }
         let missed = self.missed(at, &statuses);
-        let squares = missed.iter().zip(&self.stiffness);
-        let squares = squares.map(|(x, r)| x * x / r).sum::<f64>();
+        let squares = |forces: &[f64]| -> f64 {
+            let all = forces.iter().zip(&self.stiffness);
+            all.map(|(x, r)| x * x / r).sum()
+        };
         let relative = before.map(|(_, scales)| {
             let all = missed.iter().zip(scales).filter(|(x, _)| **x != 0.0);
             all.map(|(x, scale)| x.abs() / scale).fold(0.0, f64::max)
         });
         LawResidual {
             wrong: before.map_or_else(Vec::new, |(before, _)| self.wrong(before, &statuses)),
-            squares,
+            squares: squares(&missed),
+            forces: squares(&at.forces),
             missed: relative.unwrap_or(f64::INFINITY),
             statuses,
         }

@@ -12,7 +12,7 @@ use contact_dd_partition::id::{GroupId, OnGroups};
 use serde::{Deserialize, Serialize};
 
 use super::law::PointStatus;
-use super::laws::{ContactLaws, Iterate, LawResidual, Statuses};
+use super::laws::{ContactLaws, Iterate, LawResidual, Past, Statuses};
 use crate::vector::larger;
 
 /// Part of a step that is too small.
@@ -91,6 +91,8 @@ pub enum StepAccuracy {
 pub struct TotalResidual {
     /// Σ x²/r of what limits miss, then its square root.
     pub merit: f64,
+    /// Σ λ²/r of the forces, then its square root.
+    pub forces: f64,
     /// The largest, relative to the scales of forces.
     pub missed: f64,
     /// Number of closed normal jumps.
@@ -105,6 +107,7 @@ impl TotalResidual {
     /// The residual before the first step.
     const UNKNOWN: Self = Self {
         merit: f64::INFINITY,
+        forces: 0.0,
         missed: f64::INFINITY,
         active: 0,
         wrong: usize::MAX,
@@ -114,6 +117,7 @@ impl TotalResidual {
     /// Adds that of another group.
     pub fn include(&mut self, other: Self) {
         self.merit += other.merit;
+        self.forces += other.forces;
         self.missed = larger(self.missed, other.missed);
         self.active += other.active;
         self.wrong += other.wrong;
@@ -217,9 +221,9 @@ pub fn newton<O: ContactOperator>(
         least = least.min(total.merit);
         accuracy = operator.accuracy(&total);
         (missed, changed) = (total.missed, Some(total.wrong));
-        let opened: OnGroups<Vec<bool>> = look
+        let past: OnGroups<Vec<Past>> = look
             .iter()
-            .map(|(&g, of_group)| (g, of_group.statuses.opened.clone()))
+            .map(|(&g, of_group)| (g, of_group.statuses.past.clone()))
             .collect();
         for (&g, of_group) in laws.iter_mut().filter(|_| settings.softens) {
             of_group.soften(&statuses[&g], &look[&g].statuses);
@@ -228,9 +232,9 @@ pub fn newton<O: ContactOperator>(
         (at, merit, statuses) =
             part_of_way(operator, laws, (at, merit), target, (look, total), settings);
         operator.exchange(&at, &before, &mut statuses);
-        for (g, opened) in opened {
+        for (g, past) in past {
             if let Some(of_group) = statuses.get_mut(&g) {
-                of_group.opened = opened;
+                of_group.past = past;
             }
         }
     }
@@ -265,7 +269,7 @@ pub fn look<O: ContactOperator>(
     };
     let residuals = laws.iter().map(of_group).collect();
     let mut total = operator.total(&residuals);
-    if total.merit > settings.law * operator.acting() {
+    if total.merit > settings.law * (total.forces + operator.acting()) {
         total.missed = f64::INFINITY;
     }
     (residuals, total)
@@ -312,6 +316,7 @@ impl LawResidual {
         let parts = |status: &PointStatus| matches!(status, PointStatus::Parts { .. });
         TotalResidual {
             merit: self.squares,
+            forces: self.forces,
             missed: self.missed,
             active: closed.iter().filter(|closed| **closed).count(),
             wrong: self.wrong.len(),

@@ -182,6 +182,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         );
         comm.broadcast(&mut total);
         total.merit = total.merit.sqrt();
+        total.forces = total.forces.sqrt();
         total
     }
 

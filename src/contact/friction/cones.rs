@@ -20,11 +20,15 @@ use crate::contact::tangent::Beside;
 /// stiffness is far above that of others. The certificate has the last word.
 const ACCEPTABLE: f64 = 1e-10;
 
+/// Share of the terms that the forces which act are a sum of: more than their round-off, once it is multiplied by what Newton's
+/// method may miss of the laws.
+const OF_TERMS: f64 = 1e-5;
+
 /// A dense problem whose points have cones.
 struct FrictionCones<'a> {
     contact: ContactProblem<'a>,
     laws: ContactLaws<'a>,
-    /// The norm of energies of the forces that act before anything moves.
+    /// The norm of energies of the forces that act before anything moves, with what their own round-off may be.
     acting: f64,
 }
 
@@ -95,7 +99,7 @@ impl FrictionProblem<'_> {
         let state = Statuses {
             closed: fixed.iter().map(FixedStatus::is_closed).collect(),
             points: cones.laws.points.iter().map(act).collect(),
-            opened: Vec::new(),
+            past: Vec::new(),
         };
         let mut change = cones.step(&cones.start(), &state);
         for (force, fixed) in change.forces.iter_mut().zip(fixed) {
@@ -129,9 +133,14 @@ impl<'a> FrictionCones<'a> {
         let rows = contact.rows.iter().map(|row| 1.0 / compliance(row));
         let stiffness: Vec<f64> = (0..m).map(of_jump).chain(rows).collect();
         let laws = ContactLaws::new(contact.bounds, contact.rows, problem.tangents, stiffness);
-        let acting = |i: usize| contact.scale_of(i, &vec![0.0; m]).powi(2) / laws.stiffness[i];
+        let norm = |forces: &[f64]| -> f64 {
+            let all = forces.iter().zip(&laws.stiffness);
+            all.map(|(x, r)| x * x / r).sum::<f64>().sqrt()
+        };
+        let at_rest = vec![0.0; m];
+        let terms: Vec<f64> = (0..m).map(|i| contact.scale_of(i, &at_rest)).collect();
         Self {
-            acting: (0..m).map(acting).sum::<f64>().sqrt(),
+            acting: norm(contact.c) + OF_TERMS * norm(&terms),
             contact,
             laws,
         }

@@ -50,7 +50,7 @@ impl FrictionProblem<'_> {
         let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
         let (mut theta, mut way) = (f64::INFINITY, -1.0);
         let (mut entered, mut still) = (None, 0);
-        let often = (self.contact.bounds.len() / 4).max(MOST_UPDATES);
+        let often = (self.contact.bounds.len() / 2).max(MOST_UPDATES);
         for pivots in 0..most {
             if pivots % often == often - 1 {
                 path.refresh();

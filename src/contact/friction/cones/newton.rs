@@ -7,7 +7,7 @@ use contact_dd_partition::id::{GroupId, OnGroups};
 use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{FrictionProblem, Status};
-use crate::contact::laws::{Iterate, LawResidual, Statuses};
+use crate::contact::laws::{Iterate, LawResidual, Past, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, StepAccuracy, TotalResidual, newton,
 };
@@ -74,7 +74,7 @@ impl FrictionCones<'_> {
             // Where nothing resists, what slips both ways is between both there, and not just anywhere.
             let start = self.place(end.jumps.clone(), end.of_rows.clone());
             let mut state = self.laws.begin(&end.status, &start);
-            state.opened.fill(true);
+            state.past.fill(Past::Opened);
             let found = self.newton(&start, &state, STEPS);
             *steps += found.steps;
             found.converged().then_some(found)
@@ -272,6 +272,7 @@ impl ContactOperator for Dense<'_, '_> {
         let total = residuals[&ONLY].of_group();
         TotalResidual {
             merit: total.merit.sqrt(),
+            forces: total.forces.sqrt(),
             ..total
         }
     }

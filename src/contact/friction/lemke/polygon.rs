@@ -11,9 +11,9 @@ use crate::contact::tangent::TangentialLimit;
 
 /// Attempts, each of which goes another way.
 pub(super) const ATTEMPTS: usize = 4;
-/// Force, relative to the largest, below which a bound that vanishes with it falls to 0, one attempt after the other:
-/// where it is steep the path ends at the solution, but has further to go.
-const STEEP: [f64; ATTEMPTS] = [1e-6, 1e-6, 1e-8, 1e-10];
+/// Cohesion over the normal force below which a bound that vanishes with this falls to 0, one attempt after the other: where it
+/// is steep the path ends at the solution, but has further to go.
+const STEEP: [f64; ATTEMPTS] = [1e2, 1e4, 1e3, 1e6];
 /// Sides in space at first.
 const SIDES: [usize; ATTEMPTS] = [16, 96, 24, 48];
 /// Part of the angle of a side by which the first is turned: no slip along an axis is along a normal.
@@ -153,7 +153,7 @@ impl FrictionPolygon {
             coefficient,
             cohesion,
             added: if cohesion > 0.0 { added } else { 0.0 },
-            steep: falls.then(|| coefficient + cohesion / (STEEP[polygons.attempt] * unit)),
+            steep: falls.then(|| coefficient + STEEP[polygons.attempt]),
             only_closed: bound.only_closed,
             is_free: cohesion == 0.0 && coefficient == 0.0,
             normals: polygons.normals(point, tangents[1].is_some()),
