@@ -1,4 +1,4 @@
-//! Which of two sides carries the multipliers.
+//! Choice of the side that carries the multipliers.
 
 use super::super::sides::Sides;
 use super::carried::{Carried, carried};

@@ -1,4 +1,4 @@
-//! What of a deck isn't computed, by keyword and line, with what to do instead.
+//! Refusals of keywords, by line, with what to do instead.
 
 use super::{CUBES, MODEL, read, step};
 use crate::says::says;
