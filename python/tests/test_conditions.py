@@ -92,7 +92,7 @@ def test_springs_are_supports_of_their_own(scene, tmp_path):
     assert len(springs) > 3
     assert {tuple(map(tuple, np.abs(support.axes))) for support in springs} == {((0.0, 1.0),)}
     words = {entry.get_label() for entry in symbols.entries(conditions, 2)}
-    assert words == {"spring", "held along its axis", "load", "body force"}
+    assert words == {"spring", "roller, held along its axis", "load", "body force"}
 
 
 def test_pictures_have_few_symbols_and_none_without_the_problem(scene, tmp_path):

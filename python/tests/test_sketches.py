@@ -39,7 +39,7 @@ def test_every_case_has_a_sketch_on_its_page(sketches):
 
 def test_a_scene_is_drawn_with_its_contacts_and_supports(sketches):
     drawn = sketches.of_scene("plain")
-    assert set(drawn.named) == {"held along its axis", "load"}
+    assert set(drawn.named) == {"roller, held along its axis", "load"}
     [body] = drawn.axes.patches
     # A quarter of a plate with a hole: what the path encloses is what the cells do.
     x, y = body.get_path().vertices.T
