@@ -19,6 +19,17 @@ def of_plane(result):
     return conditions_of(result, np.unique(outline[outline >= 0]))
 
 
+def test_loads_far_from_a_small_contact_are_drawn_in_a_panel_of_all_bodies(scene, tmp_path):
+    result = Model.from_scene(scene("tunnel")).run(folder=tmp_path, progress=False)
+    loaded = result.points[of_plane(result).nodes, :2]
+    assert len(loaded) > 0
+    whole, around, part, _ = overview(Plane(result), 1.0).axes
+    for axes, has_loads in ((whole, True), (around, False), (part, False)):
+        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        assert ((loaded >= low) & (loaded <= high)).all() == has_loads
+    plt.close("all")
+
+
 @pytest.mark.parametrize("kind", NODES)
 def test_integrals_of_cells_are_exact(kind):
     nodes = np.array(NODES[kind], dtype=float)

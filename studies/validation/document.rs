@@ -79,7 +79,9 @@ fn curve(title: &str, ran: &[Vec<Measured>]) -> String {
         return String::new();
     }
     let anchor = anchor_of(title);
-    format!("![The first error over the degrees of freedom](figures/validation/{anchor}-errors.svg)\n\n")
+    format!(
+        "![The first error over the degrees of freedom](figures/validation/{anchor}-errors.svg)\n\n"
+    )
 }
 
 /// The anchor of a heading.
@@ -128,10 +130,7 @@ pub fn line(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
     let figures: Vec<String> = figures
         .map(|figure| format!("{} {}", figure.name, shown(figure.value)))
         .collect();
-    let kept = match faults.len() {
-        0 => format!("kept with all {} kinds of cells", ran.len()),
-        n => format!("{n} not kept"),
-    };
+    let kept = verdict(ran, faults);
     let anchor = anchor_of(case.title);
     format!(
         "| [{}](#{anchor}) | {}, {} | {} | {kept} |\n",
@@ -142,14 +141,23 @@ pub fn line(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
     )
 }
 
-/// A case with its table, and which gates it doesn't keep.
+/// Verdict on a case: are its errors and orders what they have to be?
+fn verdict(ran: &[Vec<Measured>], faults: &[String]) -> String {
+    match faults.len() {
+        0 => format!("as required, with all {} kinds of cells", ran.len()),
+        n => format!("{n} not as required"),
+    }
+}
+
+/// A case with its curve, verdict and table, and the gates that it doesn't keep.
 pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String {
     let mut text = format!(
-        "## {}\n\n{}{}\n{}",
+        "## {}\n\n{}{}\n{}Verdict: {}.\n\n",
         case.title,
         pictures(case.title),
         case.text,
-        curve(case.title, ran)
+        curve(case.title, ran),
+        verdict(ran, faults)
     );
     let finest: Vec<&Measured> = ran.iter().filter_map(|meshes| meshes.last()).collect();
     let figures = &finest[0].figures;
@@ -200,7 +208,7 @@ pub fn chapter(case: &Case, ran: &[Vec<Measured>], faults: &[String]) -> String 
     }
     text.push('\n');
     if !faults.is_empty() {
-        let _ = writeln!(text, "Not kept:\n\n- {}\n", faults.join("\n- "));
+        let _ = writeln!(text, "Not as required:\n\n- {}\n", faults.join("\n- "));
     }
     text
 }

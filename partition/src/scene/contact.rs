@@ -241,7 +241,7 @@ impl Keys {
         let has_tangential = |stiffness: &ContactStiffness| stiffness.tangential.is_some();
         if !sticks && self.stiffness.as_ref().is_some_and(has_tangential) {
             return Err(
-                "'tangential' is of what sticks; expected 'friction' or 'tresca' beside it".into(),
+                "'tangential' is the stiffness of sticking; expected 'friction' or 'tresca' beside it".into(),
             );
         }
         if self.motion.is_some() && self.obstacle.is_none() {
