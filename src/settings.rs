@@ -50,13 +50,13 @@ pub struct Settings {
     pub threads: u16,
     /// True if stresses are left out: neither recovered nor written.
     pub no_stress: bool,
-    /// True if to go on after the load steps that a stopped run finished.
+    /// True to go on after the load steps that a stopped run finished.
     pub restart: bool,
-    /// True if to look for another solution where there is friction.
+    /// True to look for another solution where there is friction.
     pub second_start: bool,
-    /// True if to validate the problem file and solve nothing.
+    /// True to validate the problem file and solve nothing.
     pub check: bool,
-    /// True if to print nothing but warnings and errors.
+    /// True to print nothing but warnings and errors.
     pub quiet: bool,
     /// Format of the log.
     pub log: LogFormat,
@@ -199,7 +199,7 @@ pub struct SweepSettings {
     pub max_sweeps: Option<usize>,
     /// θ of `picard`; `None` to find one.
     pub relaxation: Option<f64>,
-    /// True if to look for another solution where there is friction.
+    /// True to look for another solution where there is friction.
     pub second_start: bool,
 }
 
