@@ -1,5 +1,5 @@
-"""Pages of the book that aren't written by hand: the notebook, the reference of the Python package from its docstrings, and
-a page for each case of the validation.
+"""Pages of the book that aren't written by hand: the notebook, the reference of the Python package from its docstrings,
+and a page for each case of the validation.
 
     python3 docs/book_pages.py FOLDER     FOLDER is the root of a copy of the pages
 """

@@ -1,4 +1,4 @@
-"""Draws the first error of each case of the validation over the degrees of freedom; run it by scripts/validate.
+"""Draws the first error of each case of the validation over the dofs; run it by scripts/validate.
 
     validation.py ERRORS FOLDER     ERRORS is what studies wrote of all meshes
 """
@@ -11,17 +11,33 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 LINEAR = ("triangle3", "quad4", "tetrahedron4", "hexahedron8")
 MARKERS = {"triangle": "^", "quad": "s", "tetrahedron": "v", "hexahedron": "D"}
 # Errors below are round-off: patch tests, whose cases have no curve.
 ROUND_OFF = 1e-9
+# Axes over fewer decades have labels between powers of ten.
+DECADES = 1.5
 # Inches.
 SIZE = (4.2, 2.6)
 
 
 def is_linear(cells):
     return all(part.split(",")[0] in LINEAR for part in cells.split(" on "))
+
+
+def whole(value, _):
+    """A number of degrees of freedom."""
+    return f"{value / 1000:g}k" if value >= 1000 else f"{value:g}"
+
+
+def power(value, _):
+    """An error as the tables have it: 2e-4."""
+    if value >= 0.1:
+        return f"{value:.2g}"
+    return f"{value:.0e}".replace("e-0", "e-")
 
 
 def draw(case):
@@ -35,6 +51,11 @@ def draw(case):
             "mfc": "w" if cells.split(",")[0] in ("quad9", "hexahedron27") else None,
         }
         axes.loglog(kind["dofs"], kind["values"], ms=3.5, lw=0.9, label=cells, **style)
+    for axis, shown, limits in ((axes.xaxis, whole, axes.get_xlim()), (axes.yaxis, power, axes.get_ylim())):
+        subs = (1, 2, 5) if np.ptp(np.log10(limits)) < DECADES else (1,)
+        axis.set_major_locator(LogLocator(subs=subs))
+        axis.set_major_formatter(FuncFormatter(shown))
+        axis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("degrees of freedom")
     axes.set_ylabel(f"error: {case['kinds'][0]['figure']}")
     axes.grid(alpha=0.25, lw=0.4)
