@@ -1,4 +1,4 @@
-//! What the program's report says of its build.
+//! Build data of the program's report.
 
 use std::path::Path;
 use std::process::Command;
@@ -39,7 +39,7 @@ fn main() {
     }
 }
 
-/// What a program prints, in one line; `None` where it can't be run or fails.
+/// Output of a program, in one line; `None` where it can't be run or fails.
 fn said_by(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let said = String::from_utf8(output.stdout).ok()?;

@@ -1,4 +1,5 @@
-"""Pages of the book that aren't written by hand: the notebook, and the reference of the Python package from its docstrings.
+"""Pages of the book that aren't written by hand: the notebook, the reference of the Python package from its docstrings,
+and a page for each case of the validation.
 
     python3 docs/book_pages.py FOLDER     FOLDER is the root of a copy of the pages
 """
@@ -8,6 +9,7 @@ import base64
 import inspect
 import json
 import pathlib
+import re
 import sys
 
 PACKAGE = "python/contact_dd"
@@ -80,8 +82,34 @@ def reference(package, target):
     target.write_text("\n\n".join(parts) + "\n")
 
 
+def anchor_of(title):
+    """The anchor of a heading, which is the name of its page."""
+    return "".join(c for c in title.lower() if c.isalnum() or c in "-_ ").replace(" ", "-")
+
+
+def cases(root):
+    """Gives each case of the validation a page of its own; returns their lines of the summary."""
+    page, folder = root / "docs/validation.md", root / "docs/validation"
+    folder.mkdir()
+    head, overview, *chapters = re.split(r"^## ", page.read_text(), flags=re.MULTILINE)
+    lines = []
+    for chapter in chapters:
+        title, text = chapter.split("\n", 1)
+        # Pages of cases lie a folder deeper.
+        text = re.sub(r"\]\((?!https?:|#)", "](../", text)
+        (folder / f"{anchor_of(title)}.md").write_text(f"# {title}\n{text}")
+        lines.append(f"  - [{title}](docs/validation/{anchor_of(title)}.md)\n")
+    page.write_text(re.sub(r"\]\(#([^)]+)\)", r"](validation/\1.md)", f"{head}## {overview}"))
+    for other in root.rglob("*.md"):
+        text = other.read_text()
+        if "validation.md#" in text:
+            other.write_text(re.sub(r"validation\.md#([^)]+)\)", r"validation/\1.md)", text))
+    return "".join(lines)
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
+    of_cases = cases(root)
     notebook(root / "docs/tutorials/python.ipynb", root / NOTEBOOK)
     reference(root / PACKAGE, root / REFERENCE)
     # Links to the notebook lead to its page, and both have their places in the book.
@@ -91,6 +119,7 @@ def main():
     summary = root / "SUMMARY.md"
     text = summary.read_text()
     text = text.replace("- [Python](docs/python.md)\n", f"- [Python](docs/python.md)\n- [Python reference]({REFERENCE})\n")
+    text = text.replace("- [Validation](docs/validation.md)\n", f"- [Validation](docs/validation.md)\n{of_cases}")
     start = "- [Run your deck]"
     summary.write_text(text.replace(start, f"- [A model in Python, a notebook]({NOTEBOOK})\n{start}"))
 

@@ -271,7 +271,7 @@ impl Bddc {
         true
     }
 
-    /// Whether the preconditioner can be made better if it is too bad.
+    /// True if the preconditioner can be made better if it is too bad.
     pub fn is_judged(&self) -> bool {
         matches!(
             self.level,
@@ -290,12 +290,12 @@ impl Bddc {
         pivots.fold(self.coarse_pivot(), f64::min)
     }
 
-    /// Whether S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
+    /// True if S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
     pub fn is_stale(&self) -> bool {
         self.stale.values().contains(&true)
     }
 
-    /// Which conditions of contact group g of this rank, between clusters, are open.
+    /// Open conditions of contact group g of this rank, between clusters.
     pub fn open(&self, g: GroupId) -> Option<&Vec<bool>> {
         self.groups.get(&g).map(|group| &group.open)
     }

@@ -68,7 +68,7 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Whether every check is a number.
+    /// True if every check is a number.
     pub fn is_a_number(&self) -> bool {
         let checks = [
             self.equilibrium,

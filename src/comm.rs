@@ -66,12 +66,12 @@ impl Comm {
         uname().nodename().to_string_lossy().into_owned()
     }
 
-    /// Whether this rank is the root.
+    /// True if this rank is the root.
     pub fn is_root(&self) -> bool {
         self.rank() == ROOT
     }
 
-    /// Whether messages go through MPI, which a single rank doesn't need.
+    /// True if messages go through MPI, which a single rank doesn't need.
     pub fn has_mpi(&self) -> bool {
         self.world.is_some()
     }
@@ -83,7 +83,7 @@ impl Comm {
 
     /// Makes the failure of the lowest failing rank the result of all. Collective.
     ///
-    /// Its message ends with the rank and the phase where others have no failure.
+    /// The failure that all ranks agree on; its message ends with the rank and the phase where others have no failure.
     ///
     /// # Errors
     /// The failure that the ranks agreed on.
@@ -111,12 +111,12 @@ impl Comm {
         Err(failure)
     }
 
-    /// Whether any rank was asked to stop. Collective.
+    /// True if any rank was asked to stop. Collective.
     pub fn is_any_asked_to_stop(&self) -> bool {
         self.is_any(is_asked_to_stop())
     }
 
-    /// Whether it is so on any rank. Collective.
+    /// True if it is so on any rank. Collective.
     pub fn is_any(&self, mine: bool) -> bool {
         self.all_reduce(i32::from(mine), SystemOperation::max()) != 0
     }

@@ -114,8 +114,8 @@ fn fixing_dofs_of(number: BlockId, all: &[FixingDof]) -> Vec<(u32, usize)> {
     own.map(|dof| (dof.node, dof.component as usize)).collect()
 }
 
-/// Whether what holds the boundary of a block holds it wholly: its cells hang together across facets, and no rigid motion
-/// leaves its nodes on Γ, its supports and its `fixing_dofs` where they are.
+/// True if what holds the boundary of a block holds it wholly: its cells hang together across facets, and no rigid
+/// motion leaves its nodes on Γ, its supports and its `fixing_dofs` where they are.
 fn is_held(block: &Block, fixing_dofs: &[(u32, usize)]) -> bool {
     let mesh = Mesh {
         dim: block.dim,

@@ -134,7 +134,7 @@ impl Plan {
         nodes.iter().map(|&v| self.node_owners[v]).collect()
     }
 
-    /// Whether fixed active sets are merged no further than to node v of the hierarchy.
+    /// True if fixed active sets are merged no further than to node v of the hierarchy.
     pub fn is_merge_root(&self, v: TreeNodeId) -> bool {
         self.merge_roots.values().binary_search(&v).is_ok()
     }
@@ -144,7 +144,7 @@ impl Plan {
         self.tree.nodes[v].parent.filter(|_| !self.is_merge_root(v))
     }
 
-    /// Whether fixed active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
+    /// True if fixed active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
     pub fn has_one_cluster(&self) -> bool {
         (self.merge_roots.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
     }
@@ -171,7 +171,7 @@ impl Plan {
         }
     }
 
-    /// Whether node v of the hierarchy is above the last ones that fixed active sets are merged to.
+    /// True if node v of the hierarchy is above the last ones that fixed active sets are merged to.
     pub fn is_above_merge_roots(&self, v: TreeNodeId) -> bool {
         let mut above = Some(v);
         while let Some(v) = above {
@@ -201,8 +201,8 @@ impl Plan {
         at.ok().map(GroupId::new)
     }
 
-    /// Whether node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact
-    /// points lie between several parts of the scene. Where it has many conditions their problem is solved in the cluster
+    /// True if node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact points
+    /// lie between several parts of the scene. Where it has many conditions their problem is solved in the cluster
     /// alone, and not once more at the root.
     pub fn leaves_its_nodes(&self, v: TreeNodeId) -> bool {
         let node = &self.tree.nodes[v];

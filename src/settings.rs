@@ -48,15 +48,15 @@ pub struct Settings {
     pub interface: Option<InterfaceMethod>,
     /// Threads of each rank.
     pub threads: u16,
-    /// Whether stresses are left out: neither recovered nor written.
+    /// True if stresses are left out: neither recovered nor written.
     pub no_stress: bool,
-    /// Whether to go on after the load steps that a stopped run finished.
+    /// True to go on after the load steps that a stopped run finished.
     pub restart: bool,
-    /// Whether to look for another solution where there is friction.
+    /// True to look for another solution where there is friction.
     pub second_start: bool,
-    /// Whether to validate the problem file and solve nothing.
+    /// True to validate the problem file and solve nothing.
     pub check: bool,
-    /// Whether to print nothing but warnings and errors.
+    /// True to print nothing but warnings and errors.
     pub quiet: bool,
     /// Format of the log.
     pub log: LogFormat,
@@ -199,7 +199,7 @@ pub struct SweepSettings {
     pub max_sweeps: Option<usize>,
     /// θ of `picard`; `None` to find one.
     pub relaxation: Option<f64>,
-    /// Whether to look for another solution where there is friction.
+    /// True to look for another solution where there is friction.
     pub second_start: bool,
 }
 
@@ -266,7 +266,7 @@ fn default_result_path(problem: &Path) -> PathBuf {
     }
 }
 
-/// Whether two paths lead to one place.
+/// True if two paths lead to one place.
 fn same_file(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

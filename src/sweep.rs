@@ -40,7 +40,7 @@ pub struct Sweeps<'a, 'c> {
     settings: SweepSettings,
     /// Progress of the sweeps.
     outcome: SweepOutcome,
-    /// Whether another method took over from newton: then nothing may refine afterwards.
+    /// True if another method took over from newton: then nothing may refine afterwards.
     has_fallen_back: bool,
     began: Instant,
     observer: &'a mut dyn FnMut(&SweepRecord),
@@ -149,7 +149,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
     }
 
-    /// Whether the sweeps go on from here.
+    /// True if the sweeps go on from here.
     ///
     /// # Errors
     /// A signal has asked the run to stop.
@@ -197,7 +197,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         (self.observer)(&record);
     }
 
-    /// Whether the residual is small and the active set settled, or the residual is round-off: S_CON
+    /// True if the residual is small and the active set settled, or the residual is round-off: S_CON
     /// is evaluated exactly, so that then nothing is left that could change.
     pub fn is_converged(&self, residual: &Residual) -> bool {
         let small = residual.relative <= self.tolerance() && residual.totals.changed == 0;

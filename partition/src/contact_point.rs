@@ -30,7 +30,7 @@ pub struct ContactPoint<N> {
     pub gap: f64,
     /// The jump ⟦u⟧ when it came (m), from which its slip counts.
     pub since: [f64; 3],
-    /// Whether its gap is that of the undeformed bodies although it came later.
+    /// True if its gap is that of the undeformed bodies although it came later.
     pub is_absolute: bool,
     /// Tributary area, the integral of its shape function (m, in space m²): pressure is force over
     /// area.
@@ -101,12 +101,12 @@ impl Law {
         }
     }
 
-    /// Whether there are tangential forces with a bound.
+    /// True if there are tangential forces with a bound.
     pub fn has_friction(&self) -> bool {
         !matches!(self, Self::Frictionless | Self::Tied)
     }
 
-    /// Whether forces of either sign hold the sides together.
+    /// True if forces of either sign hold the sides together.
     pub fn is_tied(&self) -> bool {
         *self == Self::Tied
     }
@@ -166,7 +166,7 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
-    /// Whether its sides overlap where they press, by their force over its stiffness.
+    /// True if its sides overlap where they press, by their force over its stiffness.
     pub fn is_compliant(&self) -> bool {
         self.stiffness[0] > 0.0
     }
@@ -192,7 +192,7 @@ impl<N: Copy> ContactPoint<N> {
         self.frame.normal
     }
 
-    /// Whether it is a linear equation between displacements, which has one condition.
+    /// True if it is a linear equation between displacements, which has one condition.
     pub fn is_equation(&self) -> bool {
         !self.axes.is_empty()
     }

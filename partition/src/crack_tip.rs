@@ -27,7 +27,7 @@ pub struct CrackTip {
 /// A facet of a crack face, with its nodes: the end nearer to the tip, the other end, and the one between them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FaceFacet {
-    /// Whether the body lies to the left of the crack's direction.
+    /// True if the body lies to the left of the crack's direction.
     pub is_upper: bool,
     /// Tags of the nodes; −1 where there is none between the ends.
     pub nodes: [i64; 3],

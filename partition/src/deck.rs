@@ -54,7 +54,7 @@ use crate::mesh::{Mesh, gmsh};
 pub struct Translation {
     /// The scene, whose mesh is `mesh.msh`.
     pub scene: String,
-    /// Its mesh.
+    /// The mesh.
     pub mesh: Mesh,
     /// The deck and the files that it includes.
     pub files: Vec<PathBuf>,
@@ -92,7 +92,7 @@ impl Translation {
     }
 }
 
-/// Whether a file is a deck by its name.
+/// True if a file is a deck by its name.
 pub fn is_one(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("inp"))

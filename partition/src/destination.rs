@@ -103,7 +103,7 @@ impl Destination {
         Ok(())
     }
 
-    /// Whether the temporary file stays where it isn't committed.
+    /// True if the temporary file stays where it isn't committed.
     pub fn is_kept(&self) -> bool {
         self.is_kept
     }

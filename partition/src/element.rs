@@ -119,7 +119,7 @@ impl Elements {
         self.kinds.len()
     }
 
-    /// Whether there is no element.
+    /// True if there is no element.
     pub fn is_empty(&self) -> bool {
         self.kinds.is_empty()
     }

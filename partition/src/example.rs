@@ -156,7 +156,7 @@ impl Example {
     }
 }
 
-/// Whether a file is as this program writes one: a built-in scene or geometry, or a mesh in the very form of this
+/// True if a file is as this program writes one: a built-in scene or geometry, or a mesh in the very form of this
 /// program, whichever its size and cells. Neither Gmsh writes it so, nor does an editor leave it so.
 fn is_ours(path: &Path) -> bool {
     let Ok(bytes) = fs::read(path) else {

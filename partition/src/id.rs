@@ -23,7 +23,7 @@ macro_rules! ids {
                 Self(index)
             }
 
-            /// Its place among all of its sort.
+            /// The place among all of its sort.
             pub const fn index(self) -> usize {
                 self.0
             }

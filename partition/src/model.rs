@@ -65,7 +65,7 @@ pub struct Model {
     pub plane: Option<PlaneState>,
     /// Mesh.
     pub mesh: Mesh,
-    /// Which of its cells meet at a facet.
+    /// Cells that meet at facets.
     pub topology: Topology,
     /// Materials.
     pub materials: Vec<Material>,
@@ -105,7 +105,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// Whether a node of the mesh is one that no cell has.
+    /// True if a node of the mesh is one that no cell has.
     pub fn is_reference(&self, node: usize) -> bool {
         node >= self.mesh.points.len() - self.reference_nodes.len()
     }

@@ -74,7 +74,7 @@ impl<'a, I, T> IntoIterator for &'a mut Numbered<I, T> {
 }
 
 impl<I, T> Numbered<I, T> {
-    /// How many numbers there are.
+    /// Number of entries.
     pub fn len(&self) -> usize {
         self.values.len()
     }

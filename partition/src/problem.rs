@@ -188,7 +188,7 @@ impl SubdomainNode {
 pub struct PointNode {
     /// Number on Γ, if several subdomains have it.
     pub interface: Option<u32>,
-    /// Whether supports leave it free along the normal of the point, or nearly so, and where the point has friction
+    /// True if supports leave it free along the normal of the point, or nearly so, and where the point has friction
     /// along its tangents, too: one free direction is not enough for two.
     pub is_free: bool,
 }
@@ -255,7 +255,7 @@ pub struct Absent {
 pub struct Body {
     /// Name of the scene's body, numbered where that one has several pieces.
     pub name: String,
-    /// Whether it isn't there in the [stage](stage::Stage) that the catalog is of.
+    /// True if it isn't there in the [stage](stage::Stage) that the catalog is of.
     pub is_absent: bool,
 }
 
@@ -349,7 +349,7 @@ impl Catalog {
         self.dim * self.nodes()
     }
 
-    /// Whether a contact has friction.
+    /// True if a contact has friction.
     pub fn has_friction(&self) -> bool {
         self.points.iter().any(|point| point.law.has_friction())
     }

@@ -68,7 +68,7 @@ impl QuantityKind {
         Self::ContactMoment,
     ];
 
-    /// Its word in scenes and reports.
+    /// The word in scenes and reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -94,7 +94,7 @@ pub struct Parameter {
     pub name: String,
     /// Kind.
     pub kind: ParameterKind,
-    /// Its value; NaN where it isn't the same everywhere.
+    /// The value; NaN where it isn't the same everywhere.
     pub value: f64,
     /// The numbers of what it is a parameter of, as its kind says.
     pub of: Vec<u32>,
@@ -125,7 +125,7 @@ impl ParameterKind {
         Self::Friction,
     ];
 
-    /// Its word in reports.
+    /// The word in reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Load => "load",

@@ -61,7 +61,7 @@ pub struct Scene {
     /// The units that messages and pictures name.
     #[serde(default)]
     pub units: Units,
-    /// Whether loads far beyond the stiffness are meant.
+    /// True if loads far beyond the stiffness are meant.
     #[serde(default)]
     pub large_strains: bool,
     /// Plane state; `None` for three dimensions.

@@ -22,7 +22,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Its name on the command line, in files and in the report.
+    /// The name on the command line, in files and in the report.
     pub fn name(self) -> &'static str {
         match self {
             Self::Newton => "newton",
@@ -117,7 +117,7 @@ impl SolverSettings {
         "no_stress",
     ];
 
-    /// Whether nothing is said.
+    /// True if no option is set.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -51,7 +51,7 @@ impl Stiffness {
         c.symmetric_eigenvalues().min()
     }
 
-    /// Whether it is symmetric positive definite.
+    /// True if it is symmetric positive definite.
     pub fn is_elastic(&self) -> bool {
         let c = DMatrix::from_row_slice(self.size, self.size, &self.values);
         let largest = c.amax();

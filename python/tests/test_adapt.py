@@ -174,7 +174,7 @@ def test_an_error_that_isnt_reached_is_said(scene, tmp_path, monkeypatch):
 
 
 def test_the_last_mesh_alone_is_warned_of():
-    """A punch with flanks that part slowly, which is said with the place on each mesh."""
+    """A punch whose flanks open slowly, of which is warned with the place on each mesh."""
     try:
         edges.start(1.0)
         punch, p = edges.polygon([(-2, 0), (2, 0), (6, 0.4), (6, 3), (-6, 3), (-6, 0.4)])
@@ -190,8 +190,8 @@ def test_the_last_mesh_alone_is_warned_of():
     finally:
         gmsh.finalize()
     assert len(rounds) > 1
-    parting = [str(one.message) for one in said if "part slowly" in str(one.message)]
+    parting = [str(one.message) for one in said if "opens slowly" in str(one.message)]
     assert len(parting) == 1
     assert parting[0] in result.report["warnings"]
-    assert any("part slowly" in words and words != parting[0] for words in rounds[0].result.report["warnings"])
+    assert any("opens slowly" in words and words != parting[0] for words in rounds[0].result.report["warnings"])
     assert not any("straight" in str(one.message) for one in said)

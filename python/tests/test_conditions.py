@@ -19,6 +19,17 @@ def of_plane(result):
     return conditions_of(result, np.unique(outline[outline >= 0]))
 
 
+def test_loads_far_from_a_small_contact_are_drawn_in_a_panel_of_all_bodies(scene, tmp_path):
+    result = Model.from_scene(scene("tunnel")).run(folder=tmp_path, progress=False)
+    loaded = result.points[of_plane(result).nodes, :2]
+    assert len(loaded) > 0
+    whole, around, part, _ = overview(Plane(result), 1.0).axes
+    for axes, has_loads in ((whole, True), (around, False), (part, False)):
+        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        assert ((loaded >= low) & (loaded <= high)).all() == has_loads
+    plt.close("all")
+
+
 @pytest.mark.parametrize("kind", NODES)
 def test_integrals_of_cells_are_exact(kind):
     nodes = np.array(NODES[kind], dtype=float)
@@ -92,7 +103,7 @@ def test_springs_are_supports_of_their_own(scene, tmp_path):
     assert len(springs) > 3
     assert {tuple(map(tuple, np.abs(support.axes))) for support in springs} == {((0.0, 1.0),)}
     words = {entry.get_label() for entry in symbols.entries(conditions, 2)}
-    assert words == {"spring", "held along its axis", "load", "body force"}
+    assert words == {"spring", "roller, held along its axis", "load", "body force"}
 
 
 def test_pictures_have_few_symbols_and_none_without_the_problem(scene, tmp_path):

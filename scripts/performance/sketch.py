@@ -54,12 +54,12 @@ class Sketch:
     def put(self, paths, places, face, edge, width):
         symbols.put(self.axes, paths, places, face, edge, width, 6)
 
-    def held(self, points, outward, kind="held along its axis", count=5):
-        """Supports along a line: fixed, held along the direction outward, or moved."""
+    def held(self, points, outward, kind=symbols.ROLLER, count=5):
+        """Supports along a line: fixed, on rollers along the direction outward, or moved."""
         places = along(points, count)
         under = symbols.FIXED if kind == "fixed" else symbols.ROLLED
         edge = symbols.GIVEN if kind == "prescribed displacement" else symbols.HELD
-        face = symbols.PAPER if kind == "held along its axis" else edge
+        face = symbols.PAPER if kind == symbols.ROLLER else edge
         path = symbols.turned([symbols.TRIANGLE, *under], outward, symbols.TALL)
         self.put([path] * len(places), places, face, edge, 0.9)
         self.name(kind, "^", face, edge)

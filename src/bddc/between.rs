@@ -10,11 +10,11 @@ use crate::schur::condensed::InterfaceDof;
 /// A contact group between clusters.
 #[derive(Debug)]
 pub struct Between {
-    /// Its number.
+    /// The number.
     pub number: GroupId,
     /// The rank that owns it.
     pub owner: usize,
-    /// Its unknowns, ascending.
+    /// The unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
     /// The clusters that have some of them, or what may be tied to some, ascending.
     pub clusters: Vec<MergeRootId>,

@@ -24,7 +24,7 @@ pub struct Class {
     pub clusters: Vec<MergeRootId>,
     /// The unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
-    /// Whether one of the clusters has only some combinations of them.
+    /// True if one of the clusters has only some combinations of them.
     is_partial: bool,
     /// Unknowns in the place of these where one of two clusters has only some.
     pub turned: Option<Turned>,
@@ -58,7 +58,7 @@ impl Class {
         (0..turned.ends[1]).map(|j| combinations[(j, 0)]).collect()
     }
 
-    /// Whether all of its unknowns are coarse ones, as those of a vertex.
+    /// True if all of its unknowns are coarse ones, as those of a vertex.
     pub fn is_coarse(&self) -> bool {
         self.is_partial && self.turned.is_none() || self.size() <= SMALL
     }
@@ -82,7 +82,7 @@ impl Classes {
         at.ok().filter(|&k| self.list[k] == *class)
     }
 
-    /// Whether cluster c has the same unknowns in the same classes as in others.
+    /// True if cluster c has the same unknowns in the same classes as in others.
     pub fn are_as_in(&self, others: &Self, c: MergeRootId) -> bool {
         let (Some(own), Some(list)) = (others.own.get(c), others.of_clusters.get(c)) else {
             return false;

@@ -24,7 +24,7 @@ pub struct GroupBetween {
     rows: JumpRows,
     /// The limits: jumps t = b·x, and dependent rows D t = b·x, then the jumps of ties.
     terms: Vec<Vec<(InterfaceDof, f64)>>,
-    /// Which limits are open.
+    /// Open limits.
     pub open: Vec<bool>,
     /// The dependent rows.
     dependent: DependentConstraints,
@@ -197,7 +197,7 @@ impl Ties {
         }
     }
 
-    /// Whether an unknown is tied as in others.
+    /// True if an unknown is tied as in others.
     pub fn is_as_in(&self, others: &Self, dof: &InterfaceDof) -> bool {
         self.resolved.get(dof) == others.resolved.get(dof)
     }

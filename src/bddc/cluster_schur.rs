@@ -6,7 +6,7 @@ use crate::schur::symmetric::PackedSymmetric;
 /// The Schur complement of a cluster.
 #[derive(Debug)]
 pub struct ClusterSchur {
-    /// Its unknowns on Γ, ascending.
+    /// The unknowns on Γ, ascending.
     pub dofs: Vec<InterfaceDof>,
     /// S (Pa).
     pub s: PackedSymmetric,

@@ -23,7 +23,7 @@ use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 /// The Schur complement that a cluster or a node leaves to coarse unknowns.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Part {
-    /// Its classes, each by its first unknown, and how many coarse unknowns each has.
+    /// The classes, each by its first unknown, and how many coarse unknowns each has.
     classes: Vec<(InterfaceDof, usize)>,
     s: PackedSymmetric,
     /// The diagonal of the coarse matrix, as far as it is added up.

@@ -40,9 +40,9 @@ pub struct ConjugateGradients<'a> {
     pub matrices: &'a Numbered<MergeRootId, Option<&'a PackedSymmetric>>,
     /// The coarse problem.
     pub coarse: &'a Coarse,
-    /// Whether the preconditioner is that of other matrices.
+    /// True if the preconditioner is that of other matrices.
     pub is_stale: bool,
-    /// Whether the preconditioner can be made better.
+    /// True if the preconditioner can be made better.
     pub is_judged: bool,
 }
 

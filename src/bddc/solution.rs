@@ -54,7 +54,7 @@ pub struct BddcSolution {
     pub tied: OnGroups<Vec<f64>>,
     /// Iterations that it took.
     pub iterations: usize,
-    /// Whether they sufficed.
+    /// True if they sufficed.
     pub is_solved: bool,
 }
 

@@ -111,7 +111,7 @@ fn add_many(
     }
 }
 
-/// Whether every number below n is one of the `places`, once.
+/// True if every number below n is one of the `places`, once.
 fn is_permutation(places: &[usize], n: usize) -> bool {
     let mut is_there = vec![false; n];
     places.iter().for_each(|&place| is_there[place] = true);

@@ -39,7 +39,7 @@ pub struct EnergyBalance {
     /// Difference of the sum of the first two and that of the other two, relative to the largest of the four and of the
     /// elastic energy.
     pub imbalance: f64,
-    /// Whether that is more than round-off.
+    /// True if that is more than round-off.
     #[serde(skip)]
     pub is_off: bool,
 }
@@ -109,7 +109,7 @@ impl BlockEnergy {
 }
 
 impl EnergyBalance {
-    /// Whether all of it are finite numbers.
+    /// True if all of it are finite numbers.
     pub fn is_finite(&self) -> bool {
         let works = [
             self.work_of_loads,

@@ -22,7 +22,7 @@ const RANKS: [&str; 8] = [
     "FLUX_TASK_RANK",
 ];
 
-/// Which of its tasks a process is, as srun tells it, and with 0 the script of a batch job.
+/// Number of a process among the tasks of srun, and with 0 the script of a batch job.
 const SRUN_RANK: &str = "SLURM_PROCID";
 
 /// The value of an environment variable.
@@ -30,13 +30,13 @@ fn variable(name: &str) -> Option<String> {
     env::var(name).ok()
 }
 
-/// Whether the launcher of an MPI started this process, be it as the only rank.
+/// True if the launcher of an MPI started this process, be it as the only rank.
 pub fn is_launched() -> bool {
     let mut names = SIZES.iter().chain(&RANKS);
     names.any(|name| variable(name).is_some())
 }
 
-/// Whether this process is the first that its launcher started, or has no launcher.
+/// True if this process is the first that its launcher started, or has no launcher.
 pub fn is_first() -> bool {
     is_first_by(variable)
 }
@@ -46,7 +46,7 @@ fn is_first_by(variable: impl Fn(&str) -> Option<String>) -> bool {
     names.find_map(variable).is_none_or(|rank| rank == "0")
 }
 
-/// Whether this process may be one of several ranks, which only MPI can tell.
+/// True if this process may be one of several ranks, which only MPI can tell.
 pub(super) fn is_one_of_several() -> bool {
     is_one_of_several_by(variable)
 }

@@ -61,7 +61,7 @@ impl PhaseSeconds {
 pub struct RankSeconds {
     /// By the clock on the wall.
     pub elapsed: PhaseSeconds,
-    /// Its work, without messages and waiting.
+    /// Processor time, without messages and waiting.
     pub work: PhaseSeconds,
     /// On a core of its own, messages by the network that is assumed.
     pub modelled: PhaseSeconds,

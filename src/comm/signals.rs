@@ -9,7 +9,7 @@ use signal_hook::flag;
 
 static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// Whether this rank was asked to stop: by SIGTERM, SIGINT, or SIGUSR1, which Slurm sends ahead of the time
+/// True if this rank was asked to stop: by SIGTERM, SIGINT, or SIGUSR1, which Slurm sends ahead of the time
 /// limit where it is asked to.
 pub fn is_asked_to_stop() -> bool {
     let asked = ASKED.get();

@@ -104,7 +104,7 @@ impl Factors<'_> {
         Some((b, self.condensed.blocks.get(&b)?))
     }
 
-    /// Whether a node is one of those that loads and solutions are of.
+    /// True if a node is one of those that loads and solutions are of.
     fn has(&self, v: TreeNodeId) -> bool {
         self.only.is_none_or(|only| only[v])
     }

@@ -23,12 +23,12 @@ use super::dependent::DependentConstraints;
 use super::interior_point::InGaps;
 use super::open_factor::{OpenFactor, scale_of};
 
-/// How far below zero, relative to its scale, a force must be to open a contact.
+/// Negative force, relative to its scale, at which a contact opens.
 pub(super) const FORCE_TOLERANCE: f64 = 1e-12;
 /// Share of the diagonal that H is condensed from, times the displacements, in that scale: H's
 /// round-off is relative to it.
 const DIAGONAL_SHARE: f64 = 1e-3;
-/// How far below zero, relative to the displacements, a gap must be to close a contact.
+/// Negative gap, relative to the displacements, at which a contact closes.
 pub(super) const GAP_TOLERANCE: f64 = 1e-14;
 /// Attempts at flipping all wrong signs without progress before that is given up.
 const PATIENCE: usize = 10;
@@ -60,7 +60,7 @@ pub struct ContactProblem<'a> {
     pub scale: f64,
 }
 
-/// Its solution.
+/// Solution of a contact problem.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactSolution {
     /// t ≤ g; exactly g where closed.
@@ -69,11 +69,11 @@ pub struct ContactSolution {
     pub forces: Vec<f64>,
     /// Linear systems solved.
     pub steps: usize,
-    /// Whether more than Newton's method was needed.
+    /// True if more than Newton's method was needed.
     pub fell_back: bool,
-    /// Whether all signs are right and the open conditions balanced.
+    /// True if all signs are right and the open conditions balanced.
     pub converged: bool,
-    /// Whether something was seen to slide on and on against friction, so that there may be no solution.
+    /// True if something was seen to slide on and on against friction, so that there may be no solution.
     pub slides: bool,
 }
 
@@ -306,7 +306,7 @@ impl ContactProblem<'_> {
             .collect()
     }
 
-    /// How far condition i, which is open, is beyond its bound, 0 within round-off.
+    /// Violation of the bound of condition i, which is open; 0 within round-off.
     pub(super) fn violation(&self, i: usize, open: &[bool], trial: &Trial) -> f64 {
         let m = self.c.len();
         let t = &trial.jumps;
@@ -328,7 +328,7 @@ impl ContactProblem<'_> {
         (value - self.bounds[i]) / size
     }
 
-    /// Whether condition i holds its sides together, beyond round-off.
+    /// True if condition i holds its sides together, beyond round-off.
     pub(super) fn pulls(&self, i: usize, trial: &Trial) -> bool {
         let force = trial.forces[i];
         force < 0.0 && force < -FORCE_TOLERANCE * self.force_scale(i, trial)

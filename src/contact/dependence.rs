@@ -68,7 +68,7 @@ impl DependentConstraints {
         open[k] = false;
     }
 
-    /// How much larger round-off in closed limits is in limit k, where that follows from them.
+    /// Amplification of round-off of closed limits in limit k, where that follows from them.
     pub fn amplified(&self, k: usize, open: &[bool], equalities: &ActiveEqualities) -> f64 {
         if self.is_empty() {
             return 0.0;

@@ -22,7 +22,7 @@ impl DependentConstraints {
         self.rows.len()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

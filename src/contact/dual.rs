@@ -32,7 +32,7 @@ impl ContactProblem<'_> {
         of_jump(i) + held.sum::<f64>()
     }
 
-    /// Whether condition i holds its sides apart, beyond round-off.
+    /// True if condition i holds its sides apart, beyond round-off.
     fn presses(&self, i: usize, trial: &Trial) -> bool {
         trial.forces[i] > FORCE_TOLERANCE * self.force_scale(i, trial)
     }

@@ -11,7 +11,7 @@ use crate::vector::largest;
 
 /// Way beyond a bound, relative to the largest jump and bound, that is none.
 const NO_WAY: f64 = 1e-12;
-/// How often the range is halved in which a point begins to slip.
+/// Bisections of the range in which a point begins to slip.
 const BISECTIONS: usize = 40;
 
 /// An exchange of limits of a group.
@@ -19,7 +19,7 @@ struct Exchange<'a> {
     laws: &'a ContactLaws<'a>,
     /// The forces of all limits as far as they have grown.
     forces: Vec<f64>,
-    /// Which limits aren't among those that are closed, or stick, and depend on none of the others.
+    /// Limits that aren't among those that are closed, or stick, and depend on none of the others.
     open: Vec<bool>,
     /// Way beyond a bound that is none (m).
     no_way: f64,
@@ -60,7 +60,7 @@ impl ContactLaws<'_> {
 
 /// The first limits that give way to a force that grows.
 struct Blocking {
-    /// How far that grows until then.
+    /// Growth until then.
     growth: f64,
     change: Change,
 }
@@ -125,7 +125,8 @@ impl Exchange<'_> {
         }
     }
 
-    /// How far limit k is beyond its bound where those are at theirs whose `shares` it is made of (m); none within round-off.
+    /// Violation of the bound of limit k where those are at theirs whose `shares` it is made of (m); none within
+    /// round-off.
     fn beyond(&self, k: usize, shares: &[(usize, f64)]) -> f64 {
         let way = shares.iter().map(|&(i, c)| c * self.laws.bounds[i]);
         let beyond = way.sum::<f64>() - self.laws.bounds[k];

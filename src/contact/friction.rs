@@ -27,7 +27,7 @@ pub use super::tangent::{ForceBound, TangentialCondition};
 pub struct FrictionProblem<'a> {
     /// All limits; those of tangential jumps are where these stick.
     pub contact: ContactProblem<'a>,
-    /// Which are those.
+    /// Tangential limits.
     pub tangents: &'a [TangentialLimit],
     /// Where the search for what touches begins.
     pub last_patch: &'a LastPatch,

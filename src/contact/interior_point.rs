@@ -1,4 +1,4 @@
-//! Which conditions open, by Mehrotra's predictor-corrector interior-point method.
+//! Conditions that open, by Mehrotra's predictor-corrector interior-point method.
 //!
 //! The problem in gaps, w = q + H s with s, w ≥ 0 and sᵀw = 0, is solved along the path sᵢwᵢ = μ → 0
 //! in some twenty steps whatever the number of conditions and however H is conditioned, where an
@@ -172,7 +172,7 @@ impl Point {
         sum / self.s.len() as f64
     }
 
-    /// How far a step may go until a gap or a force is zero, at most 1/SHARE.
+    /// Length of a step until a gap or a force is zero, at most 1/SHARE.
     fn reach(&self, ds: &[f64], dw: &[f64]) -> f64 {
         let steps = self.s.iter().zip(ds).chain(self.w.iter().zip(dw));
         steps.fold(1.0 / SHARE, |reach, (x, dx)| {

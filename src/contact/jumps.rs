@@ -132,7 +132,7 @@ pub struct Jumps {
     pub known: BTreeMap<usize, Vec<(usize, f64)>>,
 }
 
-/// Which conditions are those of ties.
+/// Conditions of ties.
 pub type IsTied<'a> = &'a dyn Fn(usize) -> bool;
 
 /// A jump of those that have unknowns of their own.

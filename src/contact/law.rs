@@ -115,7 +115,7 @@ impl PointLaw {
         })
     }
 
-    /// Whether the point can slip along one line alone.
+    /// True if the point can slip along one line alone.
     pub fn is_along_a_line(&self) -> bool {
         self.tangents[1].is_none() && self.prescribed == 0.0
     }
@@ -140,12 +140,12 @@ impl PointLaw {
         }
     }
 
-    /// Whether its contact is closed.
+    /// True if its contact is closed.
     pub fn is_closed(&self, closed: &[bool]) -> bool {
         self.normal.is_some_and(|n| closed[n])
     }
 
-    /// Whether it has no force in an open contact, and this one is.
+    /// True if it has no force in an open contact, and this one is.
     pub fn has_opened(&self, closed: &[bool]) -> bool {
         self.bound.only_closed && !self.is_closed(closed)
     }

@@ -23,18 +23,18 @@ pub struct ContactLaws<'a> {
     pub rows: &'a DependentConstraints,
     /// The points with friction.
     pub points: Vec<PointLaw>,
-    /// Whether a limit is that of a tangential jump.
+    /// Limits of tangential jumps.
     pub is_tangential: Vec<bool>,
     /// r of every limit (N/m).
     pub stiffness: Vec<f64>,
-    /// How often the slip of every point has turned about in full steps.
+    /// Number of full steps in which the slip of every point has turned about.
     turns: Vec<usize>,
 }
 
 /// The statuses of all limits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statuses {
-    /// Whether every limit that isn't tangential is closed.
+    /// Closed limits, of those that aren't tangential.
     pub closed: Vec<bool>,
     /// The points with friction.
     pub points: Vec<PointStatus>,
@@ -124,7 +124,7 @@ impl<'a> ContactLaws<'a> {
         }
     }
 
-    /// How far limit i is beyond its bound, or has slipped (m).
+    /// Violation of the bound of limit i, or its slip (m).
     pub fn beyond(&self, i: usize, at: &Iterate) -> f64 {
         let m = at.jumps.len();
         let value = match at.jumps.get(i) {
@@ -190,7 +190,7 @@ impl<'a> ContactLaws<'a> {
         .filter(|_| before.closed[n])
     }
 
-    /// Whether every jump is known where limits have these statuses: closed, or sticking.
+    /// Known jumps where limits have these statuses: closed, or sticking.
     pub fn known(&self, statuses: &Statuses) -> Vec<bool> {
         let mut known = statuses.closed.clone();
         for (point, status) in self.points.iter().zip(&statuses.points) {

@@ -51,7 +51,7 @@ pub struct Limits {
     pub bounds: Vec<f64>,
     /// D.
     pub rows: DependentConstraints,
-    /// Which condition each bound is, and its factor.
+    /// Condition of each bound, and its factor.
     tightest: Vec<(usize, f64)>,
     /// The condition that each normal jump is the unknown of.
     pub defining: Vec<usize>,
@@ -200,7 +200,7 @@ impl Limits {
         gaps
     }
 
-    /// Whether limit i is that of a tangential jump.
+    /// True if limit i is that of a tangential jump.
     pub fn is_tangential(&self, i: usize) -> bool {
         let found = (self.tangents).binary_search_by_key(&i, |tangent| tangent.limit);
         found.is_ok()
@@ -273,7 +273,7 @@ impl Limits {
         }
     }
 
-    /// Which conditions are closed where the limits are; tangential ones that stick are.
+    /// Conditions that are closed where the limits are; tangential ones that stick are.
     pub fn closed(&self, limits: impl IntoIterator<Item = bool>) -> Vec<bool> {
         let mut closed = vec![false; self.conditions];
         for (&(condition, _), is_closed) in self.tightest.iter().zip(limits) {

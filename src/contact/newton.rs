@@ -67,7 +67,7 @@ pub trait ContactOperator {
     /// The norm of energies of the forces that act before anything moves, or infinity where it isn't known.
     fn acting(&self) -> f64;
 
-    /// How accurate the step has to be that follows one with this residual.
+    /// Accuracy of the step that follows one with this residual.
     fn accuracy(&self, total: &TotalResidual) -> StepAccuracy;
 
     /// Takes note of a step.
@@ -77,7 +77,7 @@ pub trait ContactOperator {
     fn record(&mut self, step: NewtonStep) -> Result<(), Self::Error>;
 }
 
-/// How accurately a step is solved.
+/// Accuracy of a step's solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepAccuracy {
     /// As accurate as what is missed of the laws, relative to the largest force, lets be of use.
@@ -99,7 +99,7 @@ pub struct TotalResidual {
     pub active: usize,
     /// Number of wrong statuses.
     pub wrong: usize,
-    /// Whether a point parts, so that the merit doesn't measure a part of a step.
+    /// True if a point parts, so that the merit doesn't measure a part of a step.
     pub parts: bool,
 }
 
@@ -134,7 +134,7 @@ pub struct NewtonStep {
     pub changed: Option<usize>,
 }
 
-/// How far Newton's method goes.
+/// Limits of Newton's method.
 #[derive(Clone, Copy, Debug)]
 pub struct NewtonSettings {
     /// Most steps.
@@ -150,7 +150,7 @@ pub struct NewtonSettings {
     /// The merit, relative to what acts, above which forces are no measure: what slides away has small ones beside the terms
     /// of its way.
     pub law: f64,
-    /// Whether r is lowered where slips turn about again and again: not by steps that are rough.
+    /// True if r is lowered where slips turn about again and again: not by steps that are rough.
     pub softens: bool,
 }
 

@@ -35,7 +35,7 @@ pub struct OpenFactor {
     independent: Vec<usize>,
     h_nn: Mat<f64>,
     factor: Option<Llt<f64>>,
-    /// Whether springs were needed.
+    /// True if springs were needed.
     pub singular: bool,
 }
 

@@ -60,15 +60,15 @@ pub struct PairResponse {
     pub contact_residual_scale: Vec<f64>,
     /// The status of every jump, then of every linearly dependent constraint.
     pub status: Vec<Status>,
-    /// How many normal jumps and linearly dependent constraints are closed.
+    /// Number of normal jumps and linearly dependent constraints that are closed.
     pub active: usize,
     /// Limits whose status changed, against what was expected or the last evaluation.
     pub changed: usize,
     /// Linear systems solved.
     pub steps: usize,
-    /// Whether more than Newton's method was needed.
+    /// True if more than Newton's method was needed.
     pub fell_back: bool,
-    /// Whether the small problem converged.
+    /// True if the small problem converged.
     pub converged: bool,
 }
 
@@ -99,7 +99,7 @@ impl ContactPair {
         self.state
     }
 
-    /// Its Schur complement.
+    /// The Schur complement.
     pub fn condensed(&self) -> &Condensed {
         &self.condensed
     }

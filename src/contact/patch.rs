@@ -18,7 +18,7 @@ pub const LARGE: f64 = 0.7;
 /// Contact problem that is condensed onto a patch.
 #[derive(Debug)]
 pub struct CondensedPatch {
-    /// Its jumps, ascending.
+    /// The jumps, ascending.
     pub jumps: Vec<usize>,
     /// All others.
     pub open: Vec<usize>,

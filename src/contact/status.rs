@@ -38,7 +38,7 @@ impl Status {
         }
     }
 
-    /// Whether its jump is known.
+    /// True if its jump is known.
     pub fn is_closed(self) -> bool {
         self == Self::Closed
     }
@@ -58,12 +58,12 @@ impl Status {
 pub enum FixedStatus {
     /// Nothing acts.
     Open,
-    /// Its jump changes by what it lacks of its bound.
+    /// Closed: the jump changes by what it lacks of its bound.
     Closed {
         /// Missing part of the bound (m).
         lacks: f64,
     },
-    /// Its force changes with the bound of its point, and turns with the slip.
+    /// Slipping: the force changes with the bound of its point, and turns with the slip.
     Slips {
         /// Part of the bound.
         share: f64,
@@ -83,7 +83,7 @@ impl FixedStatus {
         }
     }
 
-    /// Whether its jump is known.
+    /// True if its jump is known.
     pub fn is_closed(&self) -> bool {
         matches!(self, Self::Closed { .. })
     }
@@ -96,7 +96,7 @@ impl FixedStatus {
         }
     }
 
-    /// Its part of the bound of its point, and κ (N/m), where it slips.
+    /// Part of the bound of its point, and κ (N/m), where it slips.
     pub fn slip(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Slips { share, turning } => Some([share, turning]),
@@ -108,10 +108,10 @@ impl FixedStatus {
 /// State of a limit or a condition: of a load step so far, from which its law is solved anew, and then.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitState {
-    /// Its force (N/m).
+    /// The force (N/m).
     pub force: f64,
     /// The gap that is left, g − t, or the way back to where it stuck (m).
     pub gap: f64,
-    /// Its status.
+    /// The status.
     pub status: Status,
 }

@@ -9,7 +9,7 @@ pub struct ForceBound {
     pub coefficient: f64,
     /// The bound without normal force (N/m).
     pub cohesion: f64,
-    /// Whether the bound is 0 where the contact is open.
+    /// True if the bound is 0 where the contact is open.
     pub only_closed: bool,
 }
 
@@ -43,7 +43,7 @@ impl ForceBound {
 /// A tangential condition, its number and that of its point's normal one, and what bounds its force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialCondition {
-    /// Its number among the conditions.
+    /// The number among the conditions.
     pub number: usize,
     /// Number of the normal condition.
     pub normal: usize,
@@ -54,7 +54,7 @@ pub struct TangentialCondition {
 /// Friction condition: the tangential jump sticks at the bound of `limit` while |λ_t| is within that of its force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TangentialLimit {
-    /// Which of the limits.
+    /// Number among the limits.
     pub limit: usize,
     /// The limit on the normal jump of its point, where there is one that carries force.
     pub normal: Option<usize>,

@@ -31,7 +31,7 @@ pub struct Spring {
     pub node: u32,
     /// Component.
     pub component: usize,
-    /// Its stiffness, that of the node itself (Pa).
+    /// The stiffness, that of the node itself (Pa).
     pub stiffness: f64,
 }
 

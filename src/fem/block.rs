@@ -65,7 +65,7 @@ impl Block {
         &self.points()[..self.body_nodes()]
     }
 
-    /// Whether each node is on Γ.
+    /// Nodes that are on Γ.
     pub fn is_on_interface(&self) -> Vec<bool> {
         let mut on_interface = vec![false; self.nodes()];
         for &(node, _) in &self.interface {

@@ -26,9 +26,9 @@ pub struct Condition {
     pub point: usize,
     /// The direction: n, or a tangent where friction acts.
     pub direction: [f64; 3],
-    /// Whether it is a tangent.
+    /// True if it is a tangent.
     pub is_tangential: bool,
-    /// Whether it is one of a tie.
+    /// True if it is one of a tie.
     pub is_tied: bool,
 }
 

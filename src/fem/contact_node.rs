@@ -17,7 +17,7 @@ pub struct ContactNode {
     pub tag: i64,
     /// Body of the node.
     pub body: usize,
-    /// Whether it lies between the sides of a point, and moves with no body.
+    /// True if it lies between the sides of a point, and moves with no body.
     pub is_auxiliary: bool,
     /// Coordinates (m).
     pub at: [f64; 3],

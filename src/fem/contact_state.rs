@@ -10,13 +10,13 @@ pub struct ContactState {
     pub gap: f64,
     /// Normal force ≥ 0 (N, per metre of thickness in the plane).
     pub force: f64,
-    /// Whether the contact is closed.
+    /// True if the contact is closed.
     pub closed: bool,
     /// Tangential force on side a, −λ_t t₁ (N, per metre of thickness in the plane).
     pub tangential_force: [f64; 3],
     /// Tangential jump since the unloaded state, w t₁ (m).
     pub slip: [f64; 3],
-    /// Whether it slips in this load step.
+    /// True if it slips in this load step.
     pub slipping: bool,
     /// Work that friction dissipates in this load step, λ_t Δw (J, per metre of thickness in the plane).
     pub dissipated: f64,

@@ -108,12 +108,12 @@ impl Default for ElementMatrix {
 }
 
 impl ElementMatrix {
-    /// Its row `i`.
+    /// The row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.values[i * self.order..(i + 1) * self.order]
     }
 
-    /// Its rows.
+    /// The rows.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         (0..self.order).map(|i| self.row(i))
     }

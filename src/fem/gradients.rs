@@ -49,7 +49,8 @@ pub fn stiffness_points<'a>(
     }
 }
 
-/// Whether cells of this kind have such modes in a material: linear quadrilaterals and hexahedra, but not around an axis.
+/// True if cells of this kind have such modes in a material: linear quadrilaterals and hexahedra, but not around an
+/// axis.
 pub fn has_modes(element: &ReferenceElement, material: &Material) -> bool {
     let kind = (element.dim(), element.nodes(), material.stiffness.size());
     material.formulation == Formulation::IncompatibleModes && matches!(kind, (2, 4, 3) | (3, 8, 6))

@@ -179,13 +179,13 @@ impl ContactGroup {
         self.nodes.iter().map(of_node).collect()
     }
 
-    /// Whether a condition of a tie is left out, as a support has its place.
+    /// True if a condition of a tie is left out, as a support has its place.
     pub fn is_left_out(&self, condition: &Condition) -> bool {
         condition.is_tied && self.is_dropped(condition, &self.frames())
     }
 
-    /// Whether a condition of a tie is left to the support of the node that has it: of several nodes opposite, which lie beside
-    /// it, it would ask what the support asks of it alone.
+    /// True if a condition of a tie is left to the support of the node that has it: of several nodes opposite, which
+    /// lie beside it, it would ask what the support asks of it alone.
     fn is_dropped(&self, condition: &Condition, frames: &[Frame]) -> bool {
         let point = &self.points[condition.point];
         let own = point.entries.iter().find(|(node, _)| {

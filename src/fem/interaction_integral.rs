@@ -60,7 +60,7 @@ pub struct TipDisc<'a> {
 /// A cell in the frame of the tip.
 struct LocalCell {
     kind: ElementKind,
-    /// Whether it has incompatible modes.
+    /// True if it has incompatible modes.
     has_modes: bool,
     nodes: Vec<usize>,
     points: Vec<[f64; 3]>,

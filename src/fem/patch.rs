@@ -26,7 +26,7 @@ pub struct PatchSum {
     /// The rotation by the angles of all cells, in space by half their solid angles, cosine and sine; 0 where there
     /// are none.
     turn: [f64; 2],
-    /// Whether any of its cells is linear, and any quadratic.
+    /// True if any of its cells is linear, and any quadratic.
     has_linear: bool,
     has_quadratic: bool,
     gram: [f64; GRAM],
@@ -144,12 +144,12 @@ impl PatchSum {
         };
     }
 
-    /// Whether cells surround the vertex.
+    /// True if cells surround the vertex.
     pub fn is_inner(&self) -> bool {
         self.turn[0] > 0.0 && self.turn[1].abs() < FULL_TURN
     }
 
-    /// Whether there are any cells.
+    /// True if there are any cells.
     pub fn is_empty(&self) -> bool {
         self.turn == [0.0; 2]
     }

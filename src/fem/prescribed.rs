@@ -40,7 +40,7 @@ impl Prescribed {
         &self.constants
     }
 
-    /// Whether c is zero.
+    /// True if c is zero.
     pub fn is_zero(&self) -> bool {
         self.constants.iter().all(|&c| c == 0.0)
     }

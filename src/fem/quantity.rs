@@ -7,17 +7,17 @@ use serde::{Deserialize, Serialize};
 /// A quantity that the scene asks for.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityValue {
-    /// Its name in the scene.
+    /// The name in the scene.
     pub name: String,
-    /// Its kind, by the scene's word for it.
+    /// The kind, by the scene's word for it.
     pub kind: String,
-    /// Its value (m, Pa, Pa √m, N, N m or J; forces, moments and energies in the plane per metre of thickness).
+    /// The value (m, Pa, Pa √m, N, N m or J; forces, moments and energies in the plane per metre of thickness).
     pub value: f64,
     /// Estimated error of the mesh: the value less the exact one, about; `null` where there is no estimate.
     pub error: Option<f64>,
-    /// Tag of the node at which it is taken, of the largest pressure that which has it; `null` where it isn't one of a node.
+    /// Tag of the node whose value it is, or that has the largest pressure; `null` of other quantities.
     pub node: Option<i64>,
-    /// Its derivatives with respect to the parameters of the scene; empty where there are none.
+    /// The derivatives with respect to the parameters of the scene; empty where there are none.
     pub derivatives: Vec<Derivative>,
 }
 
@@ -26,10 +26,10 @@ pub struct QuantityValue {
 pub struct Derivative {
     /// Name of the parameter.
     pub parameter: String,
-    /// Its kind: "load", a factor that is 1; "stiffness", Young's modulus or a factor of a stiffness; "gap" and "displacement",
-    /// what is added to those of the scene; "friction", the coefficient.
+    /// The kind: "load", a factor that is 1; "stiffness", Young's modulus or a factor of a stiffness; "gap" and
+    /// "displacement", what is added to those of the scene; "friction", the coefficient.
     pub kind: String,
-    /// Its value; `null` where it isn't the same everywhere.
+    /// The value; `null` where it isn't the same everywhere.
     pub at: Option<f64>,
     /// The derivative: change of the quantity over change of the parameter.
     pub derivative: f64,

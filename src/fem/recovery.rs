@@ -18,7 +18,7 @@ pub struct Recovery {
     material: usize,
     /// Polynomials around the block's vertices, by node.
     polynomials: Polynomials,
-    /// Whether cells surround them.
+    /// Nodes that cells surround.
     is_inner: Vec<bool>,
     /// Patches on Γ, in the order of the block's interface.
     shared: Vec<PatchSum>,

@@ -37,7 +37,7 @@ impl Resultant {
         self.moment = advance(self.moment, 1.0, cross(at, force));
     }
 
-    /// Whether it isn't one of the plane.
+    /// True if it isn't one of the plane.
     pub fn is_spatial(&self) -> bool {
         self.force[2] != 0.0 || self.moment[..2] != [0.0; 2]
     }
@@ -48,7 +48,7 @@ impl Resultant {
 pub struct ContactResultant {
     /// Name of the contact.
     pub name: String,
-    /// Its kind: "contact", "tie", "equation", "spring", "coupling", "pretension" or "held pretension".
+    /// The kind: "contact", "tie", "equation", "spring", "coupling", "pretension" or "held pretension".
     pub kind: String,
     /// Number of conditions.
     pub conditions: usize,
@@ -71,7 +71,7 @@ pub struct ContactResultant {
     /// The penetration at those nodes.
     #[serde(skip)]
     pub probed: Option<Probed>,
-    /// Whether the nodes of side b have the conditions.
+    /// True if the nodes of side b have the conditions.
     #[serde(skip)]
     pub on_b: bool,
     /// The multiplier λ of what holds a pretension (N).
@@ -195,7 +195,7 @@ fn percent(part: f64) -> String {
     format!("{} %", short(100.0 * part))
 }
 
-/// Whether a point slips below the bound of its law, as one without pressure may under a part of its cohesion.
+/// True if a point slips below the bound of its law, as one without pressure may under a part of its cohesion.
 fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
     let Law::Coulomb {
         coefficient,

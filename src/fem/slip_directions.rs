@@ -70,7 +70,7 @@ impl ContactGroup {
         }
     }
 
-    /// Whether supports hold nodes of a point, and prescribe no displacement but 0.
+    /// True if supports hold nodes of a point, and prescribe no displacement but 0.
     fn is_held_fast(&self, point: usize) -> bool {
         let nodes = self.points[point].entries.iter();
         let mut nodes = nodes.map(|(node, _)| &self.nodes[*node as usize]);

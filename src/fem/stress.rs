@@ -166,7 +166,8 @@ impl RecoveredStress {
     }
 }
 
-/// Whether the stress is the same everywhere in a cell: that of a linear triangle or tetrahedron, but not around an axis.
+/// True if the stress is the same everywhere in a cell: that of a linear triangle or tetrahedron, but not around an
+/// axis.
 fn is_uniform(kind: ElementKind, material: &Material) -> bool {
     let is_ring = material.stiffness.size() == 4;
     !is_ring && kind.is_linear() && matches!(kind.domain(), Domain::Triangle | Domain::Tetrahedron)

@@ -326,12 +326,12 @@ impl<'a> CoupledContact<'a> {
         u
     }
 
-    /// Whether a pair has friction.
+    /// True if a pair has friction.
     pub fn has_friction(&self) -> bool {
         !self.tangents.is_empty()
     }
 
-    /// Whether a point slips in a plane.
+    /// True if a point slips in a plane.
     pub fn has_cones(&self) -> bool {
         let mut tangents = self.tangents.iter();
         tangents.any(|tangent| tangent.beside != Beside::Nothing)

@@ -124,7 +124,7 @@ impl Faces {
         }
     }
 
-    /// Whether one of a face's clusters is a pair.
+    /// True if one of a face's clusters is a pair.
     fn touches(&self, face: usize, in_contact: &[bool]) -> bool {
         let mut clusters = self.clusters[face].iter();
         clusters.any(|&c| in_contact[c as usize])

@@ -74,7 +74,7 @@ impl<'a> InterfaceProblem<'a> {
         }
     }
 
-    /// Whether nothing acts on Γ and the clusters in contact but what their contacts are held to.
+    /// True if nothing acts on Γ and the clusters in contact but what their contacts are held to.
     pub fn is_unloaded(&self) -> bool {
         let mut all = self.f.iter().chain(&self.f_bilateral);
         all.all(|&f| f == 0.0)

@@ -56,7 +56,7 @@ enum Request {
     Evaluate(Vec<usize>),
     /// S_kl'(U) x of these pairs.
     Differentiate(Vec<usize>),
-    /// Whether a signal has asked a rank to stop.
+    /// A signal's request to stop.
     Signals,
 }
 
@@ -81,7 +81,7 @@ impl<'a> SCon<'a> {
         self.owners.len()
     }
 
-    /// Whether there is no pair.
+    /// True if there is no pair.
     pub fn is_empty(&self) -> bool {
         self.owners.is_empty()
     }
@@ -146,7 +146,7 @@ impl<'a> SCon<'a> {
         });
     }
 
-    /// Whether a signal has asked any rank to stop. On the root; the other ranks
+    /// True if a signal has asked any rank to stop. On the root; the other ranks
     /// [`serve`](Self::serve).
     pub fn is_any_asked_to_stop(&self) -> bool {
         self.comm.broadcast(&mut Request::Signals);

@@ -46,13 +46,13 @@ pub struct Summary<'a> {
 /// A load step that begins.
 #[derive(Clone, Debug, Serialize)]
 pub struct Step<'a> {
-    /// Its number, from 1.
+    /// The number, from 1.
     pub step: usize,
     /// Number of all.
     pub steps: usize,
-    /// Its name.
+    /// The name.
     pub name: &'a str,
-    /// Its time on the load path.
+    /// The time on the load path.
     pub time: f64,
     /// The bodies and contacts that are absent in it.
     #[serde(skip)]
@@ -113,7 +113,7 @@ pub enum Event<'a> {
     },
     /// The run comes to another phase.
     Phase {
-        /// Its name.
+        /// The name.
         phase: &'static str,
         /// Number of its steps, where that is known.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -125,7 +125,7 @@ pub enum Event<'a> {
     Step(&'a Step<'a>),
     /// So much of a phase is done, once a second.
     Progress {
-        /// Its name.
+        /// The name.
         phase: &'static str,
         /// The share of it, or of the linear system that is iterated in it.
         done: f64,

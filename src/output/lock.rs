@@ -148,7 +148,7 @@ impl Holder {
         })
     }
 
-    /// Whether it may still be there: processes of another host are invisible.
+    /// True if it may still be there: processes of another host are invisible.
     fn may_live(&self) -> bool {
         self.host != this_host() || beginning(self.process) == Some(self.began)
     }

@@ -51,9 +51,9 @@ pub struct ErrorEstimate {
 /// A load step. Of sweeps that ended without converging the answer is there all the same.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StepReport {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its time on the load path.
+    /// The time on the load path.
     pub time: f64,
     /// Names of the bodies and contacts that aren't there; contacts of absent bodies needn't be among them.
     pub absent: Vec<String>,
@@ -88,18 +88,18 @@ pub struct StepReport {
 /// State and work of friction in a load step, in all contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FrictionOfStep {
-    /// Its state and work.
+    /// The state and work.
     #[serde(flatten)]
     pub friction: Friction,
     /// Balance of energy.
     pub energy: EnergyBalance,
-    /// Whether friction is at its limit: nothing else holds a body, and it gives all the force that it can, so that the
+    /// True if friction is at its limit: nothing else holds a body, and it gives all the force that it can, so that the
     /// position is one of many; a warning names the motion.
     pub at_limit: bool,
     /// Number of increments of the load step, of several load steps the largest; slip and status are those of the last
     /// one.
     pub increments: usize,
-    /// Whether `--second-start` found another solution; `null` without it.
+    /// True if `--second-start` found another solution; `null` without it.
     pub other_solution: Option<bool>,
 }
 
@@ -181,7 +181,7 @@ pub struct Report {
     pub settings_from: Origins,
     /// Version of the program.
     pub version: String,
-    /// Its build.
+    /// The build.
     pub build: Build,
 }
 

@@ -133,7 +133,7 @@ lists! {
     types: u8, "cell types", "Types", Cell, Mesh;
     /// Index of its material for every cell.
     materials: i32, "materials", "CellData/Material", Cell, Mesh;
-    /// Whether the body of every cell is there.
+    /// Presence of the body of every cell.
     present: u8, "presences", "CellData/Present", Cell, Presence;
     /// Stress of the cells.
     cell_stress: [f64; 6], "cell stresses", "CellData/Stress", Cell, Stress;

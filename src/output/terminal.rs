@@ -1,6 +1,6 @@
 //! Text of the root rank: plain lines of fixed columns, the same on a terminal and in a log.
 //!
-//! Whether to print them at all, and whether to show colours, is the caller's business.
+//! The caller decides if they are printed, and in colours.
 
 mod resultants;
 mod timing;

@@ -16,9 +16,9 @@ use crate::error::Failure;
 pub struct Wishes {
     /// The method of the sweeps.
     pub method: Method,
-    /// Whether the interface solver is to iterate, where that is said.
+    /// True if the interface solver is to iterate; `None` where nothing is said.
     pub iterative: Option<bool>,
-    /// Whether another solution with friction is looked for.
+    /// True if another solution with friction is looked for.
     pub second_start: bool,
 }
 

@@ -24,7 +24,7 @@ pub enum Merging {
 }
 
 impl Merging {
-    /// Whether active sets are fixed.
+    /// True if active sets are fixed.
     pub fn has_active_set(self) -> bool {
         matches!(self, Self::ActiveSet | Self::Clusters)
     }
@@ -47,14 +47,14 @@ pub struct ClusterPlan {
     pub node: TreeNodeId,
     /// The rank that owns the node.
     pub owner: usize,
-    /// Its groups, by their place among all of the plan, in the order in which they are merged.
+    /// The groups, by their place among all of the plan, in the order in which they are merged.
     pub groups: Vec<GroupId>,
     /// Number of conditions of its contact points, without those of ties.
     pub conditions: usize,
 }
 
 impl ClusterPlan {
-    /// Whether anything in it is in contact.
+    /// True if anything in it is in contact.
     pub fn is_in_contact(&self) -> bool {
         self.conditions > 0
     }
@@ -81,7 +81,7 @@ pub(super) fn cluster_nodes(
     })
 }
 
-/// Which nodes of `tree` are above all of some.
+/// Nodes of `tree` that are above all of some.
 fn above(tree: &Tree, nodes: &[TreeNodeId]) -> Numbered<TreeNodeId, bool> {
     let mut is_above = tree.nodes.like(true);
     for v in nodes.iter().flat_map(|&v| tree.subtree(v)) {

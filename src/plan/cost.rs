@@ -61,7 +61,7 @@ impl CostEstimate {
 }
 
 impl Plan {
-    /// Whether the front of node v is made again for every active set.
+    /// True if the front of node v is made again for every active set.
     fn has_active_set_at(&self, v: TreeNodeId) -> bool {
         self.merging.has_active_set() && self.tree.nodes[v].conditions > 0
     }

@@ -52,7 +52,7 @@ impl GroupPlan {
         }
     }
 
-    /// Its nodes, subdomain by subdomain.
+    /// The nodes, subdomain by subdomain.
     pub fn by_subdomain(&self) -> impl Iterator<Item = &[(SubdomainNode, u32)]> {
         self.nodes
             .chunk_by(|(a, _), (b, _)| a.subdomain == b.subdomain)

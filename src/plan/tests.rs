@@ -120,7 +120,7 @@ fn subtrees_are_split_until_ranks_have_about_the_same_to_do() {
     assert_eq!((of_rank(0), of_rank(1)), (110, 100));
 }
 
-/// Whether the nodes that one subdomain has slide, along which normal, in `catalog`.
+/// Normals across which nodes of one subdomain slide, in `catalog`.
 fn slides(catalog: &Catalog) -> Vec<Option<[f64; 3]>> {
     let tree = Tree::new(catalog);
     tree.unshared.iter().map(|own| own.slides).collect()

@@ -1,4 +1,4 @@
-//! How well the scene is conditioned: an estimate of its condition number.
+//! Estimate of the scene's condition number.
 
 use std::collections::BTreeMap;
 

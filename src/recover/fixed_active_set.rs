@@ -29,7 +29,7 @@ use crate::tree::slip_law::SlipLaw;
 use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
 
-/// How well slip forces follow what presses, at best.
+/// Best relative accuracy to which slip forces follow the pressure.
 const FOLLOWED: f64 = 1e-4;
 
 /// The part of the problem of the fixed active set that a rank holds.
@@ -61,11 +61,11 @@ pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a OnGroups<Limit
 pub struct FixedActiveSetRoot<'a> {
     /// Numbering of Γ and the interface problem, where there is one.
     pub interface: Option<(&'a Numbering, &'a InterfaceProblem<'a>)>,
-    /// Whether the solution is refined: the active sets are right, or nothing changed them any more.
+    /// True if the solution is refined: the active sets are right, or nothing changed them any more.
     pub is_refined: bool,
-    /// Whether statuses of contacts with friction cycle.
+    /// True if statuses of contacts with friction cycle.
     pub cycles: bool,
-    /// Whether loads that are round-off of the displacements move what nothing resists.
+    /// True if loads that are round-off of the displacements move what nothing resists.
     pub moves: bool,
 }
 
@@ -73,7 +73,7 @@ pub struct FixedActiveSetRoot<'a> {
 pub type FixedStatuses = OnGroups<Vec<FixedStatus>>;
 
 impl FixedActiveSetRoot<'_> {
-    /// Whether loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
+    /// True if loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
     /// solved for at once.
     pub fn can_solve(&self) -> bool {
         (self.interface).is_none_or(|(_, problem)| CoupledContact::new(problem).is_some())

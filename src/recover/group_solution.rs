@@ -10,7 +10,7 @@ use crate::tree::slip_law::AT_BOUND;
 pub struct GroupSolution {
     /// Force of every condition (N/m).
     pub forces: Vec<f64>,
-    /// Which conditions are closed; a tangential one is where the sides stick.
+    /// Closed conditions; a tangential one is closed where the sides stick.
     pub closed: Vec<bool>,
     /// The gap that is left at every condition, g − B u; the way back to where the sides stuck (m).
     pub gaps: Vec<f64>,
@@ -22,7 +22,7 @@ impl GroupSolution {
         law.at(|j| -self.gaps[j], &self.forces, &self.closed)
     }
 
-    /// Whether a point slips while its contact is about to open: closed, under less than its bound.
+    /// True if a point slips while its contact is about to open: closed, under less than its bound.
     pub fn parts(&self, law: &PointLaw) -> bool {
         let here = self.point(law);
         let sticks = law.limits().all(|j| self.closed[j]);

@@ -17,7 +17,7 @@ use crate::schur::local::CondensedLoad;
 struct ClusterQuestion<S> {
     /// The state of its limits, where it is in contact.
     limits: Option<Vec<S>>,
-    /// Its load, on normal jumps and traces.
+    /// The load, on normal jumps and traces.
     #[serde(with = "crate::bytes")]
     load: Vec<f64>,
 }

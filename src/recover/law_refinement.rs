@@ -76,7 +76,7 @@ impl FixedActiveSet<'_> {
         Some(solution)
     }
 
-    /// Whether this is the root, which can solve for all pairs at once.
+    /// True if this is the root, which can solve for all pairs at once.
     fn has_coupled_contact(&self) -> bool {
         let interface = self.root.and_then(|root| root.interface);
         interface.is_some_and(|(_, problem)| CoupledContact::new(problem).is_some())

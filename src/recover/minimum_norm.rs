@@ -24,7 +24,7 @@ const ROUND_OFF: f64 = 1e-14;
 /// A gap, relative to the largest displacement before and after bodies were moved, that is open.
 const OPENED: f64 = 1e-13;
 
-/// How often what a move leaves unbalanced by its round-off is corrected, which moves bodies again, by less.
+/// Most corrections of what a move leaves unbalanced by its round-off; each moves bodies again, by less.
 const CORRECTIONS: usize = 2;
 
 /// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
@@ -42,7 +42,7 @@ pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolu
 /// Outcome of the minimum-norm solution for released modes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MinimumNorm {
-    /// Whether there were more than those that are free whatever the contacts do; on all ranks.
+    /// True if there were more than those that are free whatever the contacts do; on all ranks.
     pub has_released_modes: bool,
     /// Conditions that opened by it; on the root.
     pub opened: usize,

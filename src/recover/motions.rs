@@ -137,7 +137,7 @@ fn first_blocks(catalog: &Catalog) -> Vec<BlockId> {
     first
 }
 
-/// Which nodes of block b no lower one has.
+/// Nodes of block b that no lower one has.
 fn first_in(block: &Block, b: BlockId, first_of: &[BlockId]) -> Vec<bool> {
     let mut is_first = vec![true; block.nodes()];
     for on in &block.subdomain.interface {

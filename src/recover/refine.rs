@@ -126,12 +126,12 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
     }
 }
 
-/// Whether a solution isn't the best that is to be had.
+/// True if a solution isn't the best that is to be had.
 fn breaks_laws(certificate: &Certificate) -> bool {
     short_of_laws(certificate) > GOOD
 }
 
-/// How far a solution is from balance and from the laws of contact, in the measure of equilibrium.
+/// Violation of balance and of the laws of contact by a solution, in the measure of equilibrium.
 fn short_of_laws(certificate: &Certificate) -> f64 {
     worst(certificate).max(certificate.friction * (GOOD / ASTRAY))
 }
@@ -205,7 +205,7 @@ pub fn replace_if_as_good(
     }
 }
 
-/// Whether a solution keeps the law of friction as well as another one, or well enough.
+/// True if a solution keeps the law of friction as well as another one, or well enough.
 fn keeps_law(after: &Certificate, before: &Certificate) -> bool {
     after.friction <= before.friction.max(AGAINST_FRICTION)
 }
@@ -334,7 +334,7 @@ fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBloc
     residuals.into_iter().filter_map(on_unknowns).collect()
 }
 
-/// Which conditions of contact group g have jumps that supports prescribe; in the plane friction doesn't ask.
+/// Conditions of contact group g whose jumps supports prescribe; in the plane friction doesn't ask.
 fn prescribed(context: &Context<'_>, g: GroupId) -> Vec<bool> {
     let group = &context.groups[&g];
     let of = match context.catalog.dim == 3 && !group.friction().is_empty() {

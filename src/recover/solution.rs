@@ -51,7 +51,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Whether displacements and stresses are finite everywhere, as far as sums over all of them tell. On the root.
+    /// True if displacements and stresses are finite everywhere, as far as sums over all of them tell. On the root.
     pub fn is_finite(&self) -> bool {
         let estimate = self.estimate.unwrap_or_default();
         self.certificate.is_a_number() && estimate.error.is_finite() && estimate.energy.is_finite()

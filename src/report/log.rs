@@ -118,7 +118,7 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// Whether all events could be written; a closed pipe is no error.
+    /// An error where events couldn't be written; a closed pipe is no error.
     ///
     /// # Errors
     /// The first that couldn't.

@@ -51,7 +51,7 @@ pub struct StepTotals {
     pub energy: EnergyBalance,
     /// The estimate of the mesh's error, where there are stresses.
     pub estimate: Option<CellError>,
-    /// Whether friction is at its limit: bodies may slide under the same forces.
+    /// True if friction is at its limit: bodies may slide under the same forces.
     pub at_limit: bool,
     /// The scales of its solution, if it converged.
     pub scales: Scales,
@@ -113,7 +113,7 @@ impl Totals<'_> {
         self.steps.last()
     }
 
-    /// Whether all load steps converged.
+    /// Status of the run: converged where all load steps did.
     pub fn status(&self) -> Status {
         let mut steps = self.steps.iter();
         match steps.all(|step| step.status() == Status::Converged) {

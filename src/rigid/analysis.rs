@@ -1,4 +1,4 @@
-//! Which rigid motions are free, whether the load drives one, and where to pin those it doesn't.
+//! Free rigid motions: those that the load drives, and pins for those that it doesn't.
 
 mod many;
 
@@ -38,7 +38,7 @@ pub struct RigidMotions {
 }
 
 impl Scene {
-    /// Whether supports leave any rigid motion to any body.
+    /// True if supports leave any rigid motion to any body.
     pub fn is_movable(&self) -> bool {
         Kinematics::new(self.dim, &self.bodies).len > 0
     }

@@ -28,7 +28,7 @@ pub struct RigidBodyAnalysis {
     /// For every cluster in contact of this rank, its conditions against the motions that supports
     /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
     pub cluster_modes: OnPairs<RigidModes>,
-    /// Whether supports leave any rigid motion to any body.
+    /// True if supports leave any rigid motion to any body.
     pub movable: bool,
     /// The scene of bodies and conditions, on the root.
     pub scene: Option<Scene>,

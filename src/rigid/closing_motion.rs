@@ -29,7 +29,7 @@ const ALONG: f64 = 1e-12;
 /// Weight, relative to the heaviest body, down to which one falls as fast.
 const LIGHTEST: f64 = 1e-4;
 
-/// Which rigid motion each of `bodies` makes until contact `rows` balance the load: first what its
+/// Rigid motion that each of `bodies` makes until contact `rows` balance the load: first what its
 /// supports prescribe, as far as no gap closes, then downhill along the load until one closes, and
 /// again. Gaps that are closed from the beginning stay as they are.
 ///

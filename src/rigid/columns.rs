@@ -9,7 +9,7 @@ const DEPENDENT: f64 = 1e-12;
 /// Q R of the columns that were pushed and not removed, in O(rows · columns) each time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Columns {
-    /// Which columns, in the order of R.
+    /// Numbers of the columns, in the order of R.
     pub numbers: Vec<usize>,
     q: Vec<DVector<f64>>,
     /// Upper triangular, column by column.

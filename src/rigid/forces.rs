@@ -317,7 +317,7 @@ impl Forces {
     }
 }
 
-/// Whether sides with friction slip on each other in a motion that has `moved` the conditions so far.
+/// True if sides with friction slip on each other in a motion that has `moved` the conditions so far.
 pub(super) fn slips(rows: &[RigidRow], moved: &[f64]) -> bool {
     let far = moved
         .iter()

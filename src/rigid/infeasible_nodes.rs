@@ -57,8 +57,8 @@ pub fn check(group: &ContactGroup, loads: &GroupLoads, catalog: &Catalog) -> Res
     Ok(())
 }
 
-/// Whether some u keeps to all half spaces: if not, by Farkas, λ ≥ 0 exist with Σ λ n = 0 and
-/// Σ λ g < 0.
+/// True if some u keeps to all half spaces: if not, by Farkas, λ ≥ 0 exist with Σ λ n = 0 and Σ λ g
+/// < 0.
 fn leave_a_place(half_spaces: &[HalfSpace]) -> bool {
     let scale = half_spaces
         .iter()

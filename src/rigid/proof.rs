@@ -79,7 +79,7 @@ impl FrictionPoint {
     }
 }
 
-/// Whether a motion that makes these `jumps` of the conditions `rows` proves that no forces balance a load which does
+/// True if a motion that makes these `jumps` of the conditions `rows` proves that no forces balance a load which does
 /// `work` along it, a sum of terms whose magnitudes are `terms` together; all loads are `scale`.
 pub(super) fn proves(rows: &[RigidRow], jumps: &[f64], [work, terms, scale]: [f64; 3]) -> bool {
     let (mut taken, mut worst) = (0.0, 0.0);

@@ -17,9 +17,9 @@ const IN_DOUBT: f64 = 4.0;
 /// A condition in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionState {
-    /// Whether it carries force.
+    /// True if it carries force.
     pub carrying: bool,
-    /// Whether it is closed; a tangential one: sticks.
+    /// True if it is closed; a tangential one: sticks.
     pub closed: bool,
     /// The gap that it has left (m).
     pub gap: f64,
@@ -144,7 +144,7 @@ impl Scene {
         }
     }
 
-    /// Whether condition j holds what moves it. A tangential one does where friction can give any force: sides that
+    /// True if condition j holds what moves it. A tangential one does where friction can give any force: sides that
     /// stick stay, and sides that slip came where they are by their path, not to one of many places.
     fn holds(&self, j: usize, conditions: &[ConditionState]) -> bool {
         let can_resist = |friction: &Friction| {

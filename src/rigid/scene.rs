@@ -16,7 +16,7 @@ pub struct BodyState {
     pub frame: BodyFrame,
     /// Rows of its supports against its rigid motions, what they prescribe last (m).
     pub supports: Vec<Vec<f64>>,
-    /// Whether springs hold it, along rows of its supports that prescribe 0: it isn't moved along its supports.
+    /// True if springs hold it, along rows of its supports that prescribe 0: it isn't moved along its supports.
     pub has_springs: bool,
     /// Resultant of its load against its rigid motions.
     pub load: Vec<f64>,
@@ -46,7 +46,7 @@ pub struct RigidRow {
     pub gap: f64,
     /// The bound of its force if that is tangential; a normal one presses.
     pub friction: Option<Friction>,
-    /// Whether it is one of a tie, which holds both ways.
+    /// True if it is one of a tie, which holds both ways.
     pub is_tied: bool,
 }
 
@@ -75,7 +75,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Whether it can give a force where the contact is as `closed` says, and without a normal force.
+    /// True if it can give a force where the contact is as `closed` says, and without a normal force.
     pub(super) fn holds_unpressed(&self, closed: bool) -> bool {
         self.bound.at(0.0, closed) > 0.0
     }

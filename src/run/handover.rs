@@ -29,7 +29,7 @@ pub struct Handover {
 pub enum Successor {
     /// A more robust solver.
     Solver {
-        /// Its choice.
+        /// The choice.
         choice: Choice,
         /// The solver that didn't converge, and the reason, as the root knows it.
         why: String,

@@ -44,9 +44,9 @@ pub struct Increments<'a> {
     pub log: &'a RunLog<'a>,
     /// Operators of the stage.
     pub operators: &'a Operators,
-    /// Whether another solver takes over where this one doesn't converge.
+    /// True if another solver takes over where this one doesn't converge.
     pub is_relieved: bool,
-    /// Whether quantities get derivatives.
+    /// True if quantities get derivatives.
     pub has_derivatives: bool,
     /// Linear problems that were solved for contact conditions, in tries that were given up, too; on the root.
     pub linear_solves: &'a Cell<usize>,
@@ -146,7 +146,8 @@ impl Increments<'_> {
         self.linear_solves.set(self.linear_solves.get() + solves);
     }
 
-    /// Whether the sweeps of a load step converged, and their outcome, which the root has, or its failure. Collective.
+    /// End of a load step's sweeps: converged or not, and their outcome, which the root has, or its failure.
+    /// Collective.
     pub fn ended<'s>(
         &self,
         solved: &'s Result<Increment, Failure>,
@@ -155,7 +156,7 @@ impl Increments<'_> {
         Ok((self.is_converged(solved), solved.outcome.as_ref()))
     }
 
-    /// Whether the sweeps converged. Collective.
+    /// True if the sweeps converged. Collective.
     pub fn is_converged(&self, increment: &Increment) -> bool {
         let status = increment.outcome.as_ref().map(|outcome| &outcome.status);
         (self.context.comm).decide(status == Some(&SweepStatus::Converged))

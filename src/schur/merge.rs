@@ -90,7 +90,7 @@ struct Run {
 pub struct OwnJumps<'a> {
     /// The displacements that jumps replace.
     pub replaced: &'a [Replaced],
-    /// Which of them are open and eliminated like a displacement; the others are kept. None of them where it is
+    /// Jumps that are open and eliminated like a displacement; the others are kept. None of them where it is
     /// empty.
     pub open: &'a [bool],
     /// A spring on every open one, relative to the diagonal, that holds what its contact has let go.

@@ -22,7 +22,7 @@ pub struct Replaced {
     pub staying: Vec<(InterfaceDof, f64)>,
     /// Normal jumps, the one in its place among them, and γ.
     pub jumps: Vec<(usize, f64)>,
-    /// Whether the jump in its place is that of a tie, which is known; those come last.
+    /// True if the jump in its place is that of a tie, which is known; those come last.
     pub is_tied: bool,
 }
 

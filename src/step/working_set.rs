@@ -37,7 +37,7 @@ pub struct WorkingSet {
 /// The closest approaches of contact points in several load steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClosestApproaches {
-    /// Whether a point was closed.
+    /// Points that were closed.
     pub closed: Vec<bool>,
     /// The least gap of every point (m).
     pub gaps: Vec<f64>,
@@ -61,7 +61,7 @@ pub enum Outside {
     Overlaps(WorkingSet),
 }
 
-/// Whether a problem may have a working set: friction at many points, most of which are apart at first.
+/// True if a problem may have a working set: friction at many points, most of which are apart at first.
 pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
     let wishes = settings.wishes();
     let of_point = |point: &ContactPoint<SubdomainNode>| 1 + point.tangents(catalog.dim).len();
@@ -83,7 +83,7 @@ pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
         && settings.max_sweeps.is_none()
 }
 
-/// Whether a point is apart at first, and free as long as it is open.
+/// True if a point is apart at first, and free as long as it is open.
 fn can_wait(point: &ContactPoint<SubdomainNode>) -> bool {
     let is_free = match point.law {
         Law::Frictionless => true,
@@ -104,7 +104,7 @@ impl WorkingSet {
         set.is_worth(catalog).then_some(set)
     }
 
-    /// Whether it is small enough.
+    /// True if it is small enough.
     fn is_worth(&self, catalog: &Catalog) -> bool {
         self.points.len() as f64 <= WORTH * catalog.points.len() as f64
     }

@@ -69,7 +69,7 @@ pub struct SweepOutcome {
     pub u: Vec<f64>,
     /// Why they ended.
     pub status: SweepStatus,
-    /// Whether refinement may find the rest: no status changed any more, or those of friction cycle.
+    /// True if refinement may find the rest: no status changed any more, or those of friction cycle.
     pub is_settled: bool,
     /// History.
     pub records: Vec<SweepRecord>,
@@ -91,12 +91,12 @@ pub struct SweepOutcome {
     pub iterative: Option<IterativeSolves>,
     /// Increments that the load step was solved in.
     pub increments: usize,
-    /// Whether another solution with friction was found, where it was looked for.
+    /// True if another solution with friction was found; `None` where none was looked for.
     pub other_solution: Option<bool>,
-    /// Whether something slides on and on: there are forces of all contacts by their laws, and a motion that nothing
+    /// True if something slides on and on: there are forces of all contacts by their laws, and a motion that nothing
     /// resists, along which loads do more work than these forces take.
     pub slides: bool,
-    /// Which solver didn't converge before this one took over, and why, in words.
+    /// Solver that didn't converge before this one took over, and the reason, in words.
     pub took_over: Option<String>,
     /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
     pub unsettled: Vec<Vec<usize>>,

@@ -23,7 +23,7 @@ use crate::tree::update::{ActiveSetUpdate, Descent};
 struct Faults {
     /// Normal jumps by group that should be open and are closed, or the other way round.
     wrong: OnGroups<Vec<usize>>,
-    /// How many there are on all ranks.
+    /// Number on all ranks.
     count: usize,
     /// Closed ones on all ranks.
     active: usize,
@@ -35,7 +35,7 @@ struct Faults {
 pub(super) struct Settled {
     pub open: OnGroups<Vec<bool>>,
     pub solution: ActiveSetSolution,
-    /// Whether nothing is wrong.
+    /// True if nothing is wrong.
     pub is_right: bool,
 }
 
@@ -124,7 +124,7 @@ struct Search<'a> {
     last: Option<ActiveSetSolution>,
     /// The largest tension or penetration in it.
     wrong_by: f64,
-    /// Whether springs of earlier active sets were taken away.
+    /// True if springs of earlier active sets were taken away.
     is_released: bool,
 }
 

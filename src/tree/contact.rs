@@ -41,7 +41,7 @@ pub struct TreeContact {
     pub boundaries: OnTreeNodes<Vec<f64>>,
     /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
     pub statuses: OnGroups<Statuses>,
-    /// How they got there; the same on all ranks but for times.
+    /// Course of the sweeps; the same on all ranks but for times.
     pub outcome: SweepOutcome,
 }
 

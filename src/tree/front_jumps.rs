@@ -22,7 +22,7 @@ use crate::schur::substitution::Replaced;
 pub(super) struct FrontJumps {
     /// D.
     rows: DependentConstraints,
-    /// Which limits are open.
+    /// Open limits.
     pub open: Vec<bool>,
     /// The closed rows that say more than the closed jumps.
     equalities: ActiveEqualities,
@@ -48,7 +48,7 @@ impl FrontJumps {
         }
     }
 
-    /// Which jumps are open in the front.
+    /// Jumps that are open in the front.
     pub fn open_in_front(&self) -> Vec<bool> {
         let mut open = self.open[..self.open.len() - self.rows.len()].to_vec();
         for equality in &self.equalities.equalities {

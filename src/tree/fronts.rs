@@ -33,7 +33,7 @@ pub(super) struct ActiveSetFront {
     pub(super) merge: Merge,
     /// S of the closed ones against them and what is kept, a column each from the diagonal on.
     pub(super) held: Mat<f64>,
-    /// Its jumps, and which limits of them are open.
+    /// Jumps of the front, and which limits of them are open.
     pub(super) jumps: FrontJumps,
 }
 
@@ -56,7 +56,7 @@ pub struct ActiveSetFronts {
     pub smallest_pivot: f64,
     /// Number of loads that they were solved for.
     pub solves: usize,
-    /// What works between the nodes that nothing here is above, where these aren't the roots of the hierarchy.
+    /// Iterative solver between the nodes that nothing here is above, where these aren't the roots of the hierarchy.
     pub(super) bddc: Option<Bddc>,
 }
 
@@ -108,8 +108,8 @@ impl ActiveSetFronts {
         Ok(fronts)
     }
 
-    /// Whether what slips is to be held: springs hold what is open, as something moves without them, and friction in space
-    /// depends on how far that goes.
+    /// True if what slips is to be held: springs hold what is open, as something moves without them, and friction in
+    /// space depends on how far that goes.
     pub fn has_to_hold(&self, context: &Context<'_>) -> bool {
         self.spring > 0.0 && context.catalog.dim == 3 && context.catalog.has_friction()
     }
@@ -205,7 +205,7 @@ impl ActiveSetFronts {
         Ok(self.spring == 0.0)
     }
 
-    /// Whether what the iterative interface solver holds without springs may be held by round-off alone. Collective.
+    /// True if what the iterative interface solver holds without springs may be held by round-off alone. Collective.
     fn nearly_moves(&self, context: &Context<'_>) -> bool {
         let comm = context.comm;
         let pivot = self.bddc.as_ref().map(Bddc::smallest_pivot);
@@ -259,7 +259,7 @@ impl ActiveSetFronts {
         Ok(())
     }
 
-    /// Whether all fronts were factorized before. Collective.
+    /// True if all fronts were factorized before. Collective.
     fn fronts_known(&self, context: &Context<'_>) -> bool {
         let Context { comm, plan, .. } = *context;
         let own = self

@@ -31,11 +31,11 @@ pub(super) struct TreeOperator<'a, 's, 'o> {
     steps: &'s mut Steps<'o>,
     /// The last answer; the same on all ranks whether there was one, of which some have no clusters.
     pub solution: Option<ActiveSetSolution>,
-    /// Whether what slips is held at its slip, without which something moves.
+    /// True if what slips is held at its slip, without which something moves.
     is_held: bool,
-    /// Whether springs of earlier statuses were taken away.
+    /// True if springs of earlier statuses were taken away.
     is_released: bool,
-    /// Whether directions of slip turn with it.
+    /// True if directions of slip turn with it.
     turns: bool,
     /// Round-off of the last answer, relative to the largest force.
     accuracy: f64,

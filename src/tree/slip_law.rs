@@ -12,9 +12,9 @@ pub const AT_BOUND: f64 = 1.0 - 1e-9;
 #[derive(Clone, Debug)]
 pub struct SlipLaw {
     point: PointLaw,
-    /// Whether its contact is closed.
+    /// True if its contact is closed.
     is_closed: bool,
-    /// Whether that is about to open.
+    /// True if that is about to open.
     parts: bool,
     /// e.
     direction: [f64; 2],

@@ -24,7 +24,7 @@ use crate::vector::{axpy, dot};
 const ROUNDS: usize = 2;
 /// Part of what a round before missed that is no less.
 const STALLS: f64 = 0.5;
-/// How far GMRES goes, relative to what is missed before, at least and at most, and beyond what is enough.
+/// Reduction of the residual by GMRES, at least and at most, and beyond what is enough.
 const REDUCTION: [f64; 2] = [1e-1, 1e-6];
 const MARGIN: f64 = 0.3;
 /// Most products.
@@ -77,9 +77,9 @@ pub fn fix(
 pub struct SlipProblem<'a> {
     /// The context of the run.
     pub context: &'a Context<'a>,
-    /// Which jumps are open, by contact group of this rank; those that slip are unless they are held.
+    /// Open jumps, by contact group of this rank; those that slip are unless they are held.
     pub open: &'a OnGroups<Vec<bool>>,
-    /// Whether what slips is held, unless its slip follows from what is closed.
+    /// True if what slips is held, unless its slip follows from what is closed.
     pub is_held: bool,
     /// Loads on the boundaries of clusters, by node.
     pub clusters: &'a OnTreeNodes<Vec<f64>>,
@@ -277,7 +277,7 @@ impl SlipProblem<'_> {
         forces.iter().map(of_group).collect()
     }
 
-    /// How what slipping points miss of their law changes with these forces. Collective.
+    /// Change of the residual of slipping points' law with these forces. Collective.
     fn product(
         &self,
         fronts: &mut ActiveSetFronts,

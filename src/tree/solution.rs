@@ -1,4 +1,4 @@
-//! What a load does where the active set is fixed.
+//! Response to a load with a fixed active set.
 
 use std::collections::BTreeMap;
 
@@ -28,14 +28,14 @@ pub struct ActiveSetSolution {
     pub boundaries: OnTreeNodes<Vec<f64>>,
     /// The unknowns of the nodes between which an iterative solver works.
     pub merge_roots: OnTreeNodes<Vec<f64>>,
-    /// Its iterations.
+    /// The iterations.
     pub iterations: usize,
-    /// Whether the preconditioner was too bad, and can be made better.
+    /// True if the preconditioner was too bad, and can be made better.
     pub is_too_far: bool,
 }
 
 impl ActiveSetSolution {
-    /// Whether it consists of finite numbers, on all ranks. Collective.
+    /// True if it consists of finite numbers, on all ranks. Collective.
     pub fn is_finite(&self, comm: &Comm) -> bool {
         let of_groups = self
             .at

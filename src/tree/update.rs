@@ -1,4 +1,4 @@
-//! Which conditions are changed where the solution says that an active set is wrong.
+//! Choice of the conditions that change where the solution contradicts an active set.
 //!
 //! All that are wrong, as semismooth Newton does. Where these don't become fewer the energy descends: from jumps that
 //! penetrate nowhere the way towards those of a step is gone up to where the first condition closes, and where none does
@@ -19,7 +19,7 @@ pub(super) const LOOSE: f64 = 0.01;
 /// Steps without fewer conditions that say otherwise until the energy descends.
 const PATIENCE: usize = 8;
 
-/// Whether all wrong conditions are changed.
+/// Rule by which all wrong conditions are changed, or some.
 #[derive(Debug)]
 pub(super) struct ActiveSetUpdate {
     /// Fewest conditions that were wrong.
@@ -42,7 +42,7 @@ impl Default for ActiveSetUpdate {
 }
 
 impl ActiveSetUpdate {
-    /// Whether all are changed where `count` are wrong; if not, the energy is to descend.
+    /// True if all are changed where `count` are wrong; if not, the energy is to descend.
     pub fn is_of_all(&mut self, count: usize) -> bool {
         let all = count < self.fewest || self.patience > 0;
         if count < self.fewest {

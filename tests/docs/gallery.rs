@@ -69,7 +69,7 @@ fn every_scene_has_a_page() {
     }
 }
 
-/// What a page shows of its scene stands in the built-in one, line by line.
+/// The scene that a page shows is part of the built-in one, line by line.
 fn scene_is_built_in(page: &Page, name: &str) {
     let scene = example::find(name).unwrap().scene;
     assert!(

@@ -291,7 +291,7 @@ fn without_stresses(trials: &mut Trials) {
     });
 }
 
-/// What `--check` says of memory is what a run of the same problem needs, by a third.
+/// The memory that `--check` estimates is what a run of the same problem needs, by a third.
 fn memory() {
     let case = Case::of(&built_in_model("granite", 3), 30);
     let checked = case.run_on(2, &["--check"]);

@@ -104,7 +104,7 @@ pub fn the_same_output(trials: &mut Trials) {
     });
 }
 
-/// What can't be printed is an error, but no reason not to write the result.
+/// An unwritable terminal is an error, but no reason not to write the result.
 pub fn full_terminal(trials: &mut Trials) {
     let runs: [(&str, &[&str]); 4] = [
         ("text", &[]),

@@ -179,7 +179,7 @@ pub fn no_rest(trials: &mut Trials) {
     }
 }
 
-/// What is just in equilibrium is solved.
+/// Scenes that are just in equilibrium are solved.
 pub fn just_rest(trials: &mut Trials) {
     type Make = fn() -> Model;
     let scenes: [(&str, Make, [f64; 3]); 3] = [

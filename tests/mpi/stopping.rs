@@ -102,7 +102,7 @@ fn friction(case: &Case) -> Vec<Value> {
     steps.iter().map(|step| step["friction"].clone()).collect()
 }
 
-/// What isn't of this run is refused and stays; where there is nothing to go on with the run begins anew.
+/// A state file of another run is refused and stays; where there is nothing to go on with the run begins anew.
 pub fn restarted_in_vain(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
@@ -300,7 +300,7 @@ pub fn stopped_ahead_of_sweeps(trials: &mut Trials) {
     }
 }
 
-/// What is being made when a signal comes, a table of the result file or a block's factor, is finished, then the run ends.
+/// A table of the result file or a factor that is being made when a signal comes is finished, then the run ends.
 pub fn stopped_once_all_is_read(trials: &mut Trials) {
     trials.on_all_ranks("stopped::once_all_is_read", |ranks| {
         let case = Case::of(&built_in_model("granite", 2), 40);

@@ -125,7 +125,7 @@ fn a_rigid_motion_in_space_is_that_of_prescribed_displacements() {
     }
 }
 
-/// What holds the other end bears the force and the moment at the point, whichever way nodes follow.
+/// The support at the other end bears the force and the moment at the point, whichever way nodes follow.
 #[test]
 fn forces_and_moments_balance() {
     for kind in ["rigid", "distributing"] {

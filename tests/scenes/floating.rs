@@ -188,7 +188,7 @@ fn a_body_that_may_slide_stays_in_the_mean_and_a_warning_says_so() {
     }
 }
 
-/// What is left of forces along the motion that both are free in has to lie somewhere.
+/// The rest of forces along the motion that both are free in has to lie somewhere.
 #[test]
 fn round_off_along_a_free_motion_is_left_at_no_single_node() {
     for n in [36, 48, 52, 56] {

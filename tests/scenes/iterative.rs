@@ -163,7 +163,8 @@ fn a_file_without_clusters_is_refused_in_words() {
     assert!(ended.errors()[0].contains("/hierarchy/cluster is missing"));
 }
 
-/// What sticks and what slips may differ where a force is within 1e-12 of its bound, which moves what slips by more.
+/// Tolerance of friction: statuses may differ where a force is within 1e-12 of its bound, which moves slipping
+/// points by more.
 const FRICTION: f64 = 1e-9;
 
 #[test]

@@ -24,7 +24,7 @@ fn mesh() -> Mesh {
         .mesh
 }
 
-/// What holds a side of the block.
+/// Supports of a side of the block.
 fn held(side: &str, [x, y]: [f64; 2]) -> String {
     format!("[[displacement]]\non = 'block {side}'\nx = {x:?}\ny = {y:?}\n")
 }
@@ -88,7 +88,7 @@ fn a_wall_that_moves_is_in_every_step_the_wall_that_stands_there() {
     }
 }
 
-/// Whether the die comes to the block or the block to the die, with friction, on the whole way.
+/// The result is the same where the die comes to the block and the block to the die, with friction, on the whole way.
 #[test]
 fn it_is_the_same_whether_the_die_moves_or_the_body() {
     for keys in [
@@ -157,7 +157,7 @@ fn a_round_die_presses_at_its_end_as_one_that_stands_there() {
     same(&moving, &there, [0.0; 3], 1e-9);
 }
 
-/// What holds no other way rests on the table and goes with it.
+/// A body that nothing else holds rests on the table and goes with it.
 #[test]
 fn a_table_lifts_what_stands_on_it() {
     let lift = 0.25;

@@ -137,7 +137,8 @@ fn the_walls_bear_the_force_across_the_cut() {
     }
 }
 
-/// What is turned in space is tightened along its own axis, by the normal of the cut or by a direction that says the same.
+/// A bar that is turned in space is tightened along its own axis, by the normal of the cut or by a direction that says
+/// the same.
 #[test]
 fn a_turned_bar_is_tightened_along_itself() {
     let mesh = solid(

@@ -77,7 +77,7 @@ fn linear_displacements_pass_through_affine_cells() {
     }
 }
 
-/// What heats up freely has no stress, however its cells are shaped: loads are integrated as the stiffness is.
+/// A body that heats up freely has no stress, however its cells are shaped: loads are integrated as the stiffness is.
 #[test]
 fn cells_of_any_shape_expand_without_stress() {
     for (mesh, side, head) in meshes(0.15) {

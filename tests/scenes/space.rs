@@ -244,7 +244,7 @@ value = [0, -1e6, 0]
     }
 }
 
-/// What a plane scene says in space: nothing moves along z.
+/// Support that makes a scene in space a plane one: nothing moves along z.
 const FLAT: &str = "
 [[bilateral]]
 on = ['lower back', 'lower front', 'upper back', 'upper front']

@@ -120,7 +120,7 @@ proptest! {
     }
 }
 
-/// Its stiff bodies' round-off is more than the tolerance of the sweeps.
+/// The round-off of stiff bodies is more than the tolerance of the sweeps.
 #[test]
 fn newton_gives_up_where_it_gets_no_further() {
     for seed in [193, 475] {
@@ -149,8 +149,8 @@ fn random_scenes_in_space_with_friction_are_answered_rightly() {
     }
 }
 
-/// What slips beside stiff bodies, where refinement changes slips by more than round-off, and forces have to turn with them
-/// (8), or supports leave one direction (225); and what sticks although several contacts hold it (67, 260).
+/// Points that slip beside stiff bodies, where refinement changes slips by more than round-off, and forces have to turn
+/// with them (8), or supports leave one direction (225); and what sticks although several contacts hold it (67, 260).
 #[test]
 fn refinement_in_space_keeps_the_law_of_friction() {
     for seed in [8, 67, 225, 260] {
@@ -208,8 +208,8 @@ fn what_bends_with_next_to_no_force_is_not_said_to_move() {
     assert_eq!(verdict, Verdict::Right, "{why}");
 }
 
-/// What the sweeps leave is round-off of bodies that lie far from where they would touch, or of stiff ones, and refinement
-/// takes it off.
+/// The residual of the sweeps is round-off of bodies that lie far from where they would touch, or of stiff ones, and
+/// refinement takes it off.
 #[test]
 fn what_round_off_keeps_sweeps_from_is_found_by_refinement() {
     for seed in [685_154, 696_382] {

@@ -23,7 +23,7 @@ fn absent_nodes(model: &Model, k: usize) -> BTreeSet<u32> {
     absent.flat_map(|((_, nodes), _)| nodes.to_vec()).collect()
 }
 
-/// Which contacts are there in step k.
+/// Presence of contacts in step k.
 fn is_there(model: &Model, k: usize) -> Vec<bool> {
     let absent = absent_nodes(model, k);
     let of_contact = |(c, contact): (u32, &contact_dd_partition::model::Contact)| {
@@ -278,7 +278,7 @@ fn contacts_are_switched_by_themselves() {
     assert_eq!(closed, [true, false, true, true]);
 }
 
-/// What rubs doesn't notice that another body comes and goes elsewhere.
+/// Friction isn't affected by a body that comes and goes elsewhere.
 #[test]
 fn friction_goes_on_where_something_else_comes_and_goes() {
     let friction = JOINT.replace("name", "friction = 0.3\nname");

@@ -31,7 +31,7 @@ name = 'weld'
 sides = ['upper bottom', 'lower top']
 ";
 
-/// What holds the lower block, and pulls, shears and bends the upper one.
+/// Support of the lower block, and loads that pull, shear and bend the upper one.
 const LOADED: &str = "
 [[displacement]]
 on = 'lower bottom'

@@ -203,7 +203,7 @@ fn a_curved_pin_with_a_clearance_is_not_said_to_overlap_or_to_part() {
         "{found}"
     );
     assert!(
-        !model.warnings.concat().contains("part slowly"),
+        !model.warnings.concat().contains("opens slowly"),
         "{:?}",
         model.warnings
     );

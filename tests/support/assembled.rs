@@ -26,10 +26,10 @@ pub type Row = Vec<(usize, f64)>;
 
 /// A tangential row and its law.
 pub struct Tangent {
-    /// Which condition has it.
+    /// Number of the condition.
     pub condition: usize,
     pub row: Row,
-    /// Its direction.
+    /// The direction.
     pub direction: [f64; 3],
     law: Law,
     area: f64,
@@ -94,7 +94,7 @@ impl Tangent {
         }
     }
 
-    /// Whether the bound is there without contact.
+    /// True if the bound is there without contact.
     pub fn is_given(&self) -> bool {
         matches!(self.law, Law::Given { .. })
     }

@@ -8,7 +8,7 @@ use std::process::Command;
 pub enum Mounted {
     /// With so many bytes, rounded up to pages.
     OfSize(u64),
-    /// Which can't be written any more.
+    /// A file system that can't be written any more.
     ReadOnly,
 }
 

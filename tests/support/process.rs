@@ -13,7 +13,7 @@ use tempfile::TempDir;
 /// The end of a program, and its output.
 #[derive(Debug)]
 pub struct Ended {
-    /// Its exit status; `None` if it had to be ended because its time was up.
+    /// The exit status; `None` if it had to be ended because its time was up.
     pub status: Option<ExitStatus>,
     pub stdout: String,
     pub stderr: String,
@@ -22,7 +22,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// Its exit code.
+    /// The exit code.
     ///
     /// # Panics
     /// If it has none, because it hung or was killed.

@@ -25,7 +25,7 @@ pub struct Punch {
     pub block: usize,
     /// Cells across the punch.
     pub across: usize,
-    /// Its half-width (m).
+    /// The half-width (m).
     pub width: f64,
     /// The radius of its lower face; infinite where that is flat (m).
     pub radius: f64,
@@ -53,12 +53,12 @@ impl Punch {
         }
     }
 
-    /// Whether it is in the plane.
+    /// True if it is in the plane.
     fn is_plane(&self) -> bool {
         self.kind.dim() == 2
     }
 
-    /// Its mesh.
+    /// The mesh.
     pub fn mesh(&self) -> Mesh {
         let Self {
             kind,

@@ -107,7 +107,7 @@ pub fn checkerboard(young: [f64; 2], poisson: f64, length: usize, cells: usize) 
     model(&scene, mesh)
 }
 
-/// Its scene and its mesh.
+/// The scene and its mesh.
 fn squares(young: [f64; 2], poisson: f64, length: usize, cells: usize) -> (String, Mesh) {
     let mut blocks = Blocks::new();
     for i in 0..7 * length {

@@ -9,7 +9,7 @@ use crate::name;
 #[derive(Clone)]
 pub(super) struct Amplitude {
     points: Vec<(f64, f64)>,
-    /// Whether its time is that of the whole deck, not that of a step.
+    /// True if its time is that of the whole deck, not that of a step.
     pub(super) is_total: bool,
 }
 
@@ -64,7 +64,7 @@ impl Amplitude {
         Ok(Self { points, is_total })
     }
 
-    /// Its value at a moment: before its first point and behind its last that of these.
+    /// The value at a moment: before its first point and behind its last that of these.
     pub(super) fn at(&self, moment: Moment) -> f64 {
         let time = if self.is_total {
             moment.total
@@ -82,7 +82,7 @@ impl Amplitude {
         }
     }
 
-    /// Whether it isn't linear from one moment to another of the same step.
+    /// True if it isn't linear from one moment to another of the same step.
     pub(super) fn bends(&self, from: Moment, to: Moment) -> bool {
         let time = |moment: Moment| {
             if self.is_total {

@@ -42,7 +42,7 @@ pub(super) fn soft(places: &Places, block: &Block) -> Result<Option<String>, Inp
         "TABULAR" => "a table of pressures over overclosures".into(),
         "TIED" => {
             return Ok(Some(format!(
-                "{}: the stiffness {} of what is tied is left out: sides don't move against each other",
+                "{}: the stiffness {} of a tied contact is left out: a tie is rigid",
                 source.place(block.place),
                 number(0)
             )));

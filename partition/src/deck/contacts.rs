@@ -48,14 +48,14 @@ struct Interaction {
     law: ContactLaw,
     /// Softness that is taken as hard contact, in words.
     soft: Option<String>,
-    /// Whether the sides hang together.
+    /// True if the sides are tied.
     is_tied: bool,
 }
 
 /// The law of a pair in some steps.
 pub(super) struct LawInSteps {
     pub(super) law: ContactLaw,
-    /// Whether its sides hang together.
+    /// True if its sides are tied.
     pub(super) is_tied: bool,
     pub(super) steps: Range<usize>,
 }
@@ -66,10 +66,10 @@ pub(super) struct Pair {
     pub(super) master: String,
     interaction: String,
     pub(super) place: LinePlace,
-    /// Which nodes of the slave should be moved onto the master.
+    /// Nodes of the slave that are to be moved onto the master.
     pub(super) adjust: Option<Adjust>,
     pub(super) gap: Option<f64>,
-    /// Whether the pair says that its sides hang together.
+    /// True if the pair itself says that its sides are tied.
     tied: bool,
 }
 
@@ -110,12 +110,12 @@ const FRICTION: [&str; 6] = [
 ];
 
 impl Contacts {
-    /// Whether there is none.
+    /// True if there is no contact.
     pub(super) fn is_empty(&self) -> bool {
         self.pairs.is_empty() && self.general.is_none()
     }
 
-    /// Whether friction acts somewhere.
+    /// True if friction acts somewhere.
     pub(super) fn have_friction(&self) -> bool {
         let general = self
             .general
@@ -369,7 +369,7 @@ impl Contacts {
 }
 
 impl Interaction {
-    /// Its law, and with `warnings` what it is taken for.
+    /// Contact law; `warnings` get what a law that isn't there is taken for.
     fn law_with(&self, warnings: &mut Vec<String>) -> ContactLaw {
         let soft = self.soft.iter().filter(|soft| !warnings.contains(soft));
         let soft: Vec<String> = soft.cloned().collect();

@@ -10,7 +10,7 @@ use crate::mesh::abaqus::{Face, LinePlace};
 /// Names of groups by what is in them.
 pub(super) struct Groups<'a, 'b> {
     places: &'a mut Places<'b>,
-    /// How many sets of any kind have a name, in capitals.
+    /// Number of sets of any kind that have a name, in capitals.
     count: BTreeMap<String, usize>,
     /// Sets by their members, of those whose name is that of a group.
     nodes: BTreeMap<Vec<u32>, String>,
@@ -80,7 +80,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         (self.nodes, self.cells, self.faces) = (nodes, cells, all_faces);
     }
 
-    /// Whether the group that a set makes has its name: no other set has it, and it is of no instance.
+    /// True if the group that a set makes has its name: no other set has it, and it is of no instance.
     fn is_plain(&self, name: &str, internal: bool) -> bool {
         !internal && self.count.get(&name.to_uppercase()) == Some(&1) && !name.contains('.')
     }
@@ -108,7 +108,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         name
     }
 
-    /// Whether a cell has a node.
+    /// True if a cell has a node.
     pub(super) fn is_of_body(&self, node: u32) -> bool {
         self.has_cell[node as usize]
     }
@@ -170,7 +170,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         Some(surface.members.list().to_vec())
     }
 
-    /// Whether a direction points to the outside of a surface of faces, as none does.
+    /// True if a direction points to the outside of a surface of faces, as none does.
     pub(super) fn points_outward(&self, surface: &str, direction: Option<[f64; 3]>) -> bool {
         let outward = self.places.deck.outward(surface);
         direction.is_none_or(|direction| dot(direction, outward) >= 0.0)

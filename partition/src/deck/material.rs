@@ -41,7 +41,7 @@ impl Material {
         Ok(())
     }
 
-    /// Its elastic law.
+    /// The elastic law.
     pub(super) fn elastic(&self, source: &Source) -> Result<&Elastic, InputError> {
         self.elastic.as_ref().ok_or_else(|| {
             let name = name::shown(&self.name);
@@ -52,7 +52,7 @@ impl Material {
         })
     }
 
-    /// Its density, which a load `label` in line `at` needs.
+    /// The density, which a load `label` in line `at` needs.
     pub(super) fn density(
         &self,
         source: &Source,

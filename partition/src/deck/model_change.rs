@@ -12,7 +12,7 @@ struct Change {
     /// The step, from 0 on.
     step: usize,
     of: Changed,
-    /// Whether they are there from then on.
+    /// True if they are there from then on.
     comes: bool,
 }
 
@@ -93,14 +93,14 @@ impl Changes {
         Ok(())
     }
 
-    /// Whether elements come or go.
+    /// True if elements come or go.
     pub(super) fn have_elements(&self) -> bool {
         self.0
             .iter()
             .any(|change| matches!(change.of, Changed::Elements(_)))
     }
 
-    /// Whether a pair is there in each of so many steps.
+    /// Presence of a pair in each of so many steps.
     pub(super) fn of_pair(&self, pair: usize, steps: usize) -> Vec<bool> {
         self.course(
             steps,
@@ -108,7 +108,7 @@ impl Changes {
         )
     }
 
-    /// Whether an element is.
+    /// Presence of an element in each of so many steps.
     pub(super) fn of_element(&self, element: u32, steps: usize) -> Vec<bool> {
         self.course(steps, |of| match of {
             Changed::Elements(all) => all.binary_search(&element).is_ok(),
@@ -116,7 +116,8 @@ impl Changes {
         })
     }
 
-    /// Whether what changes concern is there in each of so many steps: at first unless it comes before it goes.
+    /// Presence, in each of so many steps, of what changes concern: it is there at first unless it comes before
+    /// it goes.
     fn course(&self, steps: usize, concerns: impl Fn(&Changed) -> bool) -> Vec<bool> {
         let own: Vec<&Change> = self
             .0

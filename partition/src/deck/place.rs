@@ -112,7 +112,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether there is a surface.
+    /// An error where there is no surface of this name.
     pub(super) fn check_surface(&self, at: LinePlace, name: &str) -> Result<(), InputError> {
         let is_there =
             self.deck.surfaces.get(name).is_some() || self.deck.node_surfaces.get(name).is_some();
@@ -148,7 +148,7 @@ impl<'a> Places<'a> {
         has_cell
     }
 
-    /// Whether an element is a cell, in a mesh of dimension `dim`.
+    /// True if an element is a cell, in a mesh of dimension `dim`.
     pub(super) fn is_cell(&self, element: u32, dim: usize) -> bool {
         let element = element as usize;
         !self.deck.is_side[element] && self.deck.elements.kind(element).dim() == dim

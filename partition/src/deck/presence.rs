@@ -1,4 +1,4 @@
-//! What is there in which steps, in the words of the scene.
+//! Bodies and contacts of each step, in the words of the scene.
 
 use std::collections::BTreeSet;
 

@@ -38,7 +38,7 @@ pub struct Table {
     pub label: String,
     /// Name of the set.
     pub set: String,
-    /// Whether the sum is written, too, or nothing else: "NO", "YES" or "ONLY".
+    /// Sum written besides ("YES"), alone ("ONLY"), or not ("NO").
     pub totals: String,
 }
 
@@ -47,7 +47,7 @@ pub struct Table {
 pub struct Cell {
     /// Numbers of its nodes.
     pub nodes: Vec<i64>,
-    /// Whether its type is one of reduced integration, which has fewer points.
+    /// True if its type is one of reduced integration, which has fewer points.
     pub is_reduced: bool,
 }
 
@@ -65,7 +65,7 @@ pub(super) struct Requests {
     all: Vec<Request>,
     nodes: BTreeMap<String, Vec<u32>>,
     elements: BTreeMap<String, Vec<u32>>,
-    /// Whether some of those of nodes, and of elements, are asked for along local axes.
+    /// Local axes asked for, by some of the prints of nodes and of elements.
     has_local: [bool; 2],
     /// The quantities that aren't printed, in words.
     pub(super) left_out: BTreeSet<String>,

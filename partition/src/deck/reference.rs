@@ -18,7 +18,7 @@ const IN_THE_PLANE: [usize; 3] = [0, 1, 5];
 pub(super) struct Reference {
     /// The reference node.
     pub(super) node: u32,
-    /// Its component that is the node's first degree of freedom: 3 of a node for rotations.
+    /// Component that is the node's first degree of freedom: 3 of a node for rotations.
     pub(super) first: usize,
     /// The components that are coupled.
     pub(super) coupled: [bool; FREEDOMS],
@@ -41,7 +41,7 @@ impl Reference {
         }
     }
 
-    /// Whether it is that of a pretension: what else is coupled has more than one component.
+    /// True if it is that of a pretension: what else is coupled has more than one component.
     pub(super) fn is_of_pretension(&self) -> bool {
         self.coupled.iter().filter(|&&coupled| coupled).count() == 1
     }

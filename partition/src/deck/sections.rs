@@ -53,13 +53,13 @@ pub(super) struct Body {
     pub(super) section: usize,
     /// The loads that act on it in some step.
     pub(super) loads: BTreeSet<usize>,
-    /// Its temperature in every step, above that at the beginning.
+    /// The temperature in every step, above that at the beginning.
     pub(super) warmth: Vec<f64>,
-    /// Whether its elements have a reduced integration.
+    /// True if its elements have a reduced integration.
     pub(super) is_reduced: bool,
     /// Their stress before anything acts.
     pub(super) initial: [f64; 6],
-    /// Whether they are there in every step.
+    /// Presence of the elements in every step.
     steps: Vec<bool>,
 }
 

@@ -57,7 +57,7 @@ struct Open {
 }
 
 impl Steps {
-    /// Whether a step is read.
+    /// True if a step is read.
     pub(super) fn is_open(&self) -> bool {
         self.open.is_some()
     }

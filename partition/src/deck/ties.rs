@@ -7,7 +7,7 @@ use super::place::Places;
 use crate::error::InputError;
 use crate::mesh::abaqus::Block;
 
-/// Parameters of `*TIE` that are something else than sides which hang together.
+/// Parameters of `*TIE` that make something else of it than a tie of two sides.
 const REFUSED: [&str; 3] = ["MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"];
 
 /// A tie of two surfaces, by name in capitals.
@@ -36,7 +36,7 @@ impl Ties {
     pub(super) fn read(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         if let Some(key) = REFUSED.iter().find(|key| block.parameter(key).is_some()) {
-            let message = format!("*TIE with {key} isn't read; expected sides that hang together");
+            let message = format!("*TIE with {key} isn't read; expected a tie of two sides");
             return Err(source.error(block.place, message));
         }
         let tolerance = block.parameter("POSITION TOLERANCE");

@@ -26,7 +26,7 @@ pub(super) struct Aim {
     pub slack: f64,
     /// Cost of that deviation, as a part of the flops under the cut.
     pub price: f64,
-    /// Whether METIS is asked, too.
+    /// True if METIS is asked, too.
     pub with_metis: bool,
     /// Effort of the search.
     pub effort: Effort,
@@ -239,7 +239,7 @@ fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
 /// Vertices between two lines, or planes, across a direction.
 struct Slab {
     direction: [f32; 3],
-    /// Its start, the place where both sides have their share, and its end.
+    /// Start of the range, the place where both sides have their share, and end.
     bounds: [f32; 3],
 }
 

@@ -40,7 +40,7 @@ impl Edge {
         self.packed >> 1
     }
 
-    /// Whether it is a facet, and no contact.
+    /// True if it is a facet, and no contact.
     pub fn is_facet(self) -> bool {
         self.packed & 1 == 1
     }

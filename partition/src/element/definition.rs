@@ -125,7 +125,7 @@ pub struct CellRules {
 }
 
 impl Definition {
-    /// Whether its nodes lie at its corners alone.
+    /// True if its nodes lie at its corners alone.
     pub(super) fn is_linear(&self) -> bool {
         self.node_coordinates.len() == self.domain.corners()
     }

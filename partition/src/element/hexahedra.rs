@@ -161,7 +161,7 @@ fn on_edge_slope(a: f64, x: f64) -> f64 {
     }
 }
 
-/// Whether the node at these coordinates is a corner.
+/// True if the node at these coordinates is a corner.
 fn is_corner(node: [f64; 3]) -> bool {
     node.iter().all(|&a| a != 0.0)
 }

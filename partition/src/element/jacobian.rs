@@ -50,7 +50,7 @@ impl ReferenceElement {
 }
 
 impl ReferenceElement {
-    /// Whether a cell that [folds](Self::fold) can be computed with all the same: a hexahedron of 8 nodes, whose faces
+    /// True if a cell that [folds](Self::fold) can be computed with all the same: a hexahedron of 8 nodes, whose faces
     /// needn't cross each other where its Jacobian changes sign at a corner, with a Jacobian above `floor` wherever
     /// its stiffness is integrated. Linear displacements then are exact, as everywhere. One with two nodes at the same
     /// place is no hexahedron.

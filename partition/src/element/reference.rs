@@ -67,7 +67,7 @@ impl ReferenceElement {
         self.definition.vtk
     }
 
-    /// Whether its nodes lie at its corners alone.
+    /// True if its nodes lie at its corners alone.
     pub fn is_linear(&self) -> bool {
         self.definition.is_linear()
     }

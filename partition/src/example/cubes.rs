@@ -17,7 +17,7 @@ pub(super) struct Cube {
     map: Map,
     /// Cells along each axis before they are refined.
     cells: [usize; 3],
-    /// Whether edges of quadratic cells follow the map; else they are straight, with the node in
+    /// True if edges of quadratic cells follow the map; else they are straight, with the node in
     /// their middle.
     is_curved: bool,
     /// Groups of the faces at the start and the end of each axis. A face without a group is glued to the face
@@ -192,7 +192,7 @@ fn named(cube: &Cube) -> impl Iterator<Item = (Face, &str)> {
     })
 }
 
-/// Whether a place is on a face.
+/// True if a place is on a face.
 fn is_on(place: Place, (axis, end): Face, cells: [usize; 3]) -> bool {
     place[axis] == end * 2 * cells[axis]
 }

@@ -19,7 +19,7 @@ pub(super) struct Square {
     map: Map,
     /// Division of the unit square.
     pattern: Pattern,
-    /// Whether edges of quadratic cells follow the map; else they are straight, with the node in
+    /// True if edges of quadratic cells follow the map; else they are straight, with the node in
     /// their middle, as a map that only grades the mesh wants them.
     is_curved: bool,
     /// Groups of bottom, right, top and left. A side without a group is glued to the side without

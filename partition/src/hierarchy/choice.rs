@@ -1,5 +1,5 @@
-//! Which operator answers for contact conditions in least time: a dense matrix of all of them, the tree of fronts, or
-//! iterations between clusters.
+//! Choice of the operator that answers for contact conditions in least time: a dense matrix of all of them, the tree
+//! of fronts, or iterations between clusters.
 //!
 //! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs, and of
 //! pins in plates with friction: they say which is faster there, and about where one becomes the other elsewhere.

@@ -25,7 +25,7 @@ pub(super) struct Interface {
 pub struct UnsharedNode {
     /// The node.
     pub at: SubdomainNode,
-    /// Its number on Γ.
+    /// The number on Γ.
     pub number: u32,
     /// The normal of all points that name it, if they have one, no friction and no tie: where it has no supports, its
     /// displacement along this normal alone is on Γ, and the rest belongs to the interior of the subdomain.

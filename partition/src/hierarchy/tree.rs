@@ -19,7 +19,7 @@ use crate::problem::{Catalog, Hierarchy};
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree {
-    /// Its nodes: the subdomains, then the inner ones, children before parents.
+    /// The nodes: the subdomains, then the inner ones, children before parents.
     pub nodes: Numbered<TreeNodeId, TreeNode>,
     /// Number of subdomains.
     pub subdomains: usize,

@@ -48,14 +48,14 @@ pub(super) fn telling(facet: &[u32]) -> &[u32] {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Entry {
     rest: Rest,
-    /// Which it is of those of these corners whose further nodes differ, from 0: the two sides of a crack may have
+    /// Number, from 0, among facets of these corners whose further nodes differ: the two sides of a crack may have
     /// all corners of a facet in common, but not the node in the middle of an edge.
     sheet: u32,
     pub facet: CellFacet,
 }
 
 impl Entry {
-    /// Whether two facets are one.
+    /// True if two facets are one.
     fn is_same(&self, other: &Self) -> bool {
         self.rest == other.rest && self.sheet == other.sheet
     }
@@ -68,7 +68,7 @@ pub struct Tear {
     pub cells: [u32; 2],
     /// Corners.
     pub corners: Vec<u32>,
-    /// Whether one of the cells has a node in its middle and the other has none; else each has one of its own, as the
+    /// True if one of the cells has a node in its middle and the other has none; else each has one of its own, as the
     /// two sides of a crack do.
     pub hangs: bool,
 }
@@ -175,8 +175,8 @@ impl Facets {
         lists.flat_map(|list| list.chunk_by(Entry::is_same))
     }
 
-    /// Whether two facets lead from one node to the same other one, several times faster than finding
-    /// all facets: where none do, no two cells lie on the same side of an edge. In space it always may be.
+    /// True if two facets lead from one node to the same other one, several times faster than finding all
+    /// facets: where none do, no two cells lie on the same side of an edge. In space it always may be.
     pub fn repeat_themselves(cells: &Elements, nodes: usize) -> bool {
         if cells.iter().next().is_some_and(|(kind, _)| kind.dim() == 3) {
             return true;

@@ -57,7 +57,7 @@ impl Mesh {
                 count => format!(", one of {count} such"),
             };
             self.warnings.push(format!(
-                "{first}{cells}: it is computed with, as its Jacobian is positive at all points of integration; \
+                "{first}{cells}: it is used all the same, as its Jacobian is positive at all points of integration; \
                  stresses there are less exact"
             ));
         }

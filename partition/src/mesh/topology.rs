@@ -1,4 +1,4 @@
-//! Which cells meet at a facet, and what hangs together.
+//! Neighbours across facets, and connected parts.
 
 use super::Mesh;
 pub use super::facets::CellFacet;

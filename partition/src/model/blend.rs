@@ -11,7 +11,7 @@ use crate::element::ElementKind;
 /// this the dual functions are the least in the mean.
 pub(super) const TAKEN: f64 = 0.2;
 
-/// Whether ∫ N of corners isn't positive.
+/// True if ∫ N of corners isn't positive.
 fn has_weightless_corners(kind: ElementKind) -> bool {
     kind.dim() > 1 && kind.nodes() == 2 * kind.corners()
 }
@@ -34,7 +34,7 @@ pub(super) fn of_corners(kind: ElementKind) -> DMatrix<f64> {
     basis
 }
 
-/// Which corners of a facet take a part of the functions of which nodes on its edges.
+/// Corners of a facet that take a part of the functions of nodes on its edges.
 #[derive(Clone, Debug)]
 pub(super) struct Blending {
     nodes: usize,
@@ -62,7 +62,7 @@ impl Blending {
         }
     }
 
-    /// Whether no corner takes any.
+    /// True if no corner takes any.
     pub fn is_none(&self) -> bool {
         self.takers.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Which cell belongs to which body and consists of what.
+//! Body and material of each cell.
 
 use std::collections::BTreeSet;
 

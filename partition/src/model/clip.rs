@@ -40,7 +40,7 @@ pub(super) fn triangles(polygon: &[PlanePoint]) -> impl Iterator<Item = [PlanePo
     polygon.iter().zip(next).map(move |(&p, &q)| [q, middle, p])
 }
 
-/// Whether a point lies in a convex polygon whose corners run counter-clockwise.
+/// True if a point lies in a convex polygon whose corners run counter-clockwise.
 pub(super) fn contains(polygon: &[PlanePoint], x: PlanePoint) -> bool {
     let next = polygon.iter().cycle().skip(1);
     (polygon.iter().zip(next)).all(|(&p, &q)| cross(difference(q, p), difference(x, p)) >= 0.0)
@@ -79,18 +79,18 @@ pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePo
 
 /// A facet that is seen from another one, as it lies in the plane of that.
 pub(super) struct Seen {
-    /// Its index.
+    /// The index.
     pub facet: usize,
     /// The part of it that is seen.
     pub outline: Vec<PlanePoint>,
     /// Distance along the normal in the middle of that (m).
     pub gap: f64,
-    /// Whether it is the far side of the body that looks.
+    /// True if it is the far side of the body that looks.
     pub is_far_side: bool,
 }
 
 impl Seen {
-    /// Whether something else of `all` lies before its middle, or the body that looks does.
+    /// True if something else of `all` lies before its middle, or the body that looks does.
     pub fn is_hidden(&self, all: &[Self]) -> bool {
         let x = middle(&self.outline);
         let hides = |other: &Self| {

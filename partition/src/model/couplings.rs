@@ -31,7 +31,7 @@ use crate::scene::step::{LoadStep, Scale};
 
 /// A coupling on the mesh.
 pub(super) struct CoupledFrame {
-    /// Its equations.
+    /// The equations.
     pub contact: Contact,
     /// The nodes of the frame: position (m).
     pub corners: Vec<[f64; 3]>,

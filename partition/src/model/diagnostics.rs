@@ -16,7 +16,7 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::contact::Partner;
 
-/// Which sides of two contacts have a facet in common: the first's a with the second's a and b, then its b.
+/// Sides of two contacts that have a facet in common: the first's a with the second's a and b, then its b.
 type Common = [[bool; 2]; 2];
 
 /// The parts of a model, each of them right by itself.

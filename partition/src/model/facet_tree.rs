@@ -70,7 +70,7 @@ fn around(facet: &SurfaceFacet, margin: f64) -> BoundingBox {
     }
 }
 
-/// Whether the line through `start` along `direction`, both ways, goes through a box: the ranges in
+/// True if the line through `start` along `direction`, both ways, goes through a box: the ranges in
 /// which it lies between the opposite faces have something in common.
 fn meets(start: [f64; 3], direction: [f64; 3], low: [f64; 3], high: [f64; 3]) -> bool {
     let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);

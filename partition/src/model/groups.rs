@@ -45,7 +45,7 @@ pub(super) fn facets(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>,
     Ok(facets.into_iter().collect())
 }
 
-/// Whether all groups `names` that the mesh has consist of facets.
+/// True if all groups `names` that the mesh has consist of facets.
 pub(super) fn are_of_facets(mesh: &Mesh, names: &Names) -> bool {
     let mut groups = names.iter().filter_map(|name| mesh.groups.get(name));
     groups.all(|group| Members::Facets.fit(group, mesh))

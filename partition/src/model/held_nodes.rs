@@ -38,7 +38,7 @@ impl HeldNodes {
         Self(by_node)
     }
 
-    /// Whether supports hold a node along axis k, or nearly so.
+    /// True if supports hold a node along axis k, or nearly so.
     pub fn is_held_along(&self, node: u32, k: usize) -> bool {
         let held = self.0.get(&node).into_iter().flatten();
         held.map(|held| held.direction[k].powi(2)).sum::<f64>() > ALONG

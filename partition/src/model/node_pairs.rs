@@ -175,8 +175,8 @@ fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
     }
 }
 
-/// Which of the nodes `partners` in one place on side b node `a` of side a has conditions with, and
-/// the part of its tributary area that is of each: that opposite facets of side b, as side a may reach
+/// Nodes, of `partners` in one place on side b, with which node `a` of side a has conditions, and the
+/// part of its tributary area that is of each: that opposite facets of side b, as side a may reach
 /// beyond it.
 ///
 /// Pairs without those of diagonal bodies: of corners of several bodies in a point two that lie diagonally across share

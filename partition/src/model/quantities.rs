@@ -138,7 +138,7 @@ impl Known<'_> {
         Ok(())
     }
 
-    /// Whether forces are those of whole rings.
+    /// True if forces are those of whole rings.
     fn is_ring(&self) -> bool {
         self.scene.plane == Some(PlaneState::Axisymmetric)
     }

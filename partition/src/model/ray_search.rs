@@ -26,7 +26,7 @@ pub(super) enum Hit {
     Facet(usize),
     /// Nothing, though facets that face the same way as the line may lie on it.
     Nothing {
-        /// Whether there are such facets.
+        /// True if there are such facets.
         back_facing: bool,
     },
 }

@@ -38,7 +38,7 @@ pub(super) struct Loads {
     pub initial_stress: InitialStress,
     /// The steps; none where the scene has none.
     pub steps: Vec<ModelStep>,
-    /// Whether each condition, by its number, decides a part of what another one of another kind prescribes.
+    /// Conditions, by number, that decide a part of what another one of another kind prescribes.
     pub decides: Vec<bool>,
 }
 

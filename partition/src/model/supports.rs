@@ -73,7 +73,7 @@ impl Supports {
 }
 
 impl Supports {
-    /// Whether each condition holds a part of one behind the first `displacements`.
+    /// Conditions that hold a part of one behind the first `displacements`.
     pub fn decide(&self, displacements: usize) -> Vec<bool> {
         let others = self.holders.iter().skip(displacements);
         let held: BTreeSet<usize> = others.flatten().copied().collect();

@@ -60,13 +60,13 @@ impl Turn {
         self.size * self.angle / 8.0
     }
 
-    /// Whether the straighter one is straight beside what that says.
+    /// True if the straighter one is straight beside what that says.
     fn is_straight(&self) -> bool {
         self.sag <= STRAIGHT * self.height()
     }
 }
 
-/// Whether a facet that is none of a cell has all of its nodes in one: three corners of four.
+/// True if a facet that is none of a cell has all of its nodes in one: three corners of four.
 fn is_part_of_face(mesh: &Mesh, nodes: &[u32]) -> bool {
     mesh.cells.iter().any(|(kind, of_cell)| {
         let mut facets = kind.facets().iter();

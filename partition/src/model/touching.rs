@@ -202,7 +202,7 @@ fn go_on(neighbours: &[Vec<usize>], touching: &mut Vec<Facing>, near: &mut Vec<F
     touching.sort_by_key(|pair| pair.facets);
 }
 
-/// The warning of facets that part slowly beside those that touch: they may come into contact.
+/// The warning of a gap that opens slowly beside facets that touch: it may close.
 fn parting(
     skin: &Skin,
     neighbours: &[Vec<usize>],
@@ -223,9 +223,8 @@ fn parting(
     let first = first.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
     let node = skin.facets[first.facets[0]].shape.nodes[0];
     Some(format!(
-        "contact '{what}': where what touches ends, as near node {}, sides part slowly, in the middle of the next facets \
-         by {} {unit}; should loads bring them together by more than that, give within = how much, no more: what is \
-         beyond adds facets that stay apart",
+        "contact '{what}': beyond its end, as near node {}, the gap opens slowly, to {} {unit} in the middle of the next \
+         facets; if loads close it by more, give within = how much, no more: what is beyond adds facets that stay open",
         skin.mesh.node_tags[node as usize],
         short(first.gap)
     ))

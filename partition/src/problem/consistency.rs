@@ -1,4 +1,4 @@
-//! Whether what a contact point says twice is the same, and fits the mesh.
+//! Checks that what a contact point says twice is the same, and fits the mesh.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ pub struct NodePlace {
     pub body: usize,
     /// Coordinates (m).
     pub at: [f64; 3],
-    /// Whether it is an [auxiliary](super::auxiliary) one, on neither side.
+    /// True if it is an [auxiliary](super::auxiliary) one, on neither side.
     pub is_auxiliary: bool,
 }
 
@@ -146,7 +146,7 @@ impl Places {
         None
     }
 
-    /// Whether the force of a point acts where its weights of side a, among them that of node `own`, say.
+    /// True if the force of a point acts where its weights of side a, among them that of node `own`, say.
     fn acts_there(&self, point: &Point, own: SubdomainNode) -> bool {
         let body = |node: SubdomainNode| self.nodes.get(&node).map(|place| place.body);
         let is_pair = point.entries.len() == 1 || (point.tag_a != -1 && point.tag_b != -1);

@@ -9,11 +9,11 @@ pub struct ContactSummary {
     pub name: String,
     /// Number of its conditions.
     pub conditions: usize,
-    /// Whether one of its points has friction.
+    /// True if one of its points has friction.
     pub has_friction: bool,
     /// The kind of its conditions.
     pub kind: ContactKind,
-    /// Whether one of its points is compliant.
+    /// True if one of its points is compliant.
     pub is_compliant: bool,
 }
 
@@ -53,7 +53,7 @@ impl ContactKind {
         }
     }
 
-    /// Its name in messages.
+    /// The name in messages.
     pub fn word(self) -> &'static str {
         match self {
             Self::Unilateral => "contact",

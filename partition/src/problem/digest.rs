@@ -22,7 +22,7 @@ const TRAILER: usize = 16 + 8 + MARK.len();
 /// Size of a read (bytes).
 const PIECE: usize = 1 << 18;
 
-/// Whether a file has a digest.
+/// State of a file's digest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Digest {
     /// The digest of the file's bytes.

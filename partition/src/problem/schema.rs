@@ -33,7 +33,7 @@ pub struct Field {
     pub shape: &'static str,
     /// The kind of its values.
     pub kind: Kind,
-    /// Whether it may be absent from a group that isn't empty.
+    /// True if it may be absent from a group that isn't empty.
     pub optional: bool,
     /// The meaning of its values.
     pub meaning: &'static str,

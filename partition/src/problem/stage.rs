@@ -34,7 +34,7 @@ impl Catalog {
         stages
     }
 
-    /// Whether bodies or contacts come or go.
+    /// True if bodies or contacts come or go.
     pub fn has_stages(&self) -> bool {
         self.steps
             .iter()
@@ -51,12 +51,12 @@ impl Catalog {
         bodies.chain(contacts).cloned().collect()
     }
 
-    /// Whether a contact point is there in load step k.
+    /// True if a contact point is there in load step k.
     pub fn is_there(&self, point: &ContactPoint<SubdomainNode>, k: usize) -> bool {
         self.are_there(point.contact, &point.entries, k)
     }
 
-    /// Whether a contact and bodies with these nodes are there in load step k.
+    /// True if a contact and bodies with these nodes are there in load step k.
     fn are_there(&self, contact: u32, entries: &[(SubdomainNode, f64)], k: usize) -> bool {
         let Some(absent) = self.steps.get(k).map(|step| &step.absent) else {
             return true;

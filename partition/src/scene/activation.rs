@@ -1,4 +1,4 @@
-//! Which bodies and contacts are there in a load step: what `add` and `remove` say.
+//! Bodies and contacts of a load step: what `add` and `remove` say.
 
 use std::collections::BTreeSet;
 

@@ -96,7 +96,7 @@ pub enum Integration {
 }
 
 impl Body {
-    /// Whether it has stress without strain, from before or by heat.
+    /// True if it has stress without strain, from before or by heat.
     pub fn has_initial_stress(&self) -> bool {
         self.initial_stress.is_some() || self.thermal.is_some()
     }
@@ -170,7 +170,7 @@ pub struct Pressure {
 pub struct Force {
     /// The groups of facets or points on whose nodes it acts.
     pub on: Names,
-    /// Its size, and how the nodes share it.
+    /// Size of the force, and its distribution over the nodes.
     pub amount: ForceAmount,
 }
 
@@ -241,7 +241,7 @@ pub enum Obstacle {
         center: ConstantVector,
         /// Radius (m).
         radius: f64,
-        /// Whether it keeps bodies inside, not outside.
+        /// True if it keeps bodies inside, not outside.
         inside: bool,
     },
     /// A cylinder without ends.
@@ -252,7 +252,7 @@ pub enum Obstacle {
         axis: ConstantVector,
         /// Radius (m).
         radius: f64,
-        /// Whether it keeps bodies inside, not outside.
+        /// True if it keeps bodies inside, not outside.
         inside: bool,
     },
 }

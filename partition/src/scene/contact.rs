@@ -69,13 +69,13 @@ pub struct Contact {
     pub gap: Option<Number>,
     /// The distance up to which gaps, and all overlaps, are taken as closed (m); `None` where they are as measured.
     pub adjust: Option<f64>,
-    /// Whether negative gaps are intended.
+    /// True if negative gaps are intended.
     pub interference: bool,
     /// Law of friction; `None` without.
     pub friction: Option<Friction>,
     /// The stiffness of what lies between the sides; `None` where they don't overlap.
     pub stiffness: Option<ContactStiffness>,
-    /// Whether gaps count from the start, also where it is added in a load step.
+    /// True if gaps count from the start, also where it is added in a load step.
     pub absolute: bool,
     /// Reach of a tie; `None` of sides that may part.
     pub tie: Option<TieReach>,
@@ -97,7 +97,7 @@ impl Contact {
 pub struct TieReach {
     /// Up to which distance nodes are tied (m); `None` for a part of the size of facets.
     pub tolerance: Option<f64>,
-    /// Whether nodes are moved onto the other side, so that no gap is left between what is tied.
+    /// True if nodes are moved onto the other side, so that no gap is left between what is tied.
     pub adjust: bool,
 }
 
@@ -192,7 +192,7 @@ impl Chosen {
         names.into_iter().flat_map(Names::iter)
     }
 
-    /// Whether a contact between bodies of these names is looked for.
+    /// True if a contact between bodies of these names is looked for.
     pub fn has(&self, a: &str, b: &str) -> bool {
         let Self::Named(names) = self else {
             return true;
@@ -241,7 +241,7 @@ impl Keys {
         let has_tangential = |stiffness: &ContactStiffness| stiffness.tangential.is_some();
         if !sticks && self.stiffness.as_ref().is_some_and(has_tangential) {
             return Err(
-                "'tangential' is of what sticks; expected 'friction' or 'tresca' beside it".into(),
+                "'tangential' is the stiffness of sticking; expected 'friction' or 'tresca' beside it".into(),
             );
         }
         if self.motion.is_some() && self.obstacle.is_none() {

@@ -20,7 +20,7 @@ pub struct Coupling {
     pub on: Names,
     /// The reference point (m).
     pub point: ConstantVector,
-    /// How they follow.
+    /// Kind of coupling: rigid, along directions, or distributing.
     pub kind: CouplingKind,
     /// The directions along which they follow; none where they do along all.
     pub directions: Vec<ConstantVector>,
@@ -36,7 +36,7 @@ pub struct Coupling {
 pub struct Axis {
     /// The point (m).
     pub point: ConstantVector,
-    /// Its direction.
+    /// The direction.
     pub direction: ConstantVector,
 }
 
@@ -66,7 +66,7 @@ pub enum CouplingKind {
     /// They move as one rigid body with it.
     #[default]
     Rigid,
-    /// Its motion is their mean one; forces on it are distributed over them, which may deform.
+    /// The point moves as the nodes do on average; forces on it are distributed over them, which may deform.
     Distributing,
 }
 
@@ -101,7 +101,7 @@ pub enum Moment {
 }
 
 impl Moment {
-    /// Its components (N m).
+    /// The components (N m).
     pub fn value(&self) -> [f64; 3] {
         match self {
             Self::Plane(Constant(about_z)) => [0.0, 0.0, *about_z],

@@ -18,7 +18,7 @@ pub struct Equation {
     /// The sum (m).
     #[serde(default)]
     pub value: f64,
-    /// Whether displacements count from the start, also where it is added in a load step.
+    /// True if displacements count from the start, also where it is added in a load step.
     #[serde(default)]
     pub absolute: bool,
 }
@@ -31,7 +31,7 @@ pub struct Term {
     pub at: Names,
     /// The component of the displacement.
     pub component: Component,
-    /// Its factor.
+    /// The factor.
     #[serde(default = "one")]
     pub factor: f64,
 }

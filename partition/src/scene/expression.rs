@@ -131,7 +131,7 @@ impl Expression {
         ))
     }
 
-    /// Whether it is the same everywhere.
+    /// True if it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         self.is_constant
     }

@@ -44,7 +44,7 @@ impl InitialStress {
         Ok(stress)
     }
 
-    /// Whether it is the same everywhere.
+    /// True if it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         self.0.iter().all(Number::is_constant)
     }

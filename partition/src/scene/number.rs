@@ -30,7 +30,7 @@ impl Number {
         }
     }
 
-    /// Whether it is the same everywhere.
+    /// True if it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         matches!(self, Self::Constant(_))
     }
@@ -178,7 +178,7 @@ impl Vector {
         Ok(value)
     }
 
-    /// Whether it is the same everywhere.
+    /// True if it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         self.0.iter().all(Number::is_constant)
     }

@@ -60,7 +60,7 @@ pub enum Target {
     Pressure {
         /// Name of the contact.
         contact: String,
-        /// Which of them.
+        /// Kind of integral.
         kind: QuantityKind,
         /// The length over which a largest one is smoothed (m); 0 where it isn't.
         over: f64,
@@ -69,7 +69,7 @@ pub enum Target {
     CrackTip {
         /// Name of the tip.
         tip: String,
-        /// Which of them.
+        /// Kind of integral.
         kind: QuantityKind,
     },
     /// The gap that is left at a point of a contact.

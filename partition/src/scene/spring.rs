@@ -22,7 +22,7 @@ pub enum AnySpring {
 pub struct SpringBetween {
     /// Name; without one that of its ends.
     pub name: Option<String>,
-    /// Its ends.
+    /// The ends.
     pub ends: [Names; 2],
     /// Force per relative displacement.
     pub stiffness: BetweenStiffness,
@@ -122,7 +122,8 @@ impl TryFrom<SpringKeys> for AnySpring {
 }
 
 impl SpringBetween {
-    /// Its stiffness along unit vectors, one along the line from the second to the first of its ends, which are `apart`.
+    /// The stiffness along unit vectors, one along the line from the second to the first of its ends, which are
+    /// `apart`.
     ///
     /// # Errors
     /// One that is less than 0 or no number there, none at all, or ends at one place.
@@ -153,7 +154,7 @@ impl SpringBetween {
         }
     }
 
-    /// Its name, among those of results.
+    /// The name, among those of results.
     pub fn title(&self) -> String {
         let [a, b] = self
             .ends

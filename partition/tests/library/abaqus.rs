@@ -13,7 +13,7 @@ use crate::says::says;
 use contact_dd_partition::mesh::{self, Mesh};
 use tempfile::TempDir;
 
-/// What is made of a deck and of the files it includes.
+/// Mesh of a deck and of the files it includes.
 fn read_all(files: &[(&str, &str)]) -> Result<Mesh, String> {
     let folder = TempDir::new().unwrap();
     for (name, text) in files {

@@ -71,7 +71,7 @@ High, Low
 Bottom, 1, 3
 ";
 
-/// What stands above the loads of the scene that the cubes mean.
+/// Part of the cubes' scene above its loads.
 const SCENE: &str = "
 mesh  = 'mesh.msh'
 units = 'mm'
@@ -82,7 +82,7 @@ displacement = [{ on = 'Bottom', x = 0.0, y = 0.0, z = 0.0 }]
 contact = [{ name = 'High on Low', sides = ['High', 'Low'], friction = 0.2 }]
 ";
 
-/// What is made of a deck, or why it is refused.
+/// Scene of a deck, or the reason for which it is refused.
 pub fn read(deck: &str) -> Result<Translation, String> {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("part.inp");

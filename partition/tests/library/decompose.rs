@@ -229,7 +229,10 @@ fn a_prescribed_subdomain_in_two_parts_is_a_warning() {
         .unwrap()
         .catalog
         .warnings;
-    assert!(warnings[1].ends_with("hang together: 0"), "{warnings:?}");
+    assert!(
+        warnings[1].ends_with("disconnected subdomains: 0"),
+        "{warnings:?}"
+    );
 }
 
 #[test]

@@ -71,7 +71,7 @@ fn front(catalog: &Catalog, hierarchy: &Hierarchy, node: usize) -> Front {
     Front { eliminated, kept }
 }
 
-/// What docs/problem-file.md says of a tree.
+/// Conditions that docs/problem-file.md states of a tree.
 fn holds(catalog: &Catalog, parent: &[i64]) -> bool {
     let (subdomains, nodes) = (catalog.subdomains.len(), parent.len());
     let later = |(node, &p): (usize, &i64)| {

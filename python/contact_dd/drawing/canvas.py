@@ -39,9 +39,10 @@ def canvas(title, units, points):
     return figure, axes
 
 
-def deformation_of(result):
+def deformation_of(result, scale):
     """What deformed shapes show, in words."""
-    return f"deformation since step {result.since}," if result.since else "deformation"
+    since = f", since step {result.since}" if result.since else ""
+    return f"deformation × {scale:g}{since}"
 
 
 def lines(axes, points, facets, **style):

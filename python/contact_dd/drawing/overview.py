@@ -34,6 +34,9 @@ AROUND = 1.8
 # The longest ordinate of a pressure over the size of a panel.
 LONGEST = 0.09
 
+# Width of one, two and three panels together (inches).
+WIDTHS = (6.4, 7.6, 9.6)
+
 # Around panels (inches); below them the scale, and a line for every few entries of the legend.
 LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.35, 0.3, 0.85, 0.5, 0.62
 IN_LINE, OF_LINE = 3, 0.19
@@ -51,7 +54,8 @@ def overview(result, scale):
     moved = result.deformed(scale)
     sides = pressed_sides(result, moved)
     part = part_that_presses(sides, result.size)
-    panels = [surroundings(part, moved, result.size), part] if part else [whole(result, moved, sides)]
+    conditions = conditions_of(result.result, np.unique(result.outline[result.outline >= 0]))
+    panels = windows(part, moved, result.size, conditions) if part else [whole(result, moved, sides)]
     longest = LONGEST * max(panels[-1][1] - panels[-1][0])
 
     mesh = Triangulation(*result.at_points(moved).T, result.triangles)
@@ -62,7 +66,6 @@ def overview(result, scale):
 
     has_moved = np.abs(moved - result.points).max() > 0.004 * result.size
     largest = max((side.pressure.max() for side in sides), default=0.0)
-    conditions = conditions_of(result.result, np.unique(result.outline[result.outline >= 0]))
     seen, normals = seen_in(conditions, moved, panels), result.normals()
     key = entries(sides, largest, has_moved, result.units.stress) + symbols.entries(seen, 2)
     figure, all_axes, of_colours = layout(panels, BELOW + OF_LINE * -(-len(key) // IN_LINE))
@@ -76,9 +79,8 @@ def overview(result, scale):
         scale_bar(axes, high[0] - low[0], result.units)
         paper = symbols.Paper(moved, normals, np.eye(2), max(high - low))
         symbols.draw(axes, paper, seen_in(conditions, moved, [(low, high)]))
-    if part:
-        frame = Rectangle(part[0], *(part[1] - part[0]), fill=False, ec="k", lw=1.0)
-        all_axes[0].add_patch(frame)
+    for axes, (low, high) in zip(all_axes, panels[1:]):
+        axes.add_patch(Rectangle(low, *(high - low), fill=False, ec="k", lw=1.0))
     if largest > 0:
         pressures(all_axes[-1], sides, longest / largest)
         stick_and_slip(all_axes[-1], sides)
@@ -87,8 +89,9 @@ def overview(result, scale):
     of_largest = f", at most {values.max():.4g}" if exceeded == "max" else ""
     figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]{of_largest}")
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
-    step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
-    title = f"{what}, {deformation_of(result)} × {scale:g}{step}"
+    step = f"Step {result.step} of {result.steps}: " if result.steps > 1 else ""
+    words = what[0].lower() + what[1:] if step else what
+    title = f"{step}{words}, {deformation_of(result, scale)}"
     figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
     figure.legend(handles=key, loc="lower center", ncol=IN_LINE, frameon=False, fontsize=9, columnspacing=1.4)
     return figure
@@ -113,6 +116,15 @@ def whole(result, moved, sides):
     longest = (LONGEST + OF_LABEL) * max(np.ptp(moved, axis=0))
     tips = [side.tips(longest / largest) for side in sides] if largest > 0 else []
     return window([result.points, moved, *tips], 0.02)
+
+
+def windows(part, moved, size, conditions):
+    """Windows on a small part: around it, and on it alone; on all bodies before these where loads lie elsewhere."""
+    around = surroundings(part, moved, size)
+    driven = [support.node for support in conditions.supports if support.is_moved]
+    loaded = moved[np.concatenate([conditions.nodes, np.array(driven, dtype=int)])]
+    everything = [] if within(loaded, around).all() else [window([moved], 0.02)]
+    return [*everything, around, part]
 
 
 def surroundings(part, moved, size):
@@ -163,7 +175,7 @@ def bound(mesh, values, panel):
 def layout(panels, below):
     """Axes side by side, as wide as the shapes of the panels ask for, and those of the colours."""
     ratios = [(high - low)[0] / (high - low)[1] for low, high in panels]
-    height = float(np.clip((6.4 if len(panels) == 1 else 7.6) / sum(ratios), 2.4, 5.2))
+    height = float(np.clip(WIDTHS[len(panels) - 1] / sum(ratios), 2.4, 5.2))
     widths = [height * ratio for ratio in ratios]
     total = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
     tall = below + height + ABOVE
@@ -227,7 +239,7 @@ def labels(axes, sides, length, unit):
         axes.annotate(
             f"{shown:.3g} {prefixed}", side.tips(length)[k], xytext=8 * side.normal[k],
             textcoords="offset points", ha="center", va="center", fontsize=8, color=RED,
-            path_effects=[withStroke(linewidth=2.2, foreground="w")],
+            bbox={"fc": "w", "ec": "none", "alpha": 0.85, "pad": 0.8}, zorder=8,
         )
 
 

@@ -47,7 +47,7 @@ def contours(result, values, name, unit):
 
 def deformation(result, scale):
     moved = result.deformed(scale)
-    figure, axes = canvas(f"{deformation_of(result).capitalize()} × {scale:g}", result.units, moved)
+    figure, axes = canvas(deformation_of(result, scale).capitalize(), result.units, moved)
     fine = len(result.facets) > 60_000
     facets = result.borders if fine else result.facets
     lines(axes, moved, facets, colors="0.45", linewidths=0.5 if fine else 0.3)

@@ -106,7 +106,7 @@ class Solid:
                         columnspacing=1.2)
 
     def title(self, axes, words):
-        axes.set_title(f"{words}\n{deformation_of(self.result)} × {self.scale:g}", fontsize=9)
+        axes.set_title(f"{words}\n{deformation_of(self.result, self.scale)}", fontsize=9)
 
     def von_mises(self, axes):
         (values, unit) = in_units(von_mises(self.result.stress), self.units.stress)

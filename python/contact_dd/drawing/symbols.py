@@ -14,6 +14,8 @@ from matplotlib.transforms import Affine2D
 MOST, APART, APART_IN_SPACE = 20, 0.045, 0.1
 # Colours: of supports, of what is prescribed (loads and motions), and between lines.
 HELD, GIVEN, PAPER = "#222222", "#a3159b", "#ffffff"
+# In legends: of a support that leaves displacements across its axis free.
+ROLLER = "roller, held along its axis"
 # Height of triangles, and lengths of arrows (points).
 TALL, SHORTEST, LONGEST, OF_BODY = 8.0, 13.0, 24.0, 30.0
 # Cosine of the angle to the eye above which a direction is drawn as a ring.
@@ -203,7 +205,7 @@ def entries(conditions, dimension):
     if any(len(one.axes) == dimension and not one.is_moved for one in ordinary):
         add("^", HELD, HELD, "fixed")
     if any(len(one.axes) < dimension and not one.is_moved for one in ordinary):
-        add("^", PAPER, HELD, "held along its axis")
+        add("^", PAPER, HELD, ROLLER)
     if any(one.is_moved for one in ordinary):
         add("^", GIVEN, GIVEN, "prescribed displacement")
     if any(one.is_spring for one in conditions.supports):

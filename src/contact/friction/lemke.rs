@@ -25,7 +25,7 @@ use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
-/// How often polygons become finer in each attempt: where they have few sides at first.
+/// Refinements of the polygons in each attempt: where they have few sides at first.
 const FINER: [usize; ATTEMPTS] = [3, 0, 3, 0];
 /// Limits up to which the path is followed: its matrix is dense.
 const MOST_LIMITS: usize = 3000;

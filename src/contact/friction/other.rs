@@ -6,8 +6,8 @@ use super::{FrictionProblem, Status};
 const ANOTHER: f64 = 1e-7;
 
 impl FrictionProblem<'_> {
-    /// How far another solution is from the `known` jumps, the largest difference (m): one that the search finds from
-    /// contacts that all slip, one way or the other, or are all open; `scale` is that of the displacements.
+    /// Distance of another solution from the `known` jumps, the largest difference (m): one that the search finds
+    /// from contacts that all slip, one way or the other, or are all open; `scale` is that of the displacements.
     pub fn other_solution(&self, known: &[f64], scale: f64) -> Option<f64> {
         let limits = self.contact.bounds.len();
         let all_slip = |slipping: Status| {

@@ -25,7 +25,7 @@ use crate::contact::tangent::{Beside, TangentialLimit};
 
 /// Jumps up to which the whole problem is solved at once: that costs less than to condense it.
 const FEW: usize = 300;
-/// How often a patch may grow.
+/// Most times that a patch may grow.
 const ROUNDS: usize = 8;
 /// Stiffness of the springs that hold bodies which the first patch leaves free, relative to that of the jumps, from the
 /// stiffest on.

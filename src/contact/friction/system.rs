@@ -9,7 +9,7 @@ use crate::vector::largest;
 const SINGULAR: f64 = 1e-13;
 /// Stiffness of the springs that make it regular then, in that scale.
 pub(super) const SPRING: f64 = 1e-12;
-/// How much closed rows that depend on each other give way, in that scale: their forces share what one could carry.
+/// Compliance of closed rows that depend on each other, in that scale: their forces share what one could carry.
 pub(super) const YIELD: f64 = 1e-6;
 /// Part of that where refinements leave more than this of what is solved for: soft bodies between stiff ones carry a small
 /// part of what their rows could.
@@ -21,7 +21,7 @@ const MAX_REFINEMENTS: usize = 40;
 /// A x = b in the scale of energies.
 pub(super) struct System {
     pub a: Mat<f64>,
-    /// Which limits the unknowns are of: jumps that aren't closed, then rows that are closed or slip.
+    /// Limits of the unknowns: jumps that aren't closed, then rows that are closed or slip.
     pub unknowns: Vec<usize>,
     /// The factors of unknowns, jumps and forces, in that scale.
     pub scale: Vec<f64>,
@@ -94,7 +94,7 @@ impl System {
     }
 }
 
-/// Whether A is singular but for round-off. Where what is unresisted has little of the last unknowns, no pivot says so,
+/// True if A is singular but for round-off. Where what is unresisted has little of the last unknowns, no pivot says so,
 /// but it is most of A⁻¹ times anything.
 fn is_singular(lu: &PartialPivLu<f64>, n: usize) -> bool {
     if (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR) {

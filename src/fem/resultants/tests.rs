@@ -1,4 +1,4 @@
-//! What contacts carry.
+//! Forces and moments of contacts.
 
 use contact_dd_partition::contact_point::Law;
 

@@ -23,7 +23,7 @@ pub(super) struct GridPlacement {
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
-    /// Whether there are load steps to go on from.
+    /// True if there are load steps to go on from.
     is_kept: bool,
 }
 

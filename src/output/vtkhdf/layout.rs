@@ -15,11 +15,11 @@ pub struct Layout {
     pub contacts: Vec<ContactSummary>,
     /// Time of every load step; none where the problem has no steps.
     pub times: Vec<f64>,
-    /// Whether there are stresses.
+    /// True if there are stresses.
     pub stress: bool,
-    /// Whether bodies or contacts come or go.
+    /// True if bodies or contacts come or go.
     pub presence: bool,
-    /// Whether there are stresses and quantities.
+    /// True if there are stresses and quantities.
     pub quantities: bool,
     /// The scene's title; may be empty.
     pub title: String,

@@ -17,7 +17,7 @@ pub struct Sensitivity<'a> {
     pub solved: Solved<'a>,
     /// The quantity.
     pub functional: &'a Functional,
-    /// Its transposed problem.
+    /// The transposed problem.
     pub problem: &'a TransposedProblem<'a>,
     /// The solution of that.
     pub state: &'a Transposed,
@@ -175,7 +175,7 @@ impl Sensitivity<'_> {
         }
     }
 
-    /// How far the solution and that of the transposed problem are from the law of reciprocity,
+    /// Error of the law of reciprocity between the solution and that of the transposed problem,
     ///
     /// > a·u + b·λ + r·ρ = w·f + ν·g + η·v − τ'·φ,
     ///

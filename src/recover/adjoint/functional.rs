@@ -79,9 +79,9 @@ impl MaterialForces {
 /// A quantity as a functional of the solution, on this rank.
 #[derive(Default)]
 pub struct Functional {
-    /// Its number among the quantities.
+    /// The number among the quantities.
     pub number: usize,
-    /// Its value; on the root.
+    /// The value; on the root.
     pub value: f64,
     /// The part of the value that is in proportion to the stiffness around a crack tip, at fixed displacements; on the root.
     pub of_stiffness: f64,

@@ -9,9 +9,9 @@
 //! Numer. Methods Engrg 101, 2015). As recovery is linear, it follows from the errors E of two states:
 //! 4 α a = E(u + α w) − E(u − α w).
 //!
-//! What constraints at nodes miss between these, and the change of the quantity's own weights with the mesh, isn't in it. Weights
-//! of stresses that vary from cell to cell, as those around the tip of a crack do, make σ(w) as rough as they are: there recovery
-//! tells nothing of its error.
+//! The estimate lacks what constraints at nodes miss between these, and the change of the quantity's own weights with
+//! the mesh. Weights of stresses that vary from cell to cell, as those around the tip of a crack do, make σ(w) as rough
+//! as they are: there recovery tells nothing of its error.
 
 use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::quantity::{Quantity, QuantityKind};

@@ -13,11 +13,11 @@ pub struct SlippingPoints(pub Vec<SlippingPoint>);
 /// A slipping point.
 #[derive(Clone, Debug)]
 pub struct SlippingPoint {
-    /// Its normal condition.
+    /// The normal condition.
     pub normal: usize,
-    /// Whether that is closed, so that it may follow what presses.
+    /// True if that is closed, so that it may follow what presses.
     pub is_closed: bool,
-    /// Its slipping conditions and the parts e of its direction along them.
+    /// The slipping conditions and the parts e of its direction along them.
     pub tangents: Vec<(usize, f64)>,
     /// Coefficient of friction.
     pub coefficient: f64,

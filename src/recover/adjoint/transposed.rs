@@ -1,8 +1,8 @@
 //! The transposed problem of a quantity, by the factors at hand.
 //!
-//! Its symmetric part is solved as a change of the solution is. At slipping points the conditions z depend on the slips
-//! of w: z = G w(z), which generalized conjugate residuals solve (Eisenstat, Elman and Schultz, SIAM J. Numer. Anal. 20, 1983). Their
-//! directions serve all quantities, as (I − G) is the same for all.
+//! The symmetric part is solved as a change of the solution is. At slipping points the conditions z depend on the slips
+//! of w: z = G w(z), which generalized conjugate residuals solve (Eisenstat, Elman and Schultz, SIAM J. Numer. Anal.
+//! 20, 1983). Their directions serve all quantities, as (I − G) is the same for all.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ use crate::vector::{axpy, dot};
 const ACCURACY: f64 = 1e-10;
 /// Most rounds in which the conditions of what slips are solved for.
 const ROUNDS: usize = 3;
-/// How far the conditions of what slips are solved for.
+/// Residual to which the conditions of slipping points are solved.
 const ENOUGH: f64 = 1e-9;
 
 /// The transposed problem of a quantity, on this rank.
@@ -108,7 +108,7 @@ impl<'a> TransposedProblem<'a> {
         }
     }
 
-    /// Its solution. Collective.
+    /// The solution. Collective.
     pub fn solve(&self) -> Transposed {
         let context = &self.solved.fixed.context;
         let blocks = self.loads.blocks.iter().filter_map(|(&b, loads)| {

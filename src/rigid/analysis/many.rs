@@ -188,7 +188,7 @@ impl Touched<'_> {
         self.kinematics.motion(&x)
     }
 
-    /// Whether forces that contact can give balance the load, along normals or with friction.
+    /// Balance of the load by forces that contact can give, along normals or with friction.
     fn balance(&self, scale: f64) -> Balance {
         if self.kinematics.len == 0 {
             return Balance::Holds;

@@ -22,7 +22,7 @@ pub(super) struct Parcel {
     pub subdomains: Range<usize>,
     /// The rank that owns them all.
     pub owner: usize,
-    /// Whether its slab is complete with it.
+    /// True if its slab is complete with it.
     pub ends_slab: bool,
 }
 

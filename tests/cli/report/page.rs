@@ -5,7 +5,7 @@ use std::iter;
 
 use serde_json::Value;
 
-/// What is behind it is made.
+/// Mark behind which the page is generated.
 pub const MARK: &str = "<!-- From here on: WRITE_DOCS=1 cargo test --test cli report -->\n";
 
 /// So many fields of another part aren't told again.

@@ -10,7 +10,7 @@ use crate::support::process::{Ended, Running};
 use crate::support::scenes::built_in_model;
 use crate::support::solver::{Case, LIMIT};
 
-/// Whether there is a Python that can draw: the script would install one.
+/// True if there is a Python that can draw: the script would install one.
 pub fn can_draw() -> bool {
     let draws = ["python3", "/usr/bin/python3"].iter().any(|python| {
         let mut imported = Command::new(python);

@@ -29,13 +29,13 @@ pub enum Action<'a> {
     Skip(&'a str),
     /// Nothing: it is no code.
     Read,
-    /// Its text is written to this file.
+    /// Write the text to this file.
     Write(&'a str),
     /// The block before has to print it.
     Compare,
     /// It is run by a shell, and has to end with 0.
     Script,
-    /// Its commands are run by a shell and have to print what stands below them.
+    /// Run the commands in a shell; they have to print what stands below them.
     Session,
     /// It is run by the documents' Python.
     Python,
@@ -70,7 +70,7 @@ impl Preface {
 }
 
 impl Block {
-    /// Its treatment.
+    /// Treatment of the block.
     ///
     /// # Errors
     /// If the page doesn't say.

@@ -65,11 +65,12 @@ pub fn is_whole() {
         name.starts_with("searchindex")
     });
     let index = fs::read_to_string(index.unwrap()).unwrap();
-    // The last two are made of the docstrings of the Python package and of the notebook.
+    // The last three are made of the docstrings of the Python package, of the notebook, and of a case.
     for page in [
         "docs/coming-from.html#",
         "docs/python-reference.html#model",
         "docs/tutorials/python-notebook.html#",
+        "docs/validation/junction.html#",
     ] {
         assert!(index.contains(page), "search finds nothing of {page}");
     }

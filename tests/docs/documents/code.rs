@@ -33,7 +33,7 @@ pub fn names_exist(page: &Page) {
     }
 }
 
-/// Whether a Rust source defines a name.
+/// True if a Rust source defines a name.
 fn defines(code: &str, name: &str) -> bool {
     const KEYWORDS: [&str; 8] = [
         "fn", "struct", "enum", "trait", "type", "const", "static", "mod",

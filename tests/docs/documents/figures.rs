@@ -89,7 +89,7 @@ fn figures(text: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// Whether a figure is among the words of a page, as a whole.
+/// True if a figure is among the words of a page, as a whole.
 fn holds(page: &[&str], figure: &[&str]) -> bool {
     page.split(|word| !is_figure(word)).any(|run| run == figure)
 }
@@ -104,7 +104,7 @@ fn words(text: &str) -> Vec<&str> {
     separate.filter(|word| !word.is_empty()).collect()
 }
 
-/// Whether a word is a number, which `3-D` isn't.
+/// True if a word is a number, which `3-D` isn't.
 fn is_figure(word: &&str) -> bool {
     word.starts_with(|c: char| c.is_ascii_digit()) && !word.ends_with("-D")
 }

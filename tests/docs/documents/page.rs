@@ -20,7 +20,7 @@ pub struct Link {
 }
 
 pub struct Page {
-    /// Its path from the repository's root.
+    /// The path from the repository's root.
     pub name: String,
     pub blocks: Vec<Block>,
     pub links: Vec<Link>,
@@ -129,7 +129,7 @@ impl Page {
         page
     }
 
-    /// Whether a block can't be run without the documents' Python.
+    /// True if a block can't be run without the documents' Python.
     pub fn needs_python(&self) -> bool {
         self.blocks.iter().any(Block::needs_python)
     }

@@ -3,7 +3,7 @@
 /// The sign for any text.
 const ANYTHING: char = '…';
 
-/// Whether `printed` is what the page shows. `…` stands for anything within a line, and as a line for any
+/// True if `printed` is what the page shows. `…` stands for anything within a line, and as a line for any
 /// number of lines; blanks at ends of lines and empty lines at the end don't count.
 pub fn is_shown(shown: &str, printed: &str) -> bool {
     lines_match(&lines(shown), &lines(printed))

@@ -10,7 +10,7 @@ pub struct Expected {
     last_digit: f64,
     /// A number from elsewhere, and by which share the run may be off from it.
     theory: Option<(f64, f64)>,
-    /// Its place in the run's output.
+    /// Place in the run's output.
     pub place: String,
 }
 

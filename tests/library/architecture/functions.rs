@@ -6,7 +6,7 @@ pub struct Function {
     pub name: String,
     /// Lines of its body that aren't blank.
     pub lines: usize,
-    /// Its arguments, itself among them.
+    /// Number of arguments, `self` among them.
     pub arguments: usize,
 }
 

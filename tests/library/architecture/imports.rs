@@ -22,7 +22,7 @@ struct Paths {
     imports: Vec<(String, bool, Module)>,
     /// The paths in its code.
     inline: Vec<Module>,
-    /// Its modules that are tests.
+    /// Modules that are tests.
     tests: Vec<String>,
 }
 

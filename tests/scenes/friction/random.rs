@@ -32,7 +32,7 @@ proptest! {
     }
 }
 
-/// Its stiffnesses are so far apart that the sweeps know forces to less than round-off (895), get no further (603) or
+/// Stiffnesses are so far apart that the sweeps know forces to less than round-off (895), get no further (603) or
 /// don't even know what sticks (865), of what has no pressure at times (626): refinement has to.
 #[test]
 fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {

@@ -21,8 +21,9 @@ fn junction(words: &str) -> Model {
     )
 }
 
-/// What all contacts do to every node where no support takes it, by its tag: of conditions that depend on each other it is known, of
-/// each alone it isn't, and of those whose jump supports prescribe in part neither is what these hold.
+/// Forces of all contacts on every node where no support takes them, by its tag: of conditions that depend on each
+/// other it is known, of each alone it isn't, and of those whose jump supports prescribe in part neither is what these
+/// hold.
 fn forces_on_nodes(model: &Model, solution: &Solution) -> BTreeMap<i64, [f64; 3]> {
     let mut sums: BTreeMap<i64, [f64; 3]> = BTreeMap::new();
     for point in solution.points() {

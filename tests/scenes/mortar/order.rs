@@ -1,4 +1,4 @@
-//! Which of two sides is named first is no matter of how far they go through each other.
+//! The order of two sides doesn't change how far they go through each other.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -34,8 +34,8 @@ fn penetrates(solution: &Solution) -> f64 {
         .unwrap()
 }
 
-/// What the meshes of the sides can't resolve adds to the error: by the penetration at most, which is warned of where it
-/// is what counts.
+/// Detail that the meshes of the sides can't resolve adds to the error: by the penetration at most, which is warned of
+/// where it is what counts.
 ///
 /// `PUNCHES=100 cargo test --workspace --test scenes -- both_orders --nocapture` takes as many pairs of meshes, from
 /// `SEED` on.

@@ -19,7 +19,7 @@ use crate::support::solver::solve;
 /// Two blocks, pressed on each other and pushed aside; the lower side of the upper one is bent.
 struct Blocks {
     kinds: [ElementKind; 2],
-    /// Whether nodes match; else the upper block covers a part of the lower one.
+    /// True if nodes match; else the upper block covers a part of the lower one.
     is_even: bool,
     friction: &'static str,
 }

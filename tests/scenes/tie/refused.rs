@@ -34,7 +34,7 @@ fn refused(text: &str, mesh: Mesh) -> String {
 fn sides_that_are_apart() {
     let message = refused(&format!("{ROCK}{LOADED}{WELD}"), apart(0.1));
     assert!(
-        message.contains("tie 'weld': its sides are 0.1 m apart or more"),
+        message.contains("tie 'weld': its sides are 0.1 m apart at least"),
         "{message}"
     );
     let reaches = format!("{ROCK}{LOADED}{WELD}tolerance = 0.2\n");

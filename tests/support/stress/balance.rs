@@ -1,4 +1,4 @@
-//! Whether contact forces can balance the load: a linear program, solved by the simplex method.
+//! Balance of the load by contact forces: a linear program, solved by the simplex method.
 //!
 //! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the
 //! rigid motions R of all bodies. Either they do, or a motion z exists that supports and contact
@@ -92,8 +92,8 @@ impl Balance {
         Self::bounded(columns, &bounded, &allowed * load)
     }
 
-    /// Whether `load` is a combination of `columns` with coefficients ≥ 0 and of points of polygons, given by their
-    /// corners and a factor of these.
+    /// Balance of `load`: is it a combination of `columns` with coefficients ≥ 0 and of points of polygons, given
+    /// by their corners and a factor of these.
     fn bounded(
         columns: Vec<DVector<f64>>,
         bounded: &[(Vec<DVector<f64>>, f64)],
@@ -122,7 +122,7 @@ impl Balance {
         Self::of(&all, &rhs)
     }
 
-    /// Whether `load` is a combination of `columns` with coefficients ≥ 0.
+    /// Balance of `load`: is it a combination of `columns` with coefficients ≥ 0?
     fn of(columns: &[DVector<f64>], load: &DVector<f64>) -> Self {
         let (left, dual) = Simplex::new(columns, load).solve();
         let grows = columns.iter().all(|column| {

@@ -17,7 +17,7 @@ pub struct Draft {
     /// Keys of the scene's root, which have to stand before its tables.
     head: String,
     tables: String,
-    /// Whether it is built to have an equilibrium; `None` where only [`super::Balance`] knows.
+    /// True if it is built to have an equilibrium; `None` where only [`super::Balance`] knows.
     pub equilibrium: Option<bool>,
     /// Young's modulus about which those of the bodies vary (Pa).
     young: f64,
@@ -27,12 +27,12 @@ pub struct Draft {
     pub load: f64,
     /// Most cells along a side of a block.
     pub cells: usize,
-    /// Whether nodes of blocks in contact lie opposite each other.
+    /// True if nodes of blocks in contact lie opposite each other.
     pub matching: bool,
     contacts: usize,
     /// The friction of its contacts; none without.
     pub friction: Option<Friction>,
-    /// Whether the resultants of all contacts follow from statics.
+    /// True if the resultants of all contacts follow from statics.
     pub determined: bool,
     /// The cells of a scene in space, and whether it stands askew.
     pub kind: ElementKind,
@@ -272,7 +272,7 @@ impl Draft {
     }
 }
 
-/// Whether triangles of a mesh from a number on are turned both ways.
+/// True if triangles of a mesh from a number on are turned both ways.
 fn is_folded(mesh: &Mesh, first: usize) -> bool {
     let is_left = |cell: usize| {
         let nodes = mesh.cells.nodes_of(cell);

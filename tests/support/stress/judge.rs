@@ -309,9 +309,9 @@ impl Findings {
         }
     }
 
-    /// Whether tangents stick or slip, as the status says, or where the bound is there without contact, the
-    /// force. What slips has the force that it has: by the law it would depend on the normal forces, which need not
-    /// be the only ones where conditions depend on others.
+    /// Tangents that stick or slip, as the status says, or where the bound is there without contact, the force.
+    /// What slips has the force that it has: by the law it would depend on the normal forces, which need not be the
+    /// only ones where conditions depend on others.
     fn along(&self, assembled: &Assembled, state: &Answer) -> Vec<Along> {
         let bounds = state.bounds(assembled);
         let one = |(k, tangent): (usize, &Tangent)| {

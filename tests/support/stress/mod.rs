@@ -38,7 +38,7 @@ pub use self::balance::Balance;
 #[derive(Clone, Copy)]
 pub struct Family {
     pub name: &'static str,
-    /// Whether nodes of bodies in contact lie opposite each other.
+    /// True if nodes of bodies in contact lie opposite each other.
     matching: bool,
     frictional: bool,
     make: fn(&mut Draft),
@@ -53,7 +53,7 @@ const fn matching(name: &'static str, make: fn(&mut Draft)) -> Family {
     }
 }
 
-/// Its bodies are meshed each for itself.
+/// A family whose bodies are meshed each for itself.
 const fn uneven(name: &'static str, make: fn(&mut Draft)) -> Family {
     Family {
         matching: false,
@@ -95,29 +95,29 @@ pub struct Drawn {
     pub family: &'static str,
     /// The name of its cells.
     pub cells: &'static str,
-    /// Its scene file.
+    /// The scene file.
     pub text: String,
-    /// Whether its gaps, loads and prescribed displacements were replaced by those of a solution
+    /// True if its gaps, loads and prescribed displacements were replaced by those of a solution
     /// chosen first.
     pub manufactured: bool,
     /// Factor of gaps, loads and prescribed displacements.
     pub factor: f64,
     pub model: Model,
-    /// Whether it was built to have an equilibrium; `None` where only [`Balance`] knows.
+    /// True if it was built to have an equilibrium; `None` where only [`Balance`] knows.
     pub equilibrium: Option<bool>,
     /// The wanted number of subdomains, which the scene may not allow.
     pub subdomains: usize,
     /// On how many ranks it runs besides without a launcher, 0 for none.
     pub ranks: usize,
-    /// Its laws of friction, if it has any.
+    /// The laws of friction, if it has any.
     pub friction: Option<Law>,
-    /// Whether the resultants of all contacts follow from statics, so that what rigid bodies with friction can
+    /// True if the resultants of all contacts follow from statics, so that what rigid bodies with friction can
     /// balance elastic ones do.
     pub determined: bool,
 }
 
 impl Drawn {
-    /// Its scene file, and what was changed behind it.
+    /// The scene file, and what was changed behind it.
     pub fn described(&self) -> String {
         let mut text = format!("# {} in {}\n{}", self.family, self.cells, self.text);
         if self.manufactured {

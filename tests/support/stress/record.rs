@@ -43,7 +43,7 @@ pub struct Row {
     pub backward: Option<f64>,
     /// Time that the program took (s).
     pub seconds: f64,
-    /// Which methods had to help, what the program said when it failed, and why the verdict isn't right.
+    /// Methods that had to help, what the program said when it failed, and why the verdict isn't right.
     pub words: String,
 }
 

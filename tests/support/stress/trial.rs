@@ -72,17 +72,17 @@ pub struct Trial {
     pub verdict: Verdict,
     /// Why, in words; empty where it is right.
     pub reason: String,
-    /// Whether there is an equilibrium; `None` where that is a matter of round-off, so that both the
+    /// True if there is an equilibrium; `None` where that is a matter of round-off, so that both the
     /// message that there is none and a solution are right, or of what friction carries.
     pub equilibrium: Option<bool>,
-    /// Whether rigid bodies are held by friction, of which elastic ones may not find enough.
+    /// True if rigid bodies are held by friction, of which elastic ones may not find enough.
     pub by_friction: bool,
-    /// Whether a load step was made in parts, after it didn't converge as a whole.
+    /// True if a load step was made in parts, after it didn't converge as a whole.
     pub in_parts: bool,
     /// The program's exit code, and the time that it took (s).
     pub exit: Option<i32>,
     pub seconds: f64,
-    /// Its message when it failed.
+    /// The message when it failed.
     pub message: String,
     pub dofs: usize,
     pub conditions: usize,
@@ -116,7 +116,7 @@ fn steps(model: &Model) -> Vec<Loaded> {
     }
 }
 
-/// Whether all steps of a scene have an equilibrium without friction, and with the friction that it has.
+/// Equilibrium of all steps of a scene without friction, and with the friction that it has.
 fn balances(drawn: &Drawn, steps: &[Loaded]) -> [Balance; 2] {
     let without = |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
     let held = least(steps.iter().map(without));
@@ -128,7 +128,7 @@ fn balances(drawn: &Drawn, steps: &[Loaded]) -> [Balance; 2] {
     }
 }
 
-/// Whether there is certainly no equilibrium in some step.
+/// True if there is certainly no equilibrium in some step.
 pub fn has_no_equilibrium(drawn: &Drawn) -> bool {
     balances(drawn, &steps(&drawn.model))[1] == Balance::Fails
 }
@@ -349,7 +349,7 @@ impl Trial {
         }
     }
 
-    /// Whether the report warns that the step of this name, or the only one, was made in parts.
+    /// True if the report warns that the step of this name, or the only one, was made in parts.
     fn is_in_parts(&self, step: Option<&str>) -> bool {
         let name = step.map_or(String::new(), |name| format!("step '{name}': "));
         let warnings = self.listed("warnings").unwrap_or_default();

@@ -70,7 +70,7 @@ pub struct Measured {
 pub struct Figure {
     pub name: &'static str,
     pub value: f64,
-    /// Whether it falls with a power of the mesh size.
+    /// True if it falls with a power of the mesh size.
     pub has_order: bool,
 }
 

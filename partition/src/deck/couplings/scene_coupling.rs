@@ -134,7 +134,7 @@ impl Couplings {
 }
 
 impl Coupling {
-    /// Its orientation among those of the deck.
+    /// The orientation among those of the deck.
     ///
     /// # Errors
     /// One that isn't there, or of a distributing coupling whose axes aren't the same everywhere.

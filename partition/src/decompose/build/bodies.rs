@@ -1,4 +1,4 @@
-//! Bodies, which hang together through shared nodes, and subdomains that don't hang together.
+//! Bodies, which are connected through shared nodes, and disconnected subdomains.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -125,7 +125,7 @@ fn numbered(names: &[String], points: &[[f64; 3]], dim: usize) -> Vec<String> {
         .collect()
 }
 
-/// Names the subdomains of the user's own partition that don't hang together across facets.
+/// The warning of the user's own subdomains that aren't connected across facets.
 pub(super) fn scattered(model: &Model, decomposition: &Decomposition) -> Option<String> {
     model.prescribed_subdomains.as_ref()?;
     let of = &decomposition.subdomain;
@@ -151,7 +151,7 @@ pub(super) fn scattered(model: &Model, decomposition: &Decomposition) -> Option<
         .collect();
     (!scattered.is_empty()).then(|| {
         format!(
-            "the scene's partition has subdomains that don't hang together: {}",
+            "the scene's partition has disconnected subdomains: {}",
             scattered.join(", ")
         )
     })

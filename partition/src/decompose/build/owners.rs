@@ -1,11 +1,11 @@
-//! Which subdomains have which nodes.
+//! Subdomains that have each node.
 
 use crate::decompose::Decomposition;
 use crate::error::InputError;
 use crate::lists::Lists;
 use crate::model::Model;
 
-/// Which subdomains have which nodes.
+/// Subdomains that have each node.
 pub(super) struct Owners {
     /// Number of subdomains.
     pub count: usize,

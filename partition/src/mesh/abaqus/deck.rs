@@ -255,7 +255,7 @@ impl Deck {
         Ok(())
     }
 
-    /// Whether there is an element of this tag that is left out.
+    /// True if there is an element of this tag that is left out.
     pub(crate) fn leaves_out(&self, tag: i64) -> bool {
         self.left_out.contains(&tag)
     }

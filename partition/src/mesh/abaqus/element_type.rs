@@ -29,8 +29,8 @@ const OF_CELLS: usize = 8;
 /// formulation, temperature.
 const FORMULATIONS: [char; 6] = ['R', 'I', 'M', 'H', 'S', 'T'];
 
-/// How the names of types begin that neither have a volume nor can be sides: masses, springs, dashpots, rigid
-/// faces, connectors, couplings, beams, pipes and gaps.
+/// Beginnings of the names of types that neither have a volume nor can be sides: masses, springs, dashpots,
+/// rigid faces, connectors, couplings, beams, pipes and gaps.
 const WITHOUT_VOLUME: [&str; 17] = [
     "MASS", "ROTARYI", "HEATCAP", "SPRING", "DASHPOT", "R2D2", "R3D3", "R3D4", "RAX2", "RB",
     "CONN", "DCOUP", "B2", "B3", "PIPE", "GAP", "ITS",
@@ -39,18 +39,18 @@ const WITHOUT_VOLUME: [&str; 17] = [
 /// The meaning of an element type.
 pub(super) struct ElementType {
     pub(super) kind: ElementKind,
-    /// Whether the element has no volume, or in the plane no area, of its own.
+    /// True if the element has no volume, or in the plane no area, of its own.
     pub(super) is_side: bool,
     /// The type of the same shape whose formulation is the one that all elements have here, if this is another.
     pub(super) plain: Option<&'static str>,
-    /// Whether the element has incompatible modes, which let it bend.
+    /// True if the element has incompatible modes, which let it bend.
     pub(super) has_modes: bool,
-    /// Whether its integration is a reduced one.
+    /// True if its integration is a reduced one.
     pub(super) is_reduced: bool,
 }
 
 impl ElementType {
-    /// Whether its integration is a reduced one that bodies may have.
+    /// True if its integration is a reduced one that bodies may have.
     pub(super) fn has_reduced_points(&self) -> bool {
         self.is_reduced && self.kind.reduced_points().is_some()
     }
@@ -76,7 +76,7 @@ pub(super) fn find(name: &str) -> Option<ElementType> {
     })
 }
 
-/// Whether elements of a type that isn't supported are no cells, so that the mesh is whole without them.
+/// True if elements of a type that isn't supported are no cells, so that the mesh is whole without them.
 pub(super) fn has_no_volume(name: &str) -> bool {
     let name = name.to_uppercase();
     WITHOUT_VOLUME.iter().any(|known| name.starts_with(known))

@@ -25,7 +25,7 @@ impl<'a> Scope<'a> {
         is_mesh
     }
 
-    /// Whether there is no block.
+    /// True if there is no block.
     pub(super) fn is_empty(&self) -> bool {
         self.blocks.is_empty()
     }

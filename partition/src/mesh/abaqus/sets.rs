@@ -9,7 +9,7 @@ const FEW: usize = 64;
 #[derive(Clone)]
 pub(crate) struct Members<T> {
     list: Vec<T>,
-    /// How many there were when each was there once.
+    /// Number of members when each was there once.
     distinct: usize,
 }
 

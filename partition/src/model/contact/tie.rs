@@ -40,7 +40,7 @@ impl Contacts<'_> {
         let widest = tied.points.iter().fold(0.0, |m: f64, p| m.max(p.gap.abs()));
         if !reach.adjust && widest > FELT * tied.size {
             warnings.push(format!(
-                "{what}: gaps of up to {} {} are kept, over which forces act without a moment; expected sides that touch, or \
+                "{what}: gaps of up to {} {} are kept: across them forces act without a moment; expected sides that touch, or \
                  adjust = true, which moves nodes",
                 short(widest),
                 self.units.length()
@@ -83,8 +83,8 @@ impl Contacts<'_> {
             (points.into_iter()).partition(|point| point.gap.abs() <= tolerance);
         if near.is_empty() {
             return Err(InputError::new(format!(
-                "{what}: its sides are {} {unit} apart or more, and what is farther apart than {} {unit} isn't tied; expected \
-                 sides that touch, or a larger 'tolerance'",
+                "{what}: its sides are {} {unit} apart at least, and only what is within {} {unit} of each other is tied; \
+                 expected sides that touch, or a larger 'tolerance'",
                 short(least),
                 short(tolerance)
             )));
@@ -130,7 +130,7 @@ impl Contacts<'_> {
                 return Ok(turned.collect());
             }
             (true, true) => warnings.push(format!(
-                "{what}: supports hold facets of both sides in other directions, and what they hold of side a isn't tied; \
+                "{what}: supports hold facets of both sides along other directions; what they hold of side a isn't tied; \
                  expected supports of one side"
             )),
             (false, _) => {}

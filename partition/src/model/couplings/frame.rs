@@ -19,7 +19,7 @@ pub(super) type Form = BTreeMap<u32, [f64; 3]>;
 
 /// The frame of a coupling.
 pub(super) struct Frame {
-    /// Its first node.
+    /// The first node.
     pub first: u32,
     /// The reference point (m).
     pub origin: [f64; 3],
@@ -30,7 +30,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Its nodes, the origin first.
+    /// The nodes, the origin first.
     pub fn corners(&self) -> Vec<[f64; 3]> {
         let corner = |k: usize| {
             let mut x = self.origin;

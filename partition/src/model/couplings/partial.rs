@@ -1,7 +1,7 @@
 //! Rigid couplings of some displacements: along directions d of every node, d·u(x) = d·(p + θ × (x − R)).
 //!
-//! What of the point's motion q = (p, L θ) none of these equations has is that of the nodes' mean: it carries nothing, and goes
-//! with the body whatever rigid motion that makes.
+//! Parts of the point's motion q = (p, L θ) that none of these equations has are those of the nodes' mean: they carry
+//! nothing, and go with the body whatever rigid motion that makes.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -23,7 +23,7 @@ pub(super) struct Uncoupled {
 /// A node that follows the point along some directions alone.
 pub(super) struct FollowingNode {
     pub node: u32,
-    /// Its position (m).
+    /// The position (m).
     pub place: [f64; 3],
     /// Unit vectors, perpendicular to each other.
     pub directions: Vec<[f64; 3]>,
@@ -166,7 +166,7 @@ fn components(dim: usize) -> &'static [usize] {
     }
 }
 
-/// Whether two of some unit vectors aren't perpendicular.
+/// True if two of some unit vectors aren't perpendicular.
 pub(super) fn are_skew(directions: &[[f64; 3]]) -> bool {
     (0..directions.len())
         .flat_map(|i| (0..i).map(move |j| (i, j)))

@@ -24,7 +24,7 @@ pub(super) struct Chart {
     frame: LocalFrame,
     origin: [f64; 3],
     size: f64,
-    /// Whether the coordinates are those of the reference facet.
+    /// True if the coordinates are those of the reference facet.
     pub is_curved: bool,
     /// The corners of the facet, counter-clockwise.
     pub outline: Vec<PlanePoint>,

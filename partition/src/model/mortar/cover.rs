@@ -116,7 +116,7 @@ impl Cover {
         cover
     }
 
-    /// Whether there is nothing.
+    /// True if there is nothing.
     pub fn is_empty(&self) -> bool {
         match &self.pieces {
             Pieces::Samples(samples) => samples.is_empty(),
@@ -154,7 +154,7 @@ impl<'a> Opposite<'a> {
         }
     }
 
-    /// Whether a facet of side b faces a line along `normal`.
+    /// True if a facet of side b faces a line along `normal`.
     pub fn faces(&self, facet: usize, normal: [f64; 3]) -> bool {
         dot(self.surface.facets[facet].normal, normal) <= -FACING
     }

@@ -1,4 +1,4 @@
-//! Which of two sides carries the multipliers.
+//! Choice of the side that carries the multipliers.
 
 use super::super::sides::Sides;
 use super::carried::{Carried, carried};
@@ -77,8 +77,8 @@ pub(in crate::model) fn pair(sides: &Sides, what: &str) -> Result<Mortar, String
     }
     let warning = (is_finer && fits(second.unseen)).then(|| {
         format!(
-            "{what}: the facets of side a measure {} of those of side b, whose corners its nodes feel; \
-             expected the coarser one of curved sides that fit each other first",
+            "{what}: the facets of side a (the slave) are {} times as large as those of side b, at whose corners pressures \
+             oscillate; expected the coarser one first, as the curved sides fit each other",
             short(ratio)
         )
     });

@@ -212,13 +212,13 @@ fn degree(a: &SurfaceFacet, b: &SurfaceFacet) -> usize {
     }
 }
 
-/// Whether all nodes of a facet lie in a plane.
+/// True if all nodes of a facet lie in a plane.
 fn is_flat(facet: &SurfaceFacet) -> bool {
     let height = |&x: &[f64; 3]| dot(difference(x, facet.at[0]), facet.normal);
     (facet.at.iter()).all(|x| height(x).abs() <= AFFINE * facet.size())
 }
 
-/// Whether a facet is the image of the reference facet under an affine map.
+/// True if a facet is the image of the reference facet under an affine map.
 fn is_affine(facet: &SurfaceFacet) -> bool {
     let kind = facet.kind;
     let nodes = kind.node_coordinates();

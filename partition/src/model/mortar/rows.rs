@@ -36,7 +36,7 @@ pub(super) struct Row {
     pub least_gap: f64,
     /// ∫ g and ∫ 1 over the facets there.
     around: [f64; 2],
-    /// Whether a facet there is covered in part.
+    /// True if a facet there is covered in part.
     is_partial: bool,
 }
 

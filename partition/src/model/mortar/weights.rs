@@ -1,4 +1,4 @@
-//! Which nodes of side a carry a multiplier, and with what weight on each facet.
+//! Nodes of side a that carry a multiplier, and their weights on each facet.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 

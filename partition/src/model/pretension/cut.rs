@@ -180,7 +180,7 @@ fn hold_doubles(scene: &Scene, mesh: &mut Mesh, double: &BTreeMap<u32, u32>) {
     }
 }
 
-/// Whether the members of a group are nodes.
+/// True if the members of a group are nodes.
 fn is_of_points(group: &Group, mesh: &Mesh) -> bool {
     group.dim + 1 < mesh.dim
 }

@@ -45,8 +45,8 @@ impl<'a> View<'a> {
         view
     }
 
-    /// Its view of `opposite` facets, which look its way, each with its index, with nothing between: index, distance along
-    /// the normal in the middle of the visible part, length or area of that (m).
+    /// The view of `opposite` facets, which look its way, each with its index, with nothing between: index, distance
+    /// along the normal in the middle of the visible part, length or area of that (m).
     pub fn of(&self, opposite: &[(usize, &SkinFacet)]) -> Vec<(usize, f64, f64)> {
         let seen = opposite
             .iter()
@@ -87,7 +87,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Whether another facet of the same piece lies so far behind this one that it is no side of a crack.
+    /// True if another facet of the same piece lies so far behind this one that it is no side of a crack.
     fn is_beyond(&self, other: &SkinFacet, gap: f64) -> bool {
         let (own, shape) = (&self.facet.shape, &other.shape);
         let size = own.size().min(shape.size());

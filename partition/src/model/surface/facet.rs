@@ -163,7 +163,7 @@ impl SurfaceFacet {
         Some([edge(edges.first()?), edge(edges.get(1)?)])
     }
 
-    /// Whether this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`,
+    /// True if this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`,
     /// lie opposite each other and not beside each other.
     pub fn is_opposite(&self, a: u32, other: &Self, b: u32, normal: [f64; 3]) -> bool {
         match (self.aside(a, normal), other.aside(b, normal)) {
@@ -181,7 +181,7 @@ impl SurfaceFacet {
     }
 }
 
-/// Whether a direction lies in the wedge between two edges that holds `inside`, all of them in one plane.
+/// True if a direction lies in the wedge between two edges that holds `inside`, all of them in one plane.
 fn is_between([first, second]: [[f64; 3]; 2], inside: [f64; 3], direction: [f64; 3]) -> bool {
     let beside = |edge| dot(cross(edge, inside), cross(edge, direction)) >= 0.0;
     beside(first) && beside(second)

@@ -51,7 +51,7 @@ impl Explicit {
         Self { of_facet }
     }
 
-    /// Whether two facets are on different sides of one contact.
+    /// True if two facets are on different sides of one contact.
     pub fn has(&self, a: CellFacet, b: CellFacet) -> bool {
         let (Some(of_a), Some(of_b)) = (self.of_facet.get(&a), self.of_facet.get(&b)) else {
             return false;

@@ -141,7 +141,7 @@ impl Sides {
     }
 }
 
-/// Whether a side looks down, left or to the back: by the last component of its normals' sum that isn't round-off.
+/// True if a side looks down, left or to the back: by the last component of its normals' sum that isn't round-off.
 fn looks_down(skin: &Skin, side: &[usize]) -> bool {
     let facets = || side.iter().map(|&facet| &skin.facets[facet].shape);
     let measure: f64 = facets().map(|facet| facet.measure).sum();

@@ -40,7 +40,7 @@ pub(super) fn read(group: &hdf5::Group, name: &str) -> Result<Value, InputError>
     })
 }
 
-/// Whether a group has an attribute.
+/// True if a group has an attribute.
 pub(super) fn is_there(group: &hdf5::Group, name: &str) -> bool {
     let names = group.attr_names().unwrap_or_default();
     names.iter().any(|known| known == name)

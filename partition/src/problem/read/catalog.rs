@@ -117,7 +117,7 @@ fn check_interface(
         if pieces.find(other as u32) != pieces.find(subdomain as u32) {
             return Err(InputError::new(format!(
                 "dataset /subdomains/body: the subdomains {other} and {subdomain} of body {} \
-                 don't hang together through /interface; expected a body of its own for each piece",
+                 aren't connected through /interface; expected a body of its own for each piece",
                 summary.body
             )));
         }

@@ -107,7 +107,7 @@ impl Contents {
         ends.map(|w| w[1] - w[0]).collect()
     }
 
-    /// Whether the file holds a dataset.
+    /// True if the file holds a dataset.
     pub fn has(&self, path: &str) -> bool {
         self.datasets.contains_key(path)
     }
@@ -195,7 +195,7 @@ impl Contents {
     }
 }
 
-/// Whether a group has nothing to say and may do so.
+/// True if a group is empty and may be.
 fn is_empty(file: &hdf5::File, group: &str) -> bool {
     let nothing = || file.group(group).is_ok_and(|group| group.is_empty());
     MAY_BE_EMPTY.contains(&group) && (!file.link_exists(group) || nothing())

@@ -29,7 +29,7 @@ const CUBES: &str = "\
 High, S2
 ";
 
-/// What is made of a deck, but for its warnings; these have to be as expected, with ` … ` between their parts.
+/// Mesh of a deck, whose warnings have to be as expected, with ` … ` between their parts.
 #[track_caller]
 fn quiet(deck: &str, warning: &str) -> Mesh {
     let mut mesh = read(deck).unwrap();

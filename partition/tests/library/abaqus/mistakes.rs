@@ -1,4 +1,4 @@
-//! What is wrong with a deck, by file and line.
+//! Errors of decks, by file and line.
 
 use super::{SQUARES, read, read_all};
 use crate::says::says;

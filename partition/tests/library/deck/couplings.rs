@@ -12,7 +12,7 @@ const ROOF: &str = "\
 Upper, S2
 ";
 
-/// What is said of a coupling beside its loads.
+/// Keys of a coupling beside its loads.
 const GRIP: &str = "name = 'Grip', on = 'Roof', point = [0.5, 0.5, 3.0]";
 
 fn coupling(kind: &str) -> String {

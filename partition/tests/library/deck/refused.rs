@@ -1,4 +1,4 @@
-//! What of a deck isn't computed, by keyword and line, with what to do instead.
+//! Refusals of keywords, by line, with what to do instead.
 
 use super::{CUBES, MODEL, read, step};
 use crate::says::says;
@@ -31,7 +31,7 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
         ("*HEATTRANSFER", "line 49: *HEAT TRANSFER isn't read"),
         (
             "*TIE, NAME=T, MULTISTAGE\nHigh, Low",
-            "line 49: *TIE with MULTISTAGE isn't read; expected sides that hang together",
+            "line 49: *TIE with MULTISTAGE isn't read; expected a tie of two sides",
         ),
         ("*EQUATION\n2", "line 50: the equation has 0 of its 2 terms"),
         (

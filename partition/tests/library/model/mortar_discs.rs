@@ -111,7 +111,7 @@ fn the_finer_of_two_curved_sides_has_the_conditions_unless_they_fit() {
         let said = model
             .warnings
             .join("\n")
-            .contains("expected the coarser one of curved sides");
+            .contains("expected the coarser one first");
         assert_eq!(said, is_warned, "{:?}", model.warnings);
     }
 }

@@ -14,7 +14,7 @@ fn at(model: &Model, node: u32) -> Vec<Support> {
     rows.copied().collect()
 }
 
-/// Whether the rows at a node prescribe u·direction = value.
+/// Checks that the rows at a node prescribe u·direction = value.
 #[track_caller]
 fn prescribes(rows: &[Support], direction: [f64; 2], value: f64) {
     let dot = |s: &Support| s.direction[0] * direction[0] + s.direction[1] * direction[1];

@@ -24,7 +24,7 @@ struct Equation {
     /// The way beyond its bound.
     ways: Vec<(usize, f64)>,
     constant: f64,
-    /// Its divisor, and the spring that keeps it regular.
+    /// Divisor of the row, and the spring that keeps it regular.
     scale: f64,
     spring: f64,
 }

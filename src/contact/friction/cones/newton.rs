@@ -130,8 +130,9 @@ impl FrictionCones<'_> {
         Rest::Unknown
     }
 
-    /// Whether things slide on and on where jumps go these ways: the bodies don't resist, nothing that is open closes on
-    /// the way, and loads do more work than all contacts take, that press as they do there and hold as much as they can.
+    /// True if things slide on and on where jumps go these ways: the bodies don't resist, nothing that is open closes
+    /// on the way, and loads do more work than all contacts take, that press as they do there and hold as much as they
+    /// can.
     fn slides_on(&self, found: &Found, ways: &[f64]) -> bool {
         let Found { place, state, .. } = found;
         if self.resists(ways) > NO_RESISTANCE {
@@ -158,7 +159,7 @@ impl FrictionCones<'_> {
         closes <= STAYS_OPEN * far && work - taken > SURPLUS * (terms + taken)
     }
 
-    /// How much the bodies resist jumps that grow so, relative to springs as stiff as they are.
+    /// Resistance of the bodies to jumps that grow so, relative to springs as stiff as they are.
     fn resists(&self, ways: &[f64]) -> f64 {
         let mut forces = vec![0.0; ways.len()];
         self.contact.subtract(ways, &mut forces);

@@ -21,7 +21,7 @@ pub(in crate::contact::friction) struct End {
     pub directions: Vec<Option<[f64; 2]>>,
 }
 
-/// How much closed rows that depend on each other give way.
+/// Compliance of closed rows that depend on each other.
 const YIELD: f64 = 1e-8;
 /// Stiffness of springs on all jumps, for motions that nothing resists.
 const SPRING: f64 = 1e-10;
@@ -86,7 +86,7 @@ fn spread(i: usize, attempt: usize) -> f64 {
 }
 
 impl Path {
-    /// Its beginning, where all is closed.
+    /// Beginning of the path, where all is closed.
     pub(super) fn new(problem: &FrictionProblem<'_>, polygons: &Polygons) -> Self {
         let contact = &problem.contact;
         let (m, count) = (contact.c.len(), contact.bounds.len());
@@ -205,7 +205,7 @@ impl Path {
         }
     }
 
-    /// Its value at θ = 0, and how it grows with θ.
+    /// Value of a quantity at θ = 0, and its growth with θ.
     pub(super) fn quantity(&self, quantity: Quantity) -> [f64; 2] {
         let (terms, rest) = self.terms(quantity);
         let of = |k: usize| {
@@ -284,7 +284,7 @@ impl Path {
         self.zero[normal] == Quantity::Force(normal)
     }
 
-    /// Whether the friction of a point has vanished with its contact.
+    /// True if the friction of a point has vanished with its contact.
     fn has_opened(&self, polygon: &FrictionPolygon) -> bool {
         polygon.only_closed && polygon.normal.is_some_and(|n| self.is_open(n))
     }

@@ -41,11 +41,11 @@ pub(super) struct FrictionPolygon {
     pub cohesion: f64,
     /// The part of the bound that is in proportion to θ.
     pub added: f64,
-    /// How the bound falls to 0 where it does before the contact opens.
+    /// Slope by which the bound falls to 0 where it does before the contact opens.
     pub steep: Option<f64>,
-    /// Whether it vanishes where the contact is open.
+    /// True if it vanishes where the contact is open.
     pub only_closed: bool,
-    /// Whether it never holds anything.
+    /// True if it never holds anything.
     pub is_free: bool,
     /// The normals d of its sides.
     normals: Rc<[[f64; 2]]>,
@@ -160,17 +160,17 @@ impl FrictionPolygon {
         })
     }
 
-    /// Its tangential limits.
+    /// Tangential limits of the polygon.
     pub(super) fn limits(&self) -> impl Iterator<Item = usize> + use<> {
         self.tangents.into_iter().flatten()
     }
 
-    /// Whether it is along one tangent alone.
+    /// True if it is along one tangent alone.
     pub(super) fn is_line(&self) -> bool {
         self.tangents[1].is_none()
     }
 
-    /// Its sides.
+    /// Numbers of the polygon's sides.
     pub(super) fn sides(&self) -> std::ops::Range<usize> {
         0..self.normals.len()
     }

@@ -1,4 +1,4 @@
-//! What jumps and forces are for a unit of what is 0 at each of the limits: a column each, in product form.
+//! Jumps and forces for a unit of what is 0 at each of the limits: a column each, in product form.
 //!
 //! Where limit i gets another quantity that is 0, aᵀ x of the jumps and forces x, every column becomes
 //!

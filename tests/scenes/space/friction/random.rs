@@ -21,7 +21,7 @@ fn an_answer_with_friction_in_space_is_the_same_on_any_ranks() {
     }
 }
 
-/// What would open where it sticks or slips under all of its cohesion, and penetrate without any.
+/// Points that would open where they stick or slip under all of their cohesion, and penetrate without any.
 #[test]
 fn what_is_about_to_open_in_space_slips_under_a_part_of_its_cohesion() {
     for seed in [11, 46, 122] {

@@ -58,7 +58,7 @@ impl Comparison {
         comparison
     }
 
-    /// Whether any scene is worse than it was, or isn't there any more.
+    /// True if any scene is worse than it was, or isn't there any more.
     pub fn is_worse(&self) -> bool {
         !(self.worse.is_empty() && self.missing.is_empty())
     }

@@ -223,7 +223,7 @@ fn a_clearance_goes_on_between_smaller_facets() {
 }
 
 #[test]
-fn what_parts_slowly_is_warned_of() {
+fn a_gap_that_opens_slowly_is_warned_of() {
     let round = Blocks::new()
         .block("lower", [0.0, 2.0], [0.0, 1.0], [16, 8])
         .block("upper", [0.0, 2.0], [1.0, 2.0], [16, 8]);
@@ -235,7 +235,7 @@ fn what_parts_slowly_is_warned_of() {
     let model = round.model(ALL).unwrap();
     says(
         &model.warnings[0],
-        "contact 'joints': where what touches ends, as near node … part slowly, in the middle of the next facets by ",
+        "contact 'joints': beyond its end, as near node … the gap opens slowly, to … in the middle of the next facets; ",
     );
     says(&model.found[0], ", gap up to");
     let all = round.model(&format!("{ALL}within = 0.11")).unwrap();
@@ -254,7 +254,7 @@ fn a_flank_is_warned_of_up_to_the_slope_that_small_strains_close() {
                 x[1] += slope * (x[0] - 2.0).max(0.0);
             }
             let warnings = punch.model(ALL).unwrap().warnings.concat();
-            let found = warnings.contains("part slowly");
+            let found = warnings.contains("opens slowly");
             assert_eq!(found, is_said, "{slope} {cells}: {warnings}");
         }
     }

@@ -36,7 +36,7 @@ side b that doesn't take what side a gives: /contact/entry_weight[1] = -0.5
 name of a node that isn't there: /contact/node_b[2] = 999999
     /contact/node_b, row 2: 999999 … GlobalNodeId
 no Γ: without /interface
-    /subdomains/body … don't hang together
+    /subdomains/body … aren't connected
 conditions of supports without names: without /support/name
     /support/name is missing
 names without conditions of supports: without /support/condition
