@@ -77,6 +77,19 @@ fn cohesion_that_is_lost_as_contacts_open_is_solved_for_in_space() {
     }
 }
 
+/// Friction a thousandth of the pressure leaves blocks a Newton step away from sliding 800 m, where round-off resists
+/// (7112840); Lemke's path has to end where bounds fall by their own cohesion, however large what all contacts would hold
+/// (7112946).
+#[test]
+fn slight_friction_holds_blocks_where_they_are() {
+    for seed in [7_112_840, 7_112_946] {
+        let mut drawn = draw_frictional(seed, 12);
+        drawn.ranks = 2;
+        let trial = Trial::of(&drawn, built(), LIMIT, None);
+        assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
+    }
+}
+
 /// Friction far below the forces of an interference fit holds to its own bound, between clusters, too.
 #[test]
 fn given_friction_below_an_interference_fit_keeps_to_its_bound_between_clusters() {
