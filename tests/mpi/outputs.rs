@@ -147,11 +147,13 @@ pub fn little_memory(trials: &mut Trials) {
                     .arg(case.problem());
                 let ended = Running::start(&mut command).wait(LIMIT);
                 let said = format!("{megabytes} MB: {}{}", ended.stdout, ended.stderr);
-                // MPI that finds no memory for its own libraries may end by a signal before the program starts.
+                // MPI that finds no memory for its own libraries may end by a signal before the program starts, with words of its
+                // own or without.
                 let in_mpi = ["failed to map segment", "mmap(2)"].map(|words| said.contains(words));
-                let aborted = said.contains("memory allocation of");
+                let in_mpi = in_mpi.contains(&true) || ended.stdout.is_empty();
+                let aborted = said.contains("memory allocation of") || said.contains("panicked");
                 // An abort would be a signal, 128 and more in a launcher's words.
-                let is_told = ended.code() < 128 || in_mpi.contains(&true) && !aborted;
+                let is_told = ended.code() < 128 || in_mpi && !aborted;
                 assert!(is_told, "{said}");
                 said
             });
