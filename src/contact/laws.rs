@@ -43,10 +43,9 @@ pub struct Statuses {
 }
 
 /// The past of a point whose cohesion vanishes as it opens.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Past {
     /// Never open since the search began.
-    #[default]
     Closed,
     /// Open once: where it would open again it parts first.
     Opened,
@@ -300,18 +299,14 @@ impl<'a> ContactLaws<'a> {
                 .collect();
         }
         let missed = self.missed(at, &statuses);
-        let squares = |forces: &[f64]| -> f64 {
-            let all = forces.iter().zip(&self.stiffness);
-            all.map(|(x, r)| x * x / r).sum()
-        };
         let relative = before.map(|(_, scales)| {
             let all = missed.iter().zip(scales).filter(|(x, _)| **x != 0.0);
             all.map(|(x, scale)| x.abs() / scale).fold(0.0, f64::max)
         });
         LawResidual {
             wrong: before.map_or_else(Vec::new, |(before, _)| self.wrong(before, &statuses)),
-            squares: squares(&missed),
-            forces: squares(&at.forces),
+            squares: self.squares(&missed),
+            forces: self.squares(&at.forces),
             missed: relative.unwrap_or(f64::INFINITY),
             statuses,
         }
@@ -337,6 +332,12 @@ impl<'a> ContactLaws<'a> {
                 }
             }
         }
+    }
+
+    /// Σ x²/r of these forces x.
+    pub fn squares(&self, forces: &[f64]) -> f64 {
+        let all = forces.iter().zip(&self.stiffness);
+        all.map(|(x, r)| x * x / r).sum()
     }
 
     /// The limits whose statuses differ, the first tangential one of a point.
@@ -382,3 +383,6 @@ impl<'a> ContactLaws<'a> {
         missed
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -133,10 +133,7 @@ impl<'a> FrictionCones<'a> {
         let rows = contact.rows.iter().map(|row| 1.0 / compliance(row));
         let stiffness: Vec<f64> = (0..m).map(of_jump).chain(rows).collect();
         let laws = ContactLaws::new(contact.bounds, contact.rows, problem.tangents, stiffness);
-        let norm = |forces: &[f64]| -> f64 {
-            let all = forces.iter().zip(&laws.stiffness);
-            all.map(|(x, r)| x * x / r).sum::<f64>().sqrt()
-        };
+        let norm = |forces: &[f64]| laws.squares(forces).sqrt();
         let at_rest = vec![0.0; m];
         let terms: Vec<f64> = (0..m).map(|i| contact.scale_of(i, &at_rest)).collect();
         Self {
