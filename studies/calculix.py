@@ -25,12 +25,14 @@ from contact_dd.result import Result
 
 TABLE = re.compile(r"\s*(total force|forces|stresses|strains) \(.*for set (\S+) and time\s+(\S+)")
 TITLE = re.compile(r"\s*displacements \(vx,vy,vz\) for set (\S+) and time\s+(\S+)")
-# Keywords, without blanks, of what isn't static, elastic, small or of solids.
+# Keywords, without blanks, of what isn't static, elastic, small or of solids, or needs the results of another deck.
 OTHERS = set("""PLASTIC CREEP HYPERELASTIC HYPERFOAM CYCLICHARDENING DEFORMATIONPLASTICITY USERMATERIAL MOHRCOULOMB
 RATEDEPENDENT VISCO DYNAMIC MODALDYNAMIC STEADYSTATEDYNAMICS FREQUENCY COMPLEXFREQUENCY BUCKLE CFD ELECTROMAGNETICS
 SENSITIVITY GREEN SUBSTRUCTUREGENERATE COUPLEDTEMPERATURE-DISPLACEMENT UNCOUPLEDTEMPERATURE-DISPLACEMENT HEATTRANSFER
 CRACKPROPAGATION FEASIBLEDIRECTION ROBUSTDESIGN REFINEMESH MATRIXASSEMBLE SHELLSECTION BEAMSECTION BEAMGENERALSECTION
-MEMBRANESECTION FLUIDSECTION MASS DASHPOT USERELEMENT GAP FRAMESECTION TRUSSSECTION""".split())
+MEMBRANESECTION FLUIDSECTION MASS DASHPOT USERELEMENT GAP FRAMESECTION TRUSSSECTION MEMBRANE SUBMODEL""".split())
+# Elements that are none of solids, and temperatures that another deck computes.
+NOT_SOLID = re.compile(r"(?m)^\*ELEMENT\b.*TYPE *= *([ST]\d|M3D|B3|PIPE)|^\*TEMPERATURE.*FILE")
 NEEDED = {"STATIC", "SOLIDSECTION"}
 CONTACT, LINEAR, LARGE, OTHER = "with contact", "linear, without", "NLGEOM, without", "others"
 
@@ -70,7 +72,7 @@ def main() -> None:
 def class_of(deck: Path) -> str:
     text = deck.read_text(errors="replace").upper()
     keywords = {line[1:].split(",")[0].replace(" ", "") for line in text.splitlines() if re.match(r"\*[^*]", line)}
-    if not NEEDED <= keywords or keywords & OTHERS:
+    if not NEEDED <= keywords or keywords & OTHERS or NOT_SOLID.search(text):
         return OTHER
     if "CONTACTPAIR" in keywords:
         return CONTACT
@@ -170,9 +172,11 @@ def of_tables(here: Path, there: Path) -> float:
 
 
 def nodes(deck: Path) -> set[int]:
-    """The numbers of the nodes of a deck: cuts of pretensions have others, which differ."""
-    blocks = re.findall(r"(?im)^\*NODE *(?:,.*)?\n((?:(?!\*[^*]).*\n)*)", deck.read_text(errors="replace"))
-    return {int(number) for block in blocks for number in re.findall(r"(?m)^\s*(\d+)\s*,", block)}
+    """The numbers of the nodes of a deck: cuts of pretensions have others, which differ, and nodes that are none."""
+    text = deck.read_text(errors="replace")
+    blocks = re.findall(r"(?im)^\*NODE *(?:,.*)?\n((?:(?!\*[^*]).*\n)*)", text)
+    bolts = re.findall(r"(?im)^\*PRE-TENSION SECTION.*NODE *= *(\d+)", text)
+    return {int(number) for block in blocks for number in re.findall(r"(?m)^\s*(\d+)\s*,", block)} - {*map(int, bolts)}
 
 
 def difference(result: Path, there: list[tuple[float, dict[int, np.ndarray]]], numbers: set[int]) -> float:

@@ -22,6 +22,7 @@ mod loads;
 mod material;
 mod model_change;
 mod mpc;
+mod orientations;
 mod pairs;
 mod parameters;
 mod place;

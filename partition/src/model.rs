@@ -129,22 +129,22 @@ impl Model {
         let held = held_nodes::HeldNodes::new(&loads);
         let sides = contact::Contacts::new(&bodies.mesh, &topology, held, scene);
         let MadeContacts {
-            contacts,
+            mut contacts,
             tables,
             found,
         } = MadeContacts::new(&sides, &declared, &mut warnings)?;
         activation::check(scene, &bodies, &contacts)?;
         let on = (&bodies.mesh, &topology);
         let (tips, coarse) = crack_tips::find(on, plane, &bodies.cell_material, &contacts);
+        let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
+        let count = contacts.len() + equations.len();
+        equations.extend(cyclic::cyclic(scene, &bodies, &mut contacts, count)?);
         let goals = goals(
             (scene, &bodies, &topology),
             &materials,
             (&loads, &springs),
             (&contacts, &tips),
         )?;
-        let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
-        let count = contacts.len() + equations.len();
-        equations.extend(cyclic::cyclic(scene, &bodies, &contacts, count)?);
         let count = contacts.len() + equations.len();
         equations.extend(springs_between::springs_between(
             scene,

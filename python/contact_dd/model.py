@@ -184,7 +184,8 @@ class Model:
         stiffness: dict[str, Number] | None = None,
     ) -> None:
         """Two sides that may touch, slide and part. Pressures and normals belong to side `a`, of curved sides best the
-        one with the coarser mesh. The gap is measured from the mesh where none is given; `adjust` closes some of it.
+        one with the coarser mesh; `a` may be points. The gap is measured from the mesh where none is given; `adjust`
+        closes some of it.
 
         With a `stiffness`, {"normal": …} and with friction perhaps "tangential", the sides overlap by pressure over it.
 

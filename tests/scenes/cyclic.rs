@@ -112,6 +112,31 @@ fn a_sector_of_a_wheel_is_the_whole_wheel() {
     }
 }
 
+/// A tyre that is shrunk onto its hub with friction: where the sector ends, contacts press along the normals of the ring.
+#[test]
+fn a_shrunk_sector_is_the_whole_wheel() {
+    let joint = |keys: &str| {
+        let wheel = WHEEL.replace("[[tie]]", &format!("[[contact]]\n{keys}"));
+        wheel.replace("4e5*", "1e4*")
+    };
+    let soft = "gap = -1e-3\nfriction = 0.4\nstiffness = { normal = 1e11 }";
+    for keys in [
+        "gap = -1e-3\nfriction = 0.05",
+        "gap = -1e-3\nfriction = 0.4",
+        soft,
+    ] {
+        let text = joint(keys);
+        let whole = model(&text, wheel(SECTORS));
+        let expected = solve_steps(&whole, 6);
+        let sector = model(&with_cyclic(&text), wheel(1));
+        let found = solve_steps(&sector, 3);
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(&expected) {
+            is_part((&sector, found), (&whole, expected), 1e-9);
+        }
+    }
+}
+
 #[test]
 fn ranks_and_solvers_make_no_difference() {
     let case = Case::in_clusters(&model(&with_cyclic(WHEEL), wheel(1)), 6, 3);
@@ -265,10 +290,14 @@ fn what_is_no_sector_is_refused() {
         (with("'stress'", "'axisymmetric'"), "has no sectors"),
         (with("[[tie]]", "[[contact]]"), "are curved where they meet"),
     ] {
+        let uneven = joined(
+            ring("hub", [0.5, 1.0], [3, 4], 1),
+            ring("tyre", [1.0, 1.6], [4, 5], 1),
+        );
         let text = format!("mesh = 'm'\n{text}");
         let error = match Scene::parse(&text) {
             Err(error) => error.to_string(),
-            Ok(scene) => Model::new(&scene, wheel(1)).unwrap_err().to_string(),
+            Ok(scene) => Model::new(&scene, uneven).unwrap_err().to_string(),
         };
         assert!(error.contains(expected), "{error}");
     }

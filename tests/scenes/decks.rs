@@ -2,6 +2,7 @@
 
 mod conditions;
 mod couplings;
+mod node_surface;
 mod pretension;
 
 use contact_dd_partition::deck;
@@ -22,6 +23,16 @@ fn solved(deck: &str) -> Vec<Solution> {
     let scene = Scene::parse(&translation.scene).unwrap();
     let model = Model::new(&scene, translation.mesh).unwrap_or_else(|e| panic!("{e}"));
     solve_steps(&model, 2)
+}
+
+/// The reason why a deck is refused.
+#[track_caller]
+fn refused(deck: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part.inp");
+    std::fs::write(&path, deck).unwrap();
+    let error = deck::read(&path).err();
+    error.unwrap_or_else(|| panic!("it is read")).to_string()
 }
 
 /// A column of two cubes that touch, without Poisson's effect: under a pressure, with its weight, and under forces alone.

@@ -137,6 +137,36 @@ fn the_walls_bear_the_force_across_the_cut() {
     }
 }
 
+/// A round bar around its axis between smooth walls bears the force all around, whatever its cells are.
+#[test]
+fn a_round_bar_bears_the_force_all_around() {
+    let (radius, length, force) = (0.4, 1.5, 2e6);
+    let area = std::f64::consts::PI * radius * radius;
+    let stretch = force * length / (YOUNG * area);
+    let ring = bar(0.3, ["bar bottom", "bar top"]).replace("x = 0.0\n", "");
+    for sort in SORTS {
+        let mesh = Blocks::new()
+            .rectangle("bar", [0.0, radius], [0.0, length], [4, 6])
+            .mesh;
+        let mesh = with_cut(sort.of(&mesh), |x| (x[1] - 0.75).abs() < 1e-9);
+        for keys in [
+            format!("force = {force:?}"),
+            format!("shortening = {stretch:?}"),
+        ] {
+            let text = format!("plane = 'axisymmetric'\n{ring}{}", bolt(&keys));
+            let solution = solve(&model(&text, mesh.clone()), 4);
+            let [found, shortening] = tightened(&solution.report);
+            close(found, force, 1e-9 * force);
+            close(shortening, stretch, 1e-9 * stretch);
+            for (_, stress) in &solution.cells {
+                close(stress[1], force / area, 1e-8 * force / area);
+                close(stress[0], 0.0, 1e-8 * force / area);
+            }
+            close(reaction(&solution, 1)[1], force, 1e-9 * force);
+        }
+    }
+}
+
 /// A bar that is turned in space is tightened along its own axis, by the normal of the cut or by a direction that says
 /// the same.
 #[test]

@@ -10,7 +10,8 @@ use crate::support::blocks::Blocks;
 use crate::support::close::close;
 use crate::support::extruded::extruded;
 use crate::support::scenes::{BODIES, JOINT, model, two_blocks};
-use crate::support::solver::solve;
+use crate::support::solution::Solution;
+use crate::support::solver::{Case, solve};
 use crate::support::sorts::{SORTS, sort};
 use crate::support::statics::{balanced, reaction};
 
@@ -140,6 +141,35 @@ value = {p}"
         of_contact.push(y);
     }
     close(of_contact[0], of_contact[1], 1e-9 * p);
+}
+
+/// A block on a foundation, and one that it bears with friction on springs at its sides, pushed aside in the second step.
+#[test]
+fn ranks_and_solvers_make_no_difference() {
+    let text = format!(
+        "{BODIES}{JOINT}friction = 0.3
+[[spring]]
+on = 'lower bottom'
+normal = 4e9
+tangential = 1e9
+[[spring]]
+on = ['upper left', 'upper right']
+stiffness = [1e8, 2e8]
+[[pressure]]
+on = 'upper top'
+value = 1e6
+[[step]]
+[[step]]
+pressure = [{{ on = 'upper top', value = 1e6 }}, {{ on = 'upper left', value = 4e5 }}]
+"
+    );
+    let case = Case::in_clusters(&model(&text, two_blocks().mesh), 8, 4);
+    let ended = case.run(&[]);
+    assert_eq!(ended.code(), 0, "{}", ended.stderr);
+    let steps = Solution::steps(&case.result());
+    steps.iter().for_each(Solution::check_certificate);
+    assert!(steps[1].slipping() > 0);
+    case.is_the_same_on_all_ranks_and_by_iteration(1e-8);
 }
 
 #[test]

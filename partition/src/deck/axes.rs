@@ -22,6 +22,14 @@ pub(super) enum System {
 impl System {
     /// The system of an `*ORIENTATION`, perhaps turned about one of its axes.
     pub(super) fn of_material(source: &Source, block: &Block) -> Result<Self, InputError> {
+        let definition = block.parameter("DEFINITION").unwrap_or("COORDINATES");
+        if !definition.eq_ignore_ascii_case("COORDINATES") {
+            let message = format!(
+                "*ORIENTATION of DEFINITION={} isn't read; expected coordinates of points",
+                name::shown(definition)
+            );
+            return Err(source.error(block.place, message));
+        }
         let system = block.parameter("SYSTEM").unwrap_or("RECTANGULAR");
         let found = Self::read(source, block, system)?;
         let Some(data) = block.data.get(1) else {
@@ -47,12 +55,22 @@ impl System {
     }
 
     fn read(source: &Source, block: &Block, system: &str) -> Result<Self, InputError> {
-        let refuse = |message: String| Err(source.error(block.place, message));
         let points = match block.data.first() {
             Some(data) => numbers(source, data, "the coordinates of points")?,
             None => Vec::new(),
         };
-        let &[a, b, c, d, e, f, ref rest @ ..] = &points[..] else {
+        Self::of_points(source, block, &points, system)
+    }
+
+    /// The system of the coordinates of two points, or three.
+    pub(super) fn of_points(
+        source: &Source,
+        block: &Block,
+        points: &[f64],
+        system: &str,
+    ) -> Result<Self, InputError> {
+        let refuse = |message: String| Err(source.error(block.place, message));
+        let &[a, b, c, d, e, f, ref rest @ ..] = points else {
             return refuse(format!(
                 "*{} has no two points; expected 6 coordinates in the line behind it",
                 block.keyword

@@ -27,6 +27,8 @@ pub(super) struct Condition {
     values: Vec<Option<f64>>,
     /// The plain name of those that have values.
     word: &'static str,
+    /// True if what its displacements have reached where it comes is kept.
+    is_kept: bool,
 }
 
 /// A condition in the words of the scene.
@@ -35,6 +37,7 @@ pub(super) struct SceneEquation {
     /// Groups, axes and factors.
     terms: Vec<(String, usize, f64)>,
     values: Vec<Option<f64>>,
+    is_kept: bool,
 }
 
 impl Condition {
@@ -97,7 +100,7 @@ pub(super) fn all(
         }
     }
     all.retain(|condition| !condition.terms.is_empty());
-    all.extend(passing(&has_cell, &mut steps.done));
+    all.extend(passing(&has_cell, steps));
     all.extend(turned(places, steps));
     Ok(all)
 }
@@ -128,6 +131,7 @@ fn along_axes(
         terms,
         values: vec![Some(0.0); steps.done.len()],
         word: "prescribed",
+        is_kept: false,
     })
 }
 
@@ -197,7 +201,14 @@ fn without(
 }
 
 /// Supports of nodes of bodies that don't hold in all steps, which leave these.
-fn passing(has_cell: &[bool], steps: &mut [LoadStep]) -> Vec<Condition> {
+fn passing(has_cell: &[bool], steps: &mut Steps) -> Vec<Condition> {
+    let (fixed, systems) = (&steps.loads.fixed, &steps.systems);
+    // Axes of nodes with a local system are counted otherwise there.
+    let is_kept = |(node, axis): NodeAxis| match systems.contains_key(&node) {
+        true => (0..3).any(|local| fixed.contains(&(node, local))),
+        false => fixed.contains(&(node, axis)),
+    };
+    let steps = &mut steps.done;
     let held = |step: &LoadStep, (node, axis): NodeAxis| {
         step.supports.get(&node).and_then(|held| held[axis])
     };
@@ -227,6 +238,7 @@ fn passing(has_cell: &[bool], steps: &mut [LoadStep]) -> Vec<Condition> {
             terms: BTreeMap::from([(dof, 1.0)]),
             values,
             word: "support",
+            is_kept: is_kept(dof),
         });
     }
     for step in steps {
@@ -253,6 +265,7 @@ fn turned(places: &Places, steps: &Steps) -> Vec<Condition> {
                 .map(|step| step.turned.get(&dof).copied())
                 .collect(),
             word: "support along a local axis",
+            is_kept: steps.loads.fixed.contains(&dof),
         }
     };
     dofs.into_iter().map(condition).collect()
@@ -264,12 +277,12 @@ pub(super) fn in_scene(
     groups: &mut Groups,
     names: &mut Names,
 ) -> Vec<SceneEquation> {
-    let mut known: BTreeMap<(&str, Vec<Option<u64>>), String> = BTreeMap::new();
+    let mut known: BTreeMap<(&str, bool, Vec<Option<u64>>), String> = BTreeMap::new();
     let equation = |condition: &Condition| {
         let bits = condition.values.iter().map(|value| value.map(f64::to_bits));
         let is_plain = condition.values.iter().all(|value| *value == Some(0.0));
         let name = (!is_plain || condition.place.is_none()).then(|| {
-            let key = (condition.word, bits.collect());
+            let key = (condition.word, condition.is_kept, bits.collect());
             known
                 .entry(key)
                 .or_insert_with(|| names.unique(condition.word))
@@ -285,6 +298,7 @@ pub(super) fn in_scene(
             name,
             terms: terms.collect(),
             values: condition.values.clone(),
+            is_kept: condition.is_kept,
         }
     };
     conditions.iter().map(equation).collect()
@@ -310,7 +324,7 @@ impl SceneEquation {
         if let Some(value) = values.next().filter(|value| *value != 0.0) {
             document.key("value", format!("{value:?}"));
         }
-        if self.values.iter().any(Option::is_none) {
+        if self.values.iter().any(Option::is_none) && !self.is_kept {
             document.key("absolute", "true");
         }
     }

@@ -13,6 +13,7 @@ use super::initial::Initial;
 use super::material::Material;
 use super::model_change::Changes;
 use super::mpc;
+use super::orientations::Orientations;
 use super::place::Places;
 use super::pretensions::Pretensions;
 use super::prints::Requests;
@@ -32,7 +33,7 @@ pub(super) struct Content {
     pub(super) materials: BTreeMap<String, Material>,
     /// The material that is read.
     open: Option<String>,
-    orientations: BTreeMap<String, System>,
+    orientations: Orientations,
     pub(super) sections: Vec<Section>,
     pub(super) initial: Initial,
     pub(super) contacts: Contacts,
@@ -103,11 +104,7 @@ impl Content {
                 self.open = Some(key);
             }
             "ELASTIC" | "EXPANSION" | "DENSITY" => self.law(source, block)?,
-            "ORIENTATION" => {
-                let name = source.required(block, "NAME")?.to_uppercase();
-                self.orientations
-                    .insert(name, System::of_material(source, block)?);
-            }
+            "ORIENTATION" | "DISTRIBUTION" => self.orientations.read(places, block)?,
             "TRANSFORM" => {
                 let system = System::of_nodes(source, block)?;
                 let set = source.required(block, "NSET")?;
@@ -116,7 +113,11 @@ impl Content {
                     .into_iter()
                     .for_each(|node| _ = self.steps.systems.insert(node, system));
             }
-            "SOLID SECTION" => self.sections.push(Section::read(places, block)?),
+            "SOLID SECTION" => {
+                let section = Section::read(places, block)?;
+                let parts = self.orientations.parts(&section);
+                self.sections.extend([section].into_iter().chain(parts));
+            }
             "INITIAL CONDITIONS" => self.initial.read(places, block)?,
             "STEP" => {
                 let nlgeom = block.parameter("NLGEOM");
@@ -211,7 +212,7 @@ impl Content {
 
     /// The orientations, by name in capitals.
     pub(super) fn orientations(&self) -> &BTreeMap<String, System> {
-        &self.orientations
+        &self.orientations.all
     }
 
     /// The axes of an anisotropic section.
@@ -221,7 +222,7 @@ impl Content {
         section: &Section,
         name: &str,
     ) -> Result<Axes, InputError> {
-        match self.orientations.get(name) {
+        match self.orientations.all.get(name) {
             Some(System::Rectangular(axes)) => Ok(*axes),
             Some(System::Cylindrical(..)) => Err(source.error(
                 section.place,

@@ -9,7 +9,7 @@ use crate::name;
 use crate::scene::suggest::nearest;
 
 /// Keywords that are read.
-const READ: [&str; 53] = [
+const READ: [&str; 54] = [
     "NODE",
     "ELEMENT",
     "NSET",
@@ -27,6 +27,7 @@ const READ: [&str; 53] = [
     "DENSITY",
     "SOLID SECTION",
     "ORIENTATION",
+    "DISTRIBUTION",
     "TRANSFORM",
     "AMPLITUDE",
     "INITIAL CONDITIONS",
@@ -66,7 +67,7 @@ const READ: [&str; 53] = [
 ];
 
 /// Keywords that don't matter to the answer.
-const NOT_NEEDED: [&str; 36] = [
+const NOT_NEEDED: [&str; 37] = [
     "CONDUCTIVITY",
     "ELECTRICAL CONDUCTIVITY",
     "SPECIFIC HEAT",
@@ -103,6 +104,7 @@ const NOT_NEEDED: [&str; 36] = [
     "NO ANALYSIS",
     "PARAMETER",
     "SURFACE SMOOTHING",
+    "DISTRIBUTION TABLE",
 ];
 
 const NOT_LINEAR: &str = "bodies are linear elastic here";
@@ -269,12 +271,7 @@ const REFUSED: [(&[&str], &str, &str); 19] = [
         "give the mesh as fine as it is to be",
     ),
     (
-        &[
-            "DISTRIBUTION",
-            "DISTRIBUTION TABLE",
-            "FIELD",
-            "INITIAL STRAIN INCREASE",
-        ],
+        &["FIELD", "INITIAL STRAIN INCREASE"],
         "isn't read",
         "give numbers by sets",
     ),

@@ -48,8 +48,8 @@ pub(super) struct Loads {
     pub(super) temperatures: Table<u32>,
     /// Nodes that stand for reference points.
     pub(super) references: BTreeMap<u32, Reference>,
-    /// Nodes of pretensions whose shortening is kept as it is once it is held.
-    pub(super) fixed: BTreeSet<u32>,
+    /// Displacements that are kept as they are once they are held, of pretensions their shortening.
+    pub(super) fixed: BTreeSet<NodeAxis>,
     /// Parts of it that aren't needed, in words.
     pub(super) notes: BTreeSet<String>,
 }

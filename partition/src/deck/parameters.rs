@@ -5,7 +5,7 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Parameters that are read, refused by whoever reads the block, or change nothing.
-const PARAMETERS: [(&str, &[&str]); 38] = [
+const PARAMETERS: [(&str, &[&str]); 39] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("CHANGE FRICTION", &["INTERACTION"]),
     ("CHANGE SURFACE BEHAVIOR", &["INTERACTION"]),
@@ -25,7 +25,8 @@ const PARAMETERS: [(&str, &[&str]); 38] = [
             "OFFSET",
         ],
     ),
-    ("ORIENTATION", &["NAME", "SYSTEM"]),
+    ("ORIENTATION", &["NAME", "SYSTEM", "DEFINITION"]),
+    ("DISTRIBUTION", &["NAME", "LOCATION", "TABLE"]),
     ("TRANSFORM", &["NSET", "TYPE"]),
     (
         "AMPLITUDE",

@@ -10,7 +10,6 @@ use super::reference::Reference;
 use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
-use crate::scene::material::PlaneState;
 
 /// A section.
 struct Section {
@@ -101,18 +100,13 @@ impl Pretensions {
         &self,
         groups: &mut Groups,
         steps: &Steps,
-        (plane, thickness): (Option<PlaneState>, f64),
+        thickness: f64,
         names: &mut Names,
     ) -> Result<Vec<ScenePretension>, InputError> {
         let mut all = Vec::with_capacity(self.0.len());
         for section in &self.0 {
             let tag = groups.tag(section.node);
-            let wrong = if plane == Some(PlaneState::Axisymmetric) {
-                Some(
-                    "isn't supported around an axis; instead shrink the bolt by *TEMPERATURE"
-                        .into(),
-                )
-            } else if groups.of_node_surface(&section.surface).is_some() {
+            let wrong = if groups.of_node_surface(&section.surface).is_some() {
                 Some("of a surface of nodes isn't read; expected one of faces".to_owned())
             } else if groups.is_of_body(section.node) {
                 Some(format!(
@@ -154,7 +148,7 @@ impl Section {
         let in_step = |step: &LoadStep| {
             let at = step.references.get(&self.node).cloned().unwrap_or_default();
             match at.held[0] {
-                Some(_) if steps.loads.fixed.contains(&self.node) => Given::Lock,
+                Some(_) if steps.loads.fixed.contains(&(self.node, 0)) => Given::Lock,
                 Some(length) => Given::Shortening(sense * length),
                 None => Given::Force(sense * at.load[0] / thickness),
             }

@@ -79,12 +79,10 @@ pub(super) fn text(
         &mut taken,
     )?;
     let sectors = content.sectors.in_scene(&mut loads.groups, &mut taken)?;
-    let bolts = content.pretensions.in_scene(
-        &mut loads.groups,
-        &content.steps,
-        (plane, thickness),
-        &mut taken,
-    )?;
+    let bolts =
+        content
+            .pretensions
+            .in_scene(&mut loads.groups, &content.steps, thickness, &mut taken)?;
     let dim = loads.dim;
     let mut document = Document::default();
     if let Some(title) = &content.title {

@@ -13,6 +13,7 @@ use crate::mesh::abaqus::{Block, LinePlace, Of};
 use crate::name;
 
 /// A section.
+#[derive(Clone)]
 pub(super) struct Section {
     elements: Vec<u32>,
     pub(super) set: String,
@@ -44,6 +45,16 @@ impl Section {
             thickness: if thickness > 0.0 { thickness } else { 1.0 },
             place: block.place,
         })
+    }
+
+    /// The same section of those of its elements that are some of `elements`, with another orientation.
+    pub(super) fn turned(&self, elements: &[u32], orientation: &str) -> Self {
+        let own = self.elements.iter().copied();
+        Self {
+            elements: own.filter(|element| elements.contains(element)).collect(),
+            orientation: Some(orientation.to_owned()),
+            ..self.clone()
+        }
     }
 }
 

@@ -68,15 +68,13 @@ impl Loads {
                 None => axes(places, data, block)?,
             };
             let is_fixed = block.parameter("FIXED").is_some();
-            for &node in &nodes {
-                self.fix(places, data, (node, is_fixed))?;
-            }
             for (&node, &axis) in nodes
                 .iter()
                 .flat_map(|node| axes.iter().map(move |axis| (node, axis)))
             {
                 match self.component(places, (block, data), (node, axis))? {
-                    Some(key) => self.supports.set(key, value, &origin),
+                    Some(key) if is_fixed => self.fix(places, block, key, &origin)?,
+                    Some(key) => self.prescribe(places, key, value, &origin)?,
                     None if word.is_none() && axis >= SPACE => {
                         _ = self.notes.insert(NO_ROTATIONS.into())
                     }
@@ -87,28 +85,56 @@ impl Loads {
         Ok(())
     }
 
-    /// Remembers whether what a node is held at is what it has reached, of a pretension its shortening.
+    /// `*BOUNDARY, FIXED`: what a node is held at is what it has reached, of a pretension its shortening.
     ///
     /// # Errors
-    /// Another node that is fixed.
+    /// Displacements that the same block ends, a reference node of a coupling.
     fn fix(
         &mut self,
         places: &Places,
-        data: &Data,
-        (node, is_fixed): (u32, bool),
+        block: &Block,
+        key: NodeAxis,
+        origin: &Origin,
     ) -> Result<(), InputError> {
-        let reference = self.references.get(&node);
-        match is_fixed {
-            false => _ = self.fixed.remove(&node),
-            true if reference.is_some_and(Reference::is_of_pretension) => {
-                self.fixed.insert(node);
+        let of_pretension = self.references.get(&key.0).map(Reference::is_of_pretension);
+        let is_held = self.supports.place(&key).is_some();
+        let wrong = match (of_pretension, block.parameter("OP")) {
+            (Some(false), _) if !is_held => "of the reference node of a coupling",
+            (None, Some(op)) if op.eq_ignore_ascii_case("NEW") => "and OP=NEW",
+            _ => {
+                // What is held already stays as it is.
+                if of_pretension == Some(true) || !is_held {
+                    self.fixed.insert(key);
+                    self.supports.set(key, 0.0, origin);
+                }
+                return Ok(());
             }
-            true => {
-                let message = "*BOUNDARY with FIXED is read of the node of a *PRE-TENSION SECTION alone; expected displacements \
-                               of other nodes";
-                return Err(places.source.error(data.place, message));
-            }
+        };
+        let message =
+            format!("*BOUNDARY with FIXED {wrong} isn't read; expected displacements of nodes");
+        Err(places.source.error(origin.place, message))
+    }
+
+    /// Prescribes a displacement.
+    ///
+    /// # Errors
+    /// One of a node that is fixed where it was.
+    fn prescribe(
+        &mut self,
+        places: &Places,
+        key: NodeAxis,
+        value: f64,
+        origin: &Origin,
+    ) -> Result<(), InputError> {
+        let is_free = self.references.contains_key(&key.0);
+        if self.fixed.remove(&key) && !is_free {
+            let message = format!(
+                "the node {} has been FIXED in a step before; expected that alone, or displacements in all steps",
+                places.deck.node_tags[key.0 as usize]
+            );
+            return Err(places.source.error(origin.place, message));
         }
+        self.supports.set(key, value, origin);
         Ok(())
     }
 

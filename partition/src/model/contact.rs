@@ -1,18 +1,19 @@
 //! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
 mod laws;
+mod single_nodes;
 mod tie;
+mod warnings;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 
 use super::held_nodes::{HeldNodes, ROUNDING};
 use super::mortar::{self, Mortar};
 use super::node_pairs::Unpaired;
 use super::sides::{Sides, side_nodes};
-use super::surface::{CORNER, Surface, SurfaceFacet, Turn};
+use super::surface::{Surface, SurfaceFacet};
 use super::{Contact, groups, node_pairs, obstacle};
 use crate::contact_point::{ContactPoint, Probe};
-use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::Mesh;
@@ -27,16 +28,6 @@ use crate::scene::units::Units;
 /// Measured gaps in space are none up to this fraction: round-off of coordinates would hold bodies apart, or press them
 /// together, and where several contacts meet no displacement has all of them.
 const NO_GAP: f64 = 1e-15;
-
-/// Negative gaps are worth a warning beyond this fraction of the side's extent: less is how quadratic
-/// edges follow an arc.
-const SEEN: f64 = 1e-8;
-
-/// Part of an interference from which on it matters that straight facets stand off a curve.
-const FELT: f64 = 0.1;
-
-/// Height of the kinks between straight quadratic facets over their size from which on they are those of a curve.
-const KINKED: f64 = 1e-4;
 
 /// The points of a contact before its laws.
 #[derive(Default)]
@@ -107,19 +98,9 @@ impl<'a> Contacts<'a> {
         warnings: &mut Vec<String>,
     ) -> Result<Contact, InputError> {
         let what = format!("contact '{}'", keys.name);
-        let (facets, side_a) = self.side(&keys.side_a, &what)?;
-        let mut paired = match &keys.partner {
-            Partner::Obstacle(obstacle) => {
-                let motion = self.motions.get(&keys.name[..]).cloned();
-                self.of_obstacle((obstacle, motion.unwrap_or_default()), &side_a, &what)?
-            }
-            Partner::Side(names) => {
-                let on_a = facets.into_iter().collect();
-                self.sides(number, (&on_a, &side_a), names, keys.pairing, &what)?
-            }
-        };
+        let (side_a, mut paired) = self.paired(number, keys, &what)?;
         warnings.append(&mut paired.warnings);
-        warnings.extend(straight_edges(&what, "a", &side_a));
+        warnings.extend(Self::straight_edges(&what, "a", &side_a));
         let none = if self.mesh.dim == 3 {
             NO_GAP * self.size
         } else {
@@ -170,6 +151,33 @@ impl<'a> Contacts<'a> {
         })
     }
 
+    /// The points of contact `number` as its sides or its obstacle give them, and the side by which these are judged.
+    fn paired(
+        &self,
+        number: u32,
+        keys: &contact::Contact,
+        what: &str,
+    ) -> Result<(Surface, Paired), InputError> {
+        if let (true, Partner::Side(names)) = (
+            groups::are_of_points(self.mesh, &keys.side_a),
+            &keys.partner,
+        ) {
+            return self.single_nodes(keys, names, what);
+        }
+        let (facets, side_a) = self.side(&keys.side_a, what)?;
+        let paired = match &keys.partner {
+            Partner::Obstacle(obstacle) => {
+                let motion = self.motions.get(&keys.name[..]).cloned();
+                self.of_obstacle((obstacle, motion.unwrap_or_default()), &side_a, what)?
+            }
+            Partner::Side(names) => {
+                let on_a = facets.into_iter().collect();
+                self.sides(number, (&on_a, &side_a), names, keys.pairing, what)?
+            }
+        };
+        Ok((side_a, paired))
+    }
+
     /// Points without those that supports hold along the normal.
     fn without_prescribed(
         &self,
@@ -216,7 +224,7 @@ impl<'a> Contacts<'a> {
         }
         let paired = self.pairs(side_a, &side_b, pairing, what)?;
         let corner = self.corner(side_a, &paired.points, what);
-        let straight = straight_edges(what, "b", &side_b);
+        let straight = Self::straight_edges(what, "b", &side_b);
         let mut probes = paired.probes;
         let slack = 2.0 * side_a.kinks().max(side_b.kinks());
         for probe in &mut probes {
@@ -277,59 +285,6 @@ impl<'a> Contacts<'a> {
         }))
     }
 
-    /// The warning of an interference fit, where straight facets stand `off` a curve (m).
-    fn interference(
-        &self,
-        points: &[ContactPoint<u32>],
-        side_a: &Surface,
-        off: f64,
-        what: &str,
-    ) -> Option<String> {
-        let unit = self.units.length();
-        let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
-        let seen = (ROUNDING * self.size).max(SEEN * side_a.extent());
-        if deepest >= -seen {
-            return None;
-        }
-        let count = points.iter().filter(|p| p.gap < -seen).count();
-        let facets = match off > FELT * -deepest {
-            true => format!(
-                "; straight facets stand off a curve by up to {} {unit} of that: expected quadratic cells",
-                short(off)
-            ),
-            false => String::new(),
-        };
-        Some(format!(
-            "{what}: {count} of {} gaps are negative, an interference fit of up to {} {unit}{facets}",
-            points.len(),
-            short(-deepest)
-        ))
-    }
-
-    /// The warning of a point in a corner of side a, whose normal is that of neither facet.
-    fn corner(&self, side_a: &Surface, points: &[ContactPoint<u32>], what: &str) -> Option<String> {
-        let normals: HashMap<i64, [f64; 3]> =
-            (points.iter().map(|point| (point.tag_a, point.normal()))).collect();
-        let tag = |node: u32| self.mesh.node_tags[node as usize];
-        let nodes = side_a.nodes();
-        let is_mean = |node: u32| {
-            let (used, mean) = (normals.get(&tag(node))?, nodes[&node].normal()?);
-            Some(dot(*used, mean) > 1.0 - 1e-9)
-        };
-        let turn = (side_a.turns().into_iter())
-            .find(|turn| turn.angle > CORNER && is_mean(turn.node) == Some(true))?;
-        let Turn { node, angle, .. } = turn;
-        let at = self.mesh.points[node as usize][..self.mesh.dim].iter();
-        let at: Vec<String> = at.map(|&c| short(c)).collect();
-        Some(format!(
-            "{what}: side a has a corner of {:.0}° at node {}, ({}), where it presses along the mean of \
-             both normals; expected sides without corners, a contact for each",
-            angle.to_degrees(),
-            tag(node),
-            at.join(", ")
-        ))
-    }
-
     fn side(&self, names: &Names, what: &str) -> Result<(Vec<u32>, Surface), InputError> {
         let facets = groups::facets(self.mesh, names, what)?;
         let what = format!("{what}, side {names}");
@@ -377,19 +332,4 @@ impl<'a> Contacts<'a> {
             (Err(Unpaired::Unmatched(reason) | Unpaired::Apart(reason)), _) => Err(refused(reason)),
         }
     }
-}
-
-/// The warning of quadratic facets that are straight and stand for a curve: nodes in their middles are farther from it
-/// than corners are, and pressures oscillate between the two.
-fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
-    let is_quadratic = side.facets.iter().any(|facet| !facet.kind.is_linear());
-    let off = side.stands_off_curve();
-    (is_quadratic && off > KINKED * side.facet_size()).then(|| {
-        format!(
-            "{what}: the quadratic facets of side {letter} are straight and stand off a curve by up to {} of their size, so \
-             that pressures oscillate from node to node; expected nodes on edges that lie on the curve, or linear cells, \
-             whose pressures don't",
-            short(off / side.facet_size())
-        )
-    })
 }

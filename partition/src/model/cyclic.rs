@@ -15,17 +15,20 @@ use crate::mesh::bounding_box::BoundingBox;
 use crate::scene::Scene;
 use crate::scene::cyclic::Cyclic;
 
-/// Distance of partners from each other, relative to the extent of the mesh, that is none.
+/// Distance of partners from each other, relative to the extent of the mesh, that is none: coordinates may have five digits.
+const NEAR: f64 = 1e-5;
+
+/// Difference of unit vectors that are the same.
 const SAME: f64 = 1e-6;
 
-/// The cyclic symmetries of a scene, numbered from `first` on.
+/// The cyclic symmetries of a scene, numbered from `first` on; `contacts` get the normals that these give them.
 ///
 /// # Errors
 /// Groups that don't exist, nodes without a partner.
 pub(super) fn cyclic(
     scene: &Scene,
     bodies: &Bodies,
-    contacts: &[Contact],
+    contacts: &mut [Contact],
     first: usize,
 ) -> Result<Vec<Contact>, InputError> {
     let mesh = &bodies.mesh;
@@ -35,7 +38,7 @@ pub(super) fn cyclic(
         let [a, b] = [0, 1].map(|side| groups::boundary_nodes(mesh, &cyclic.sides[side], &what));
         let sides = [a?, b?];
         let (turn, pairs) = partners((bodies, cyclic), &sides, &what)?;
-        check_contacts(contacts, (mesh, &turn), &pairs, &what)?;
+        turn_normals(contacts, (mesh, &turn), &pairs, &what)?;
         let mut points = Vec::new();
         for [a, b] in pairs {
             for axis in turn.held_axes(a == b, mesh.dim) {
@@ -58,34 +61,54 @@ pub(super) fn cyclic(
     Ok(all)
 }
 
-/// Refuses contacts whose normals at the ends of a sector aren't each other turned: those of a curved side are of the facets
+/// Gives the points of contacts at the ends of a sector the normals of the whole ring: those of a curved side are of the facets
 /// within the sector alone, without those of its neighbour, so that sectors would interlock.
-fn check_contacts(
-    contacts: &[Contact],
+///
+/// # Errors
+/// Such a point that isn't one of two nodes: what it faces belongs to the neighbour, too.
+fn turn_normals(
+    contacts: &mut [Contact],
     (mesh, turn): (&Mesh, &Turn),
     pairs: &[[u32; 2]],
     what: &str,
 ) -> Result<(), InputError> {
     for contact in contacts {
-        let unilateral = contact.points.iter().filter(|point| !point.law.is_tied());
-        let normals: HashMap<i64, [f64; 3]> = unilateral
-            .map(|point| (point.tag(), point.normal()))
-            .collect();
+        let unilateral = (contact.points.iter().enumerate()).filter(|(_, p)| !p.law.is_tied());
+        let places: HashMap<i64, usize> = unilateral.map(|(i, point)| (point.tag(), i)).collect();
         for pair in pairs {
-            let [a, b] = pair.map(|node| normals.get(&mesh.node_tags[node as usize]));
-            let (Some(&a), Some(&b)) = (a, b) else {
+            let at = pair.map(|node| places.get(&mesh.node_tags[node as usize]));
+            let [Some(&i), Some(&j)] = at else {
                 continue;
             };
-            if length(difference(turn.by(turn.angle, a), b)) > SAME {
+            let (a, b) = (&contact.points[i], &contact.points[j]);
+            let turned = turn.by(turn.angle, a.normal());
+            if length(difference(turned, b.normal())) <= SAME {
+                continue;
+            }
+            if a.tag_b == -1 || b.tag_b == -1 {
                 return Err(InputError::new(format!(
-                    "{what}: the sides of contact '{}' are curved where they meet those of the sector, at node {}, which isn't \
-                     supported; expected flat sides there, a tie, or the whole ring",
+                    "{what}: the sides of contact '{}' are curved where they meet those of the sector, at node {}, and their \
+                     nodes don't match, which isn't supported; expected nodes that do, flat sides there, a tie, or the whole ring",
                     contact.name, mesh.node_tags[pair[0] as usize]
                 )));
             }
+            let sum = advance(turned.map(|c| a.area * c), b.area, b.normal());
+            let normal = sum.map(|c| c / length(sum));
+            press_along(&mut contact.points[j], normal, mesh);
+            press_along(&mut contact.points[i], turn.back(normal), mesh);
         }
     }
     Ok(())
+}
+
+/// Gives the point of two nodes another normal, and its gap along it where that is the one of the mesh.
+fn press_along(point: &mut ContactPoint<u32>, normal: [f64; 3], mesh: &Mesh) {
+    let place = |at: usize| mesh.points[point.entries[at].0 as usize];
+    let way = difference(place(1), place(0));
+    if (point.gap - dot(way, point.normal())).abs() <= SAME * length(way) {
+        point.gap = dot(way, normal);
+    }
+    point.frame = LocalFrame::new(normal);
 }
 
 /// The equation of a pair along an axis of b, which is `back` on a; of a node that is its own partner it is held along the axis.
@@ -154,7 +177,7 @@ fn partners(
     let mesh = &bodies.mesh;
     let axis = (cyclic.axis.as_ref()).map_or([0.0, 0.0, 1.0], |axis| axis.value);
     let axis = axis.map(|c| c / length(axis));
-    let slack = SAME * BoundingBox::around(&mesh.points).extent();
+    let slack = NEAR * BoundingBox::around(&mesh.points).extent();
     let places = Places::new(bodies, b, slack);
     let mut most: (usize, Option<u32>) = (0, None);
     for sign in [1.0, -1.0] {

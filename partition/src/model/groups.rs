@@ -51,6 +51,12 @@ pub(super) fn are_of_facets(mesh: &Mesh, names: &Names) -> bool {
     groups.all(|group| Members::Facets.fit(group, mesh))
 }
 
+/// True if all groups `names` consist of points or, in space, of curves.
+pub(super) fn are_of_points(mesh: &Mesh, names: &Names) -> bool {
+    let mut groups = names.iter().map(|name| mesh.groups.get(name));
+    groups.all(|group| group.is_some_and(|group| group.dim + 1 < mesh.dim))
+}
+
 /// The nodes of the groups `names`, of whatever they consist, ascending.
 pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
     nodes_of(mesh, names, Members::Any, what)

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 
 /// Interference up to which two sides face each other, relative to the smaller side: beyond it
 /// the material lies between them.
-const INTERFERENCE: f64 = 0.1;
+pub(super) const INTERFERENCE: f64 = 0.1;
 
 /// A node of a side with its outward normal, and the part of the side's area that it stands for.
 pub(super) struct SideNode {

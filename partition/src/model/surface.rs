@@ -121,6 +121,19 @@ impl Surface {
         Ok(Self { facets })
     }
 
+    /// The same surface with its normals turned round.
+    pub fn turned(&self) -> Self {
+        let turned = |facet: &SurfaceFacet| {
+            let order = facet.kind.reversed();
+            let nodes = order.iter().map(|&i| facet.nodes[i]).collect();
+            let at = order.iter().map(|&i| facet.at[i]).collect();
+            SurfaceFacet::new(facet.kind, nodes, at, facet.plane)
+        };
+        Self {
+            facets: self.facets.iter().map(turned).collect(),
+        }
+    }
+
     /// Nodes with their normals and tributary areas.
     pub fn nodes(&self) -> HashMap<u32, SurfaceNode> {
         let mut nodes: HashMap<u32, SurfaceNode> = HashMap::new();
@@ -285,7 +298,8 @@ impl Surface {
     }
 }
 
-fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {
+/// The order of points by their coordinates.
+pub(super) fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {
     (0..3).fold(std::cmp::Ordering::Equal, |order, i| {
         order.then(a[i].total_cmp(&b[i]))
     })

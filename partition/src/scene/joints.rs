@@ -109,11 +109,6 @@ impl Scene {
         check: &mut impl FnMut(Vec<Step>, Option<String>),
     ) {
         for (index, pretension) in self.pretension.iter().enumerate() {
-            let fault = (self.plane == Some(PlaneState::Axisymmetric)).then(|| {
-                "there are no pretensions around an axis; expected a scene of the plane or in space"
-                    .into()
-            });
-            check(entry("pretension", index, "on"), fault);
             let fault = (pretension.direction.as_ref()).and_then(|direction| direction.fault(dim));
             check(entry("pretension", index, "direction"), fault);
         }

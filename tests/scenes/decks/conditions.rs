@@ -2,7 +2,7 @@
 //! the same in another way.
 
 use super::couplings::{BAR, same};
-use super::{COLUMN, solved};
+use super::{COLUMN, refused, solved};
 use crate::support::close::close;
 use crate::support::solution::Solution;
 
@@ -41,6 +41,59 @@ fn a_node_of_no_body_moves_others_and_hands_on_its_force() {
             same(moved, expected, 1e-10);
         }
     }
+}
+
+/// What is fixed stays where it was when the loads go, and what was held already does so, too.
+#[test]
+fn what_is_fixed_stays_where_it_was() {
+    let steps = [
+        step("*CLOAD\nTop, 3, 3.\n15, 1, 1.\n"),
+        step("*BOUNDARY, FIXED\nTop, 1, 3\nFoot, 1, 3\n*CLOAD, OP=NEW\n5, 1, 1.\n"),
+        step("*BOUNDARY, OP=NEW\nFoot, 1, 3\n"),
+    ];
+    let found = solved(&format!("{BAR}{}", steps.concat()));
+    for tag in 15..19 {
+        let [before, after] = [0, 1].map(|step: usize| found[step].displacement[&tag]);
+        assert!(before[2] > 0.0);
+        (0..3).for_each(|k| close(after[k], before[k], 1e-12));
+    }
+    let expected = solved(&format!("{BAR}{}", step("*CLOAD\n5, 1, 1.\n")));
+    same(&found[2], &expected[0], 1e-10);
+    for (steps, reason) in [
+        (
+            step("*BOUNDARY, FIXED, OP=NEW\nTop, 1, 3\n"),
+            "FIXED and OP=NEW isn't read",
+        ),
+        (
+            step("*BOUNDARY, FIXED\nTop, 3\n") + &step("*BOUNDARY\nTop, 3, 3, 0.1\n"),
+            "has been FIXED in a step before",
+        ),
+    ] {
+        let error = refused(&format!("{BAR}{steps}"));
+        assert!(error.contains(reason), "{error}");
+    }
+}
+
+/// Elements of a distribution have the axes that a section of their own would give them.
+#[test]
+fn a_distribution_turns_the_axes_of_some_elements() {
+    let (mesh, rest) = BAR.split_once("*MATERIAL").unwrap();
+    let (_, held) = rest.split_once("MATERIAL=M\n").unwrap();
+    let law = "*MATERIAL, NAME=M\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n1000., 500., 200., 0.2, 0.3, 0.1, 300., 200.,\n100.\n";
+    let turned = "0.6, 0.8, 0., -0.8, 0.6, 0.";
+    let distribution = format!(
+        "{mesh}{law}*DISTRIBUTION, NAME=D\n, 1., 0., 0., 0., 1., 0.\n2, {turned}\n*ORIENTATION, NAME=O\nD\n\
+         *SOLID SECTION, ELSET=Bar, MATERIAL=M, ORIENTATION=O\n{held}"
+    );
+    let sections = format!(
+        "{mesh}{law}*ELSET, ELSET=Second\n2\n*ORIENTATION, NAME=P\n1., 0., 0., 0., 1., 0.\n*ORIENTATION, NAME=O\n{turned}\n\
+         *SOLID SECTION, ELSET=Bar, MATERIAL=M, ORIENTATION=P\n\
+         *SOLID SECTION, ELSET=Second, MATERIAL=M, ORIENTATION=O\n{held}"
+    );
+    let load = step("*CLOAD\nTop, 3, 3.\n15, 1, 1.\n");
+    let [found, expected] =
+        [distribution, sections].map(|deck| solved(&format!("{deck}{load}")).remove(0));
+    same(&found, &expected, 1e-10);
 }
 
 #[test]

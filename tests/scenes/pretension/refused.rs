@@ -75,7 +75,4 @@ fn what_tightens_nothing_is_refused() {
         };
         assert!(error.contains(expected), "{error}");
     }
-    let ring = format!("mesh = 'm'\n{plane}{force}").replace("strain", "axisymmetric");
-    let error = Scene::parse(&ring).unwrap_err().to_string();
-    assert!(error.contains("no pretensions around an axis"), "{error}");
 }

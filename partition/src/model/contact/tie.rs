@@ -117,25 +117,37 @@ impl Contacts<'_> {
     ) -> Result<Vec<ContactPoint<u32>>, InputError> {
         let [held_a, held_b] = [a, b].map(|(_, side)| self.held_shares(side));
         let is_more = |a: [f64; 3], b: [f64; 3]| (0..3).any(|k| a[k] > b[k]);
-        let of_sides = |(facets, side): &(Vec<u32>, Surface), other: &Names| {
+        let mut face_the_same_way = false;
+        let mut of_sides = |(facets, side): &(Vec<u32>, Surface), other: &Names| {
             let facets = facets.iter().copied().collect();
-            self.sides(0, (&facets, side), other, keys.pairing, what)
+            let sides = |side: &Surface| self.sides(0, (&facets, side), other, keys.pairing, what);
+            sides(side).or_else(|apart| {
+                // What is tied needs no material in front of it.
+                let paired = sides(&side.turned()).map_err(|_| apart)?;
+                face_the_same_way = true;
+                Ok(paired)
+            })
         };
-        match (is_more(held_a, held_b), is_more(held_b, held_a)) {
+        let points = match (is_more(held_a, held_b), is_more(held_b, held_a)) {
             (true, false) => {
                 let of_a = a.1.nodes();
                 let at = |node: u32| self.mesh.points[node as usize];
                 let points = of_sides(b, &keys.side_a)?.points.into_iter();
                 let turned = points.map(|p| p.turned(|node| of_a.contains_key(&node), at));
-                return Ok(turned.collect());
+                turned.collect()
             }
-            (true, true) => warnings.push(format!(
-                "{what}: supports hold facets of both sides along other directions; what they hold of side a isn't tied; \
-                 expected supports of one side"
-            )),
-            (false, _) => {}
-        }
-        Ok(of_sides(a, names)?.points)
+            (are_both, _) => {
+                warnings.extend(are_both.then(|| format!(
+                    "{what}: supports hold facets of both sides along other directions; what they hold of side a isn't tied; \
+                     expected supports of one side"
+                )));
+                of_sides(a, names)?.points
+            }
+        };
+        warnings.extend(face_the_same_way.then(|| format!(
+            "{what}: the sides face the same way, so that bodies overlap there, and are tied all the same; is that meant?"
+        )));
+        Ok(points)
     }
 
     /// The parts of a side's facets all of whose nodes supports hold along each axis.

@@ -2,41 +2,55 @@
 
 use super::super::ray_search::{Hit, Target};
 use super::super::sides::{SideNode, Sides};
-use super::super::surface::SurfaceFacet;
+use super::super::surface::{Surface, SurfaceFacet};
 use super::field::{ahead, beside};
 use super::foot::foot_on;
 use super::root::root;
 use crate::contact_point::Probe;
 use crate::element::geometry::{difference, dot};
+use crate::mesh::Mesh;
 
 /// A probe at every node of side b whose normal meets side a.
 pub(super) fn probes(sides: &Sides) -> Vec<Probe<u32>> {
     let target = Target::new(sides.a);
     let is_shared = |node: u32| sides.shared.contains(&node);
     let probe = |b: &SideNode| {
-        let (opposite, gap) = match target.hit(b.position, b.normal, sides.behind, is_shared) {
-            Hit::Nodes(nodes) => {
-                let node = *nodes.first()?;
-                let way = difference(sides.mesh.points[node as usize], b.position);
-                (vec![(node, -1.0)], dot(way, b.normal))
-            }
-            Hit::Facet(facet) => {
-                let facet = &sides.a.facets[facet];
-                let (shape, gap) = met(facet, b)?;
-                let nodes = facet.nodes.iter().zip(shape);
-                (nodes.map(|(&node, n)| (node, -n)).collect(), gap)
-            }
-            Hit::Nothing { .. } => return None,
-        };
+        let hit = target.hit(b.position, b.normal, sides.behind, is_shared);
+        let (entries, gap) = opposite(hit, (sides.mesh, sides.a), b)?;
         Some(Probe {
             contact: 0,
             tag: sides.mesh.node_tags[b.node as usize],
-            entries: std::iter::once((b.node, 1.0)).chain(opposite).collect(),
+            entries,
             normal: b.normal,
             gap,
         })
     };
     sides.nodes_b.iter().filter_map(probe).collect()
+}
+
+/// A node with weight 1 and those of the side opposite that the line along its normal hits, whose weights sum to −1, and the
+/// gap (m).
+pub(in crate::model) fn opposite(
+    hit: Hit,
+    (mesh, side): (&Mesh, &Surface),
+    of: &SideNode,
+) -> Option<(Vec<(u32, f64)>, f64)> {
+    let (opposite, gap) = match hit {
+        Hit::Nodes(nodes) => {
+            let node = *nodes.first()?;
+            let way = difference(mesh.points[node as usize], of.position);
+            (vec![(node, -1.0)], dot(way, of.normal))
+        }
+        Hit::Facet(facet) => {
+            let facet = &side.facets[facet];
+            let (shape, gap) = met(facet, of)?;
+            let nodes = facet.nodes.iter().zip(shape);
+            (nodes.map(|(&node, n)| (node, -n)).collect(), gap)
+        }
+        Hit::Nothing { .. } => return None,
+    };
+    let entries = std::iter::once((of.node, 1.0)).chain(opposite);
+    Some((entries.collect(), gap))
 }
 
 /// The shape functions of a facet where the normal of a node meets it, and how far ahead (m).

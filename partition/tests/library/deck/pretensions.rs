@@ -67,11 +67,6 @@ fn what_is_no_pretension_is_refused() {
         ),
         (SECTION, step("*CLOAD\n100, 2, 20."), "which isn't coupled"),
         (
-            SECTION,
-            step("*BOUNDARY, FIXED\nTop, 1, 1"),
-            "*BOUNDARY with FIXED is read of the node",
-        ),
-        (
             "*PRE-TENSION SECTION, SURFACE=Cut, NODE=15\n",
             step(""),
             "which is one of a body",

@@ -103,6 +103,14 @@ fn keywords_that_change_the_answer_are_refused_with_their_line() {
             "line 49: the keyword *NEVER SEEN isn't known, and may change the answer",
         ),
         (
+            "*DISTRIBUTION, NAME=D\n1, 1., 0., 0., 0., 1., 0.",
+            "line 49: *DISTRIBUTION has no line of all other elements",
+        ),
+        (
+            "*ORIENTATION, NAME=O, DEFINITION=NODES\n1, 2",
+            "line 49: *ORIENTATION of DEFINITION=NODES isn't read",
+        ),
+        (
             "*TRANSFORM, NSET=Top, TYPE=S\n1., 0., 0., 0., 1., 0.",
             "line 49: *TRANSFORM of the system S isn't read",
         ),
@@ -182,8 +190,8 @@ fn loads_that_arent_read_are_refused_with_their_line() {
             "line 51: *CLOAD with TIME DELAY isn't read, and may change",
         ),
         (
-            "*BOUNDARY, FIXED\nTop, 1",
-            "line 52: *BOUNDARY with FIXED is read of the node",
+            "*BOUNDARY, FIXED, OP=NEW\nTop, 1",
+            "line 52: *BOUNDARY with FIXED and OP=NEW isn't read",
         ),
         (
             "*TEMPERATURE\n18, 50.",

@@ -1,0 +1,95 @@
+//! Warnings of contacts that are less than what is likely meant.
+
+use std::collections::HashMap;
+
+use super::super::held_nodes::ROUNDING;
+use super::super::surface::{CORNER, Surface, Turn};
+use super::Contacts;
+use crate::contact_point::ContactPoint;
+use crate::element::geometry::dot;
+use crate::magnitude::short;
+
+/// Negative gaps are worth a warning beyond this fraction of the side's extent: less is how quadratic
+/// edges follow an arc.
+const SEEN: f64 = 1e-8;
+
+/// Part of an interference from which on it matters that straight facets stand off a curve.
+const FELT: f64 = 0.1;
+
+/// Height of the kinks between straight quadratic facets over their size from which on they are those of a curve.
+const KINKED: f64 = 1e-4;
+
+impl Contacts<'_> {
+    /// The warning of an interference fit, where straight facets stand `off` a curve (m).
+    pub(super) fn interference(
+        &self,
+        points: &[ContactPoint<u32>],
+        side_a: &Surface,
+        off: f64,
+        what: &str,
+    ) -> Option<String> {
+        let unit = self.units.length();
+        let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
+        let seen = (ROUNDING * self.size).max(SEEN * side_a.extent());
+        if deepest >= -seen {
+            return None;
+        }
+        let count = points.iter().filter(|p| p.gap < -seen).count();
+        let facets = match off > FELT * -deepest {
+            true => format!(
+                "; straight facets stand off a curve by up to {} {unit} of that: expected quadratic cells",
+                short(off)
+            ),
+            false => String::new(),
+        };
+        Some(format!(
+            "{what}: {count} of {} gaps are negative, an interference fit of up to {} {unit}{facets}",
+            points.len(),
+            short(-deepest)
+        ))
+    }
+
+    /// The warning of a point in a corner of side a, whose normal is that of neither facet.
+    pub(super) fn corner(
+        &self,
+        side_a: &Surface,
+        points: &[ContactPoint<u32>],
+        what: &str,
+    ) -> Option<String> {
+        let normals: HashMap<i64, [f64; 3]> =
+            (points.iter().map(|point| (point.tag_a, point.normal()))).collect();
+        let tag = |node: u32| self.mesh.node_tags[node as usize];
+        let nodes = side_a.nodes();
+        let is_mean = |node: u32| {
+            let (used, mean) = (normals.get(&tag(node))?, nodes[&node].normal()?);
+            Some(dot(*used, mean) > 1.0 - 1e-9)
+        };
+        let turn = (side_a.turns().into_iter())
+            .find(|turn| turn.angle > CORNER && is_mean(turn.node) == Some(true))?;
+        let Turn { node, angle, .. } = turn;
+        let at = self.mesh.points[node as usize][..self.mesh.dim].iter();
+        let at: Vec<String> = at.map(|&c| short(c)).collect();
+        Some(format!(
+            "{what}: side a has a corner of {:.0}° at node {}, ({}), where it presses along the mean of \
+             both normals; expected sides without corners, a contact for each",
+            angle.to_degrees(),
+            tag(node),
+            at.join(", ")
+        ))
+    }
+
+    /// The warning of quadratic facets that are straight and stand for a curve: nodes in their middles are farther from it
+    /// than corners are, and pressures oscillate between the two.
+    pub(super) fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
+        let is_quadratic = side.facets.iter().any(|facet| !facet.kind.is_linear());
+        let off = side.stands_off_curve();
+        (is_quadratic && off > KINKED * side.facet_size()).then(|| {
+            format!(
+                "{what}: the quadratic facets of side {letter} are straight and stand off a curve by up to {} of their size, so \
+                 that pressures oscillate from node to node; expected nodes on edges that lie on the curve, or linear cells, \
+                 whose pressures don't",
+                short(off / side.facet_size())
+            )
+        })
+    }
+}
