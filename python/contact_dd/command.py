@@ -80,6 +80,10 @@ def parser() -> argparse.ArgumentParser:
         "--scale", type=factor, default="auto",
         help="enlargement of the deformation (default: auto: it shows, and closed contacts don't seem to overlap)",
     )
+    drawn.add_argument(
+        "--circle", type=radius, metavar="RADIUS",
+        help="in space: radius of a dashed circle on the pressures, around the origin, as of an exact contact",
+    )
     drawn.add_argument("--only", nargs="+", metavar="PICTURE", help="which to draw (default: all)")
     drawn.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     drawn.set_defaults(command=plot)
@@ -119,12 +123,20 @@ def parser() -> argparse.ArgumentParser:
 def factor(text: str) -> float | None:
     if text == "auto":
         return None
+    return above_zero(text, f"'{text}' is no enlargement; expected 'auto' or a number above 0")
+
+
+def radius(text: str) -> float:
+    return above_zero(text, f"'{text}' is no radius; expected a number above 0")
+
+
+def above_zero(text: str, otherwise: str) -> float:
     try:
         value = float(text)
     except ValueError:
         value = 0.0
     if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"'{text}' is no enlargement; expected 'auto' or a number above 0")
+        raise argparse.ArgumentTypeError(otherwise)
     return value
 
 
@@ -179,7 +191,8 @@ def plot(arguments: argparse.Namespace) -> None:
     from contact_dd.drawing.pictures import draw
 
     outdir = arguments.outdir or arguments.result.parent / "figures"
-    for name, figure in draw(Result(arguments.result, arguments.step), arguments.only, arguments.scale):
+    result = Result(arguments.result, arguments.step)
+    for name, figure in draw(result, arguments.only, arguments.scale, arguments.circle):
         save(figure, outdir / f"{name}.png")
 
 

@@ -205,15 +205,16 @@ class Result:
         """Whether the cells are volumes."""
         return any(cells.kind in (10, 12, 24, 25, 29) for cells in self.cells)
 
-    def plot(self, picture: str = "overview", scale: float | None = None) -> Figure:
+    def plot(self, picture: str = "overview", scale: float | None = None, circle: float | None = None) -> Figure:
         """A picture by matplotlib: `overview`, the deformed shape by von Mises stress with the contact pressures; in
         the plane also `deformation`, `u_x`, `u_y`, `tau_x`, `tau_y`, `tau_xy`, `principal`, in space `displacement`,
         `von_mises`, `pressure`. Without `scale`
-        displacements are enlarged until they show, unless closed contacts would seem to overlap."""
+        displacements are enlarged until they show, unless closed contacts would seem to overlap. `circle` is the
+        radius of a dashed circle on the pressures of an overview in space, around the origin."""
         from contact_dd.drawing.pictures import draw
 
         figure: Figure
-        [(_, figure)] = draw(self, [picture], scale)
+        [(_, figure)] = draw(self, [picture], scale, circle)
         return figure
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:

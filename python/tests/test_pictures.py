@@ -5,6 +5,7 @@ import re
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.patches import Circle
 
 from contact_dd import Model
 from contact_dd.drawing import page as pages
@@ -13,6 +14,7 @@ from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.raster import Camera, Raster, edges_of
 from contact_dd.drawing.surface import HEXAHEDRON
 from contact_dd.drawing.units import units_of
+from contact_dd.errors import InputError
 
 RADIUS, AROUND, HEIGHTS = 3.0, 24, np.linspace(0, 4, 5)
 LOADED = 2 * np.pi * 4 / AROUND
@@ -43,13 +45,25 @@ def test_a_closed_cylinder_is_unrolled(axis, inward):
     table, angle, height = cylinder(turned(axis), inward)
     chart = chart_of(table)
     assert len(chart.rows) == len(table)
-    # By the arc length from where it is loaded, the same way around for all, and the place along the axis.
+    # By the arc length, the same way around for all, cut opposite of the load, and the place along the axis.
     way = np.remainder(angle - LOADED + np.pi + 1e-9, 2 * np.pi) - np.pi - 1e-9
-    sign = np.sign((way * chart.x).sum())
+    arc = chart.x - chart.x[way == 0][0] if (way == 0).any() else chart.x - chart.x[np.abs(way).argmin()]
+    sign = np.sign((way * arc).sum())
     is_opposite = np.isclose(way, -np.pi)
-    assert np.allclose(chart.x, np.where(is_opposite, RADIUS * np.pi, sign * RADIUS * way))
+    assert np.allclose(arc, np.where(is_opposite, RADIUS * np.pi, sign * RADIUS * way))
+    assert np.isclose(chart.radius, RADIUS)
     assert np.allclose(np.abs(np.subtract.outer(chart.y, chart.y)), np.abs(np.subtract.outer(height, height)))
-    assert chart.labels[0] == "around the axis"
+    # Angles begin at the axis of coordinates nearest to the load, at 60° around z, else at the load.
+    loaded = chart.x[np.abs(way).argmin()] / RADIUS
+    if axis == (0, 0, 1):
+        [(sign, name)] = re.findall(r"^angle from (−?)([xy]) about z$", chart.labels[0])
+        begin = (-1) ** bool(sign) * np.eye(3)["xy".index(name)]
+        at_zero = table["position"] - [5, -7, 2]
+        assert abs(loaded) <= np.pi / 4 + 1e-9
+        assert np.allclose(at_zero @ begin, RADIUS * np.cos(chart.x / RADIUS))
+    else:
+        assert chart.labels[0] == "angle from the load"
+        assert abs(loaded) < 1e-9
     assert chart.labels[1] == ("z" if axis == (0, 0, 1) else "distance along (-0.27, -0.53, 0.80)")
 
 
@@ -88,9 +102,20 @@ def test_what_doesnt_press_hides_nothing_and_axes_have_names(scene, tmp_path):
     overview = space.overview(result, None)
     labels = [axes.get_xlabel() for figure in overview.subfigs for axes in figure.axes]
     # Every contact has its map.
-    assert labels.count("around the axis [mm]") == 2
+    assert [label for label in labels if label] == ["angle from x about z [°]", "angle from −x about z [°]"]
     assert "z [mm]" in [axes.get_ylabel() for figure in overview.subfigs for axes in figure.axes]
     plt.close("all")
+
+
+def test_a_circle_is_drawn_on_pressures_in_space_alone(scene, tmp_path):
+    result = Model.from_scene(scene("sphere")).run(folder=tmp_path, progress=False)
+    overview = space.overview(result, None, 0.8149)
+    [circle] = overview.findobj(Circle)
+    assert circle.get_radius() == 0.8149
+    assert circle.get_label() == "a = 0.8149 m"
+    plt.close("all")
+    with pytest.raises(InputError, match="in the plane"):
+        Model.from_scene(scene("patch")).run(folder=tmp_path, progress=False).plot(circle=1.0)
 
 
 def square(corner, size, height):

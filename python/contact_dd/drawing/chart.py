@@ -25,6 +25,8 @@ class Chart:
     y: np.ndarray
     labels: tuple[str, str]
     """What the axes are."""
+    radius: float | None = None
+    """By which an angle becomes x, where a side is unrolled."""
 
 
 def chart_of(table):
@@ -58,7 +60,8 @@ def seen_along(normal, rows, points):
 
 
 def unrolled(axis, loaded, normals, points):
-    """A side around an axis by the arc length from where it is loaded, and the place along the axis."""
+    """A side around an axis by the arc length, and the place along the axis. The arc begins at the axis of coordinates
+    that is nearest to where the side is loaded, if one is across, else there; the cut is opposite of the load."""
     axis = axis * np.sign(axis[np.abs(axis).argmax()])
     first = loaded - (loaded @ axis) * axis
     first /= np.linalg.norm(first)
@@ -74,7 +77,22 @@ def unrolled(axis, loaded, normals, points):
     angle = np.arctan2(*(-arm.T if inward else arm.T)[::-1])
     # What lies on the cut lies on one side of it.
     angle[angle < ON_THE_CUT - np.pi] += 2 * np.pi
-    return Chart(np.arange(len(points)), radius * angle, placed(points, axis), ("around the axis", along(axis)))
+    zero, label = first_angle(axis, first, second, inward)
+    rows = np.arange(len(points))
+    return Chart(rows, radius * (angle - zero), placed(points, axis), (label, along(axis)), radius)
+
+
+def first_angle(axis, first, second, inward):
+    """Where angles around an axis begin, from its direction `first`, and what they are called: by places, which in a
+    hole are opposite of their normals."""
+    if np.abs(axis).max() <= NEARLY:
+        return 0.0, "angle from the load"
+    across = np.abs(axis) < 0.5
+    along_each = np.where(across, first, 0.0)
+    k = np.abs(along_each).argmax()
+    direction = np.sign(along_each[k]) * np.eye(3)[k]
+    sign = "−" if (along_each[k] < 0) != inward else ""
+    return np.arctan2(direction @ second, direction @ first), f"angle from {sign}{'xyz'[k]} about {along(axis)}"
 
 
 def placed(points, direction):

@@ -49,14 +49,17 @@ PICTURES = {
 }
 
 
-def draw(result, names=None, scale=None):
+def draw(result, names=None, scale=None, circle=None):
     """Draws pictures by their names, one after the other, without any those that there are; in space others than in
-    the plane. Raises `InputError` where a number isn't finite."""
+    the plane. Raises `InputError` where a number isn't finite, or for a `circle` in the plane."""
     check_finite(result)
     if result.is_in_space:
         for name in names or ["overview", *space.Solid(result).pictures()]:
-            yield name, known(space.PICTURES, name)(result, scale)
+            with_circle = {"circle": circle} if name == "overview" else {}
+            yield name, known(space.PICTURES, name)(result, scale, **with_circle)
         return
+    if circle:
+        raise InputError("a circle is drawn on pressures in space; this result is in the plane")
     plane = Plane(result)
     honest = honest_scale(plane)
     scale = scale or automatic_scale(plane, honest)

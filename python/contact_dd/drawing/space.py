@@ -2,6 +2,8 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Circle
+from matplotlib.ticker import MultipleLocator
 from matplotlib.tri import Triangulation
 
 from contact_dd.drawing import symbols
@@ -29,8 +31,11 @@ SEEN = 0.01
 WIDTH = 640
 # Strengths of lines: edges of bodies and outlines, of cells, of bodies behind pressures.
 OF_BODIES, OF_CELLS, BEHIND = 0.85, 0.16, 0.6
-# Width of what shows pressures, of one, two, and more (inches).
-OF_MAPS = (5.2, 3.8, 6.4)
+# Height of what shows pressures, least and largest width of a map in it, and what stands beside a map, and above and
+# below it (inches).
+HEIGHT, NARROWEST, WIDEST, BESIDE, ABOVE = 4.7, 1.2, 4.2, 1.4, 0.75
+# Most that bodies take (inches).
+WIDEST_BODIES = 6.0
 # Most contacts whose pressures are shown beside each other.
 MOST_MAPS = 4
 # Width of a part that presses, relative to what is shown of it.
@@ -95,11 +100,12 @@ class Solid:
         seen = self.conditions.seen(is_before)
         paper = symbols.Paper(raster.points[:, :2], self.normals, raster.frame[:2], max(raster.size[:2]))
         drawn = symbols.draw(axes, paper, seen)
-        # Reference points may be far from the bodies.
-        loaded = paper.places[seen.nodes]
-        around = 0.06 * raster.size[1]
+        # Reference points may be far from the bodies, and arrows of loads reach beyond them.
+        held = [support.node for support in drawn.supports]
+        shown = np.concatenate([paper.places[[*seen.nodes, *held]], symbols.ends(paper, seen, reach(raster.size))])
+        around = 0.4 * reach(raster.size)
         for limits, change, k in ((axes.get_xlim(), axes.set_xlim, 0), (axes.get_ylim(), axes.set_ylim, 1)):
-            least, most = loaded[:, k].min(initial=np.inf), loaded[:, k].max(initial=-np.inf)
+            least, most = shown[:, k].min(initial=np.inf), shown[:, k].max(initial=-np.inf)
             change(min(limits[0], least - around), max(limits[1], most + around))
         if key := symbols.entries(drawn, 3):
             axes.legend(handles=key, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, frameon=False, fontsize=8,
@@ -184,6 +190,12 @@ class Solid:
         return drawn
 
 
+def reach(size):
+    """The length of the longest arrow of a load where a picture of this size fills its place."""
+    wide, tall = size[:2]
+    return symbols.LONGEST / 72 * max(wide / WIDEST_BODIES, tall / (HEIGHT - 1.0))
+
+
 def bar_and_triad(axes, raster, units):
     """A bar of a round length, and where x, y and z point to, below a picture."""
     left, right, below, above = raster.extent
@@ -217,7 +229,7 @@ def panels(result):
 def width_of(solid, height):
     """How wide a picture of this height is, with its colours (inches)."""
     wide, tall = np.ptp(solid.shown @ Camera(VIEW["elev"], VIEW["azim"]).axes()[:2].T, axis=0)
-    return float(np.clip(height * wide / (1.2 * tall), 2.6, 6.0)) + 1.3
+    return float(np.clip(height * wide / (1.2 * tall), 2.6, WIDEST_BODIES)) + 1.3
 
 
 def single(name):
@@ -232,21 +244,23 @@ def single(name):
     return draw
 
 
-def overview(result, scale):
-    """The surface by von Mises stress, and the pressures of contacts, of many those with the largest."""
+def overview(result, scale, circle=None):
+    """The surface by von Mises stress, and the pressures of contacts, of many those with the largest. `circle` is the
+    radius of one around the origin of their maps."""
     if len(result.stress) == 0:
         raise InputError(f"{result.path}: there are no stresses; expected a run without --no-stress")
     solid = Solid(result, scale)
     pressed = sorted(solid.pressed, key=lambda name: -solid.pressed[name]["pressure"].max())[:MOST_MAPS]
-    left, right = width_of(solid, 4.0), OF_MAPS[min(len(pressed), 3) - 1] if pressed else 0.0
+    maps = [PressureMap(name, solid.pressed[name], solid.units) for name in pressed]
+    columns = 1 if len(maps) < 3 else 2
+    rows = -(-len(maps) // columns)
+    left, right = width_of(solid, 4.0), columns * max((one.width(rows) for one in maps), default=0.0)
     figure = plt.figure(figsize=(left + right, 5.0), layout="constrained")
     figure.get_layout_engine().set(w_pad=0.08)
-    bodies, *maps = figure.subfigures(1, 2, width_ratios=[left, right]) if pressed else [figure]
-    solid.von_mises(bodies.add_subplot())
-    columns = 1 if len(pressed) < 3 else 2
-    rows = -(-len(pressed) // columns)
-    for place, name in enumerate(pressed, start=1):
-        pressure_map(maps[0].add_subplot(rows, columns, place, aspect="equal"), name, solid.pressed[name], solid.units)
+    parts = figure.subfigures(1, 2, width_ratios=[left, right]) if maps else [figure]
+    solid.von_mises(parts[0].add_subplot())
+    for place, one in enumerate(maps, start=1):
+        one.draw(parts[1].add_subplot(rows, columns, place, aspect="equal"), circle)
     step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
     left_out = len(solid.pressed) - len(pressed)
     more = f" ({len(pressed)} of {len(solid.pressed)} contacts)" if left_out else ""
@@ -255,25 +269,58 @@ def overview(result, scale):
     return figure
 
 
-def pressure_map(axes, name, table, units):
-    """The pressures of a contact on its side, flat."""
-    chart = chart_of(table)
-    x, y = chart.x, chart.y
-    (pressure, unit) = in_units(table["pressure"][chart.rows], units.stress)
-    colours = axes.tripcolor(Triangulation(x, y), pressure, shading="gouraud", cmap="inferno_r", vmin=0)
-    axes.plot(x, y, ".", color="0.6", ms=1.2)
-    closed = pressure > 0
-    for of, limit in ((x, axes.set_xlim), (y, axes.set_ylim)):
-        middle = (of[closed].min() + of[closed].max()) / 2
-        half = max(np.ptp(x[closed]), np.ptp(y[closed])) * AROUND / 2
-        limit(max(middle - half, of.min()), min(middle + half, of.max()))
-    axes.tick_params(labelsize=7)
-    axes.set_xlabel(f"{chart.labels[0]} [{units.length}]", fontsize=8)
-    axes.set_ylabel(f"{chart.labels[1]} [{units.length}]", fontsize=8)
-    bar = axes.figure.colorbar(colours, ax=axes, shrink=0.85, pad=0.02)
-    bar.set_label(f"pressure [{unit}]", fontsize=8)
-    bar.ax.tick_params(labelsize=7)
-    axes.set_title(f"{name}, at most {pressure.max():.4g} {unit}", fontsize=9, parse_math=False)
+class PressureMap:
+    """The pressures of a contact on its side, flat: as much of it as presses, and a bit around."""
+
+    def __init__(self, name, table, units):
+        self.name, self.units, self.chart = name, units, chart_of(table)
+        (self.pressure, self.unit) = in_units(table["pressure"][self.chart.rows], units.stress)
+        closed = self.pressure > 0
+        places = self.chart.x, self.chart.y
+        half = AROUND / 2 * max(np.ptp(of[closed]) for of in places)
+        middle = [(of[closed].min() + of[closed].max()) / 2 for of in places]
+        self.limits = [(max(at - half, of.min()), min(at + half, of.max())) for at, of in zip(middle, places)]
+
+    def width(self, rows):
+        """How wide the map is, with its axis and colours, where so many stand above each other (inches)."""
+        wide, tall = (most - least for least, most in self.limits)
+        height = HEIGHT / rows - ABOVE
+        return float(np.clip(height * wide / max(tall, 1e-9 * wide), NARROWEST, WIDEST)) + BESIDE
+
+    def draw(self, axes, circle=None):
+        chart, length = self.chart, self.units.length
+        mesh = Triangulation(chart.x, chart.y)
+        colours = axes.tripcolor(mesh, self.pressure, shading="gouraud", cmap="inferno_r", vmin=0)
+        axes.plot(chart.x, chart.y, ".", color="0.6", ms=1.2)
+        if circle:
+            label = f"a = {circle:.4g} {length}"
+            dashed = Circle((0, 0), circle, fill=False, ec="#1746a2", lw=1.4, ls="--", label=label)
+            axes.add_patch(dashed)
+            axes.legend(handles=[dashed], loc="upper right", fontsize=8)
+        axes.set_xlim(self.limits[0])
+        axes.set_ylim(self.limits[1])
+        axes.tick_params(labelsize=7)
+        if chart.radius:
+            # The arc is drawn to scale, and said as an angle.
+            axes.xaxis.set_major_locator(MultipleLocator(chart.radius * np.radians(self.step_of_angle())))
+            axes.xaxis.set_major_formatter(lambda arc, _: degrees(arc / chart.radius))
+            axes.set_xlabel(f"{chart.labels[0]} [°]", fontsize=8)
+        else:
+            axes.set_xlabel(f"{chart.labels[0]} [{length}]", fontsize=8)
+        axes.set_ylabel(f"{chart.labels[1]} [{length}]", fontsize=8)
+        bar = axes.figure.colorbar(colours, ax=axes, shrink=0.85, pad=0.02)
+        bar.set_label(f"pressure [{self.unit}]", fontsize=8)
+        bar.ax.tick_params(labelsize=7)
+        axes.set_title(f"{self.name}, at most {self.pressure.max():.4g} {self.unit}", fontsize=9, parse_math=False)
+
+    def step_of_angle(self):
+        """Between the numbers at the axis (degrees)."""
+        shown = np.degrees(np.ptp(self.limits[0]) / self.chart.radius)
+        return next((step for step in (1, 2, 5, 10, 15, 30, 45) if shown <= 5 * step), 90)
+
+
+def degrees(angle):
+    return f"{np.degrees(angle):.0f}".replace("-", "−")
 
 
 PICTURES = {

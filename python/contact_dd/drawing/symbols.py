@@ -175,6 +175,16 @@ def draw_loads(axes, paper, nodes, forces):
     put(axes, paths, places, GIVEN, GIVEN, 0.3, 7)
 
 
+def ends(paper, conditions, length):
+    """Where arrows of this length at loaded nodes end that is no node."""
+    found = []
+    for node, force in zip(conditions.nodes, conditions.forces, strict=True):
+        if (direction := paper.direction(force)) is not None:
+            pushes = paper.normals[node] @ force <= 0
+            found.append(paper.places[node] + (-length if pushes else length) * direction)
+    return np.array(found).reshape(-1, 2)
+
+
 def draw_bodies(axes, paper, centres, forces):
     """An arrow in the middle of each body that has a body force, of many those that are spread over them."""
     there = Paper(centres, np.ones((len(centres), 1)), paper.frame, paper.size)
