@@ -125,7 +125,8 @@ def of_scene(name):
     sketch.axes.add_patch(PathPatch(around(plane), fc=BODY, ec="k", lw=1.1))
     sketch.axes.autoscale_view()
     panel = window([plane.points], 0.02)
-    paper = symbols.Paper(plane.points, plane.normals(), np.eye(2), max(panel[1] - panel[0]))
+    # A sketch has half of the size of a picture, and symbols of the same size: they stand twice as far apart.
+    paper = symbols.Paper(plane.points, plane.normals(), np.eye(2), 2 * max(panel[1] - panel[0]))
     symbols.draw(sketch.axes, paper, seen_in(conditions, plane.points, [panel]))
     tables = carried(result.contacts_there)
     for side, of in sides_of(result).items():
