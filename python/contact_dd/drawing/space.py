@@ -239,9 +239,15 @@ def single(name):
             raise InputError(f"{result.path}: there is no {name.replace('_', ' ')} to draw")
         figure = plt.figure(figsize=(width_of(solid, 4.4), 5.2), layout="constrained")
         solid.pictures()[name](figure.add_subplot())
-        return figure
+        return laid_out(figure)
 
     return draw
+
+
+def laid_out(figure):
+    """The figure, laid out once: legends below axes of equal scales have their places at the second time alone."""
+    figure.draw_without_rendering()
+    return figure
 
 
 def overview(result, scale, circle=None):
@@ -266,7 +272,7 @@ def overview(result, scale, circle=None):
     more = f" ({len(pressed)} of {len(solid.pressed)} contacts)" if left_out else ""
     if result.title or step or more:
         figure.suptitle(f"{result.title}{step}{more}", fontsize=11, parse_math=False)
-    return figure
+    return laid_out(figure)
 
 
 class PressureMap:
