@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use self::check::{BlockCheck, External};
 use self::most::Most;
-use self::scales::Scales;
+use self::scales::{Scales, SlipScales};
 use crate::vector::{larger, largest};
 
 /// Sum of forces, relative to the terms that they are sums of, that is no load.
@@ -49,13 +49,17 @@ pub struct Certificate {
     pub tension: f64,
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
-    /// The largest of three violations of the law of friction: tangential force beyond the friction cone, over the
+    /// The largest of four violations of the law of friction: tangential force beyond the friction cone, over the
     /// largest bound of friction, or a thousandth of the largest contact force; slip of sticking points, over the largest
-    /// displacement; slip times the misalignment of slip and force, over the product of both scales.
+    /// displacement; the lesser of slip, over a tenth of the largest displacement, and of what the force that opposes it
+    /// lacks of its bound; slip times the force across it, over the product of both scales.
     pub friction: f64,
     /// Slip of sticking points over the largest displacement, one of these three.
     #[serde(skip)]
     pub drift: f64,
+    /// The scales of slips and of forces of friction.
+    #[serde(skip)]
+    pub of_slips: SlipScales,
     /// Sum of loads and reactions over the load scale.
     pub force_balance: f64,
     /// Sum of their moments over the load scale times the size of the scene.
@@ -99,6 +103,7 @@ impl Certificate {
             complementarity: worse(self.complementarity, other.complementarity),
             friction: worse(self.friction, other.friction),
             drift: worse(self.drift, other.drift),
+            of_slips: other.of_slips,
             force_balance: worse(self.force_balance, other.force_balance),
             moment_balance: worse(self.moment_balance, other.moment_balance),
             interface_jump: worse(self.interface_jump, other.interface_jump),
@@ -161,11 +166,15 @@ pub fn certificate(
         friction: [
             ratio(most.beyond_bound, of_friction),
             drift,
-            ratio(most.not_opposed, of_friction * most.displacement),
+            ratio(most.aside, of_friction * most.displacement),
         ]
         .into_iter()
         .fold(0.0, larger),
         drift,
+        of_slips: SlipScales {
+            force: of_friction,
+            displacement: most.displacement,
+        },
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
         interface_jump: ratio(most.jump, most.displacement),

@@ -7,8 +7,9 @@ use contact_dd_partition::element::geometry::{advance, cross, dot, padded};
 use serde::{Deserialize, Serialize};
 
 use super::most::Most;
+use super::scales::SlipScales;
 use super::shared::SharedCheck;
-use crate::contact::law::PointState;
+use crate::contact::law::{PointLaw, PointState};
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
@@ -149,7 +150,6 @@ impl Most {
     /// which these are `closed`.
     pub fn at_points(group: &ContactGroup, gaps: &[f64], forces: &[f64], closed: &[bool]) -> Self {
         let mut most = Self::default();
-        let no_force = NO_FORCE * largest(forces);
         for ((&gap, &force), condition) in gaps.iter().zip(forces).zip(group.conditions()) {
             if condition.is_tied {
                 // One that is left to a support has no force, and may have any jump.
@@ -167,26 +167,50 @@ impl Most {
             most.complementarity = larger(most.complementarity, gap * force);
         }
         for point in group.point_laws() {
-            let moved = |sticks: bool| {
-                let slip = |j: usize| if closed[j] == sticks { -gaps[j] } else { 0.0 };
-                point.at(slip, forces, closed)
-            };
-            let (slipped, astray) = (moved(false), moved(true).way());
-            let PointState { slip, force, bound } = slipped;
-            let (size, way, work) = (slipped.size(), slipped.way(), slipped.work());
-            let pressure = point.normal.map_or(0.0, |n| forces[n]);
+            let slipped = slipped(&point, gaps, forces, closed);
+            let astray = point.at(|j| if closed[j] { -gaps[j] } else { 0.0 }, forces, closed);
+            let (size, bound) = (slipped.size(), slipped.bound);
             most.contact_force = larger(most.contact_force, size);
             most.bound = larger(most.bound, bound);
             most.beyond_bound = larger(most.beyond_bound, (size - bound).max(0.0));
-            most.astray = larger(most.astray, astray);
-            let missing = match point.bound.only_closed && pressure <= no_force {
-                true => 0.5 * (size * way - work),
-                false => bound * way - work,
-            };
+            most.astray = larger(most.astray, astray.way());
             // That is 0 to the second order where the force isn't along the slip.
+            let [slip, force] = [slipped.slip, slipped.force];
             let aside = (force[0] * slip[1] - force[1] * slip[0]).abs();
-            most.not_opposed = larger(larger(most.not_opposed, missing), aside);
+            most.aside = larger(most.aside, aside);
         }
         most
     }
+}
+
+/// The lesser of slip and of what the force that opposes it lacks of its bound, each over its scale, at the point of a contact
+/// `group` where that is most.
+pub fn not_opposed(
+    group: &ContactGroup,
+    [gaps, forces]: [&[f64]; 2],
+    closed: &[bool],
+    scales: SlipScales,
+) -> f64 {
+    let no_force = NO_FORCE * largest(forces);
+    let of_point = |point: PointLaw| {
+        let slipped = slipped(&point, gaps, forces, closed);
+        let way = slipped.way();
+        if way == 0.0 {
+            return 0.0;
+        }
+        let pressure = point.normal.map_or(0.0, |n| forces[n]);
+        let opposing = slipped.work() / way;
+        let lacks = match point.bound.only_closed && pressure <= no_force {
+            true => 0.5 * (slipped.size() - opposing),
+            false => slipped.bound - opposing,
+        };
+        scales.lesser(way, lacks)
+    };
+    let points = group.point_laws();
+    points.into_iter().map(of_point).fold(0.0, larger)
+}
+
+/// A point whose slips are those of limits where it doesn't stick.
+fn slipped(point: &PointLaw, gaps: &[f64], forces: &[f64], closed: &[bool]) -> PointState {
+    point.at(|j| if closed[j] { 0.0 } else { -gaps[j] }, forces, closed)
 }

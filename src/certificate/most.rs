@@ -29,8 +29,8 @@ pub struct Most {
     pub beyond_bound: f64,
     /// Way of a point that sticks from where it does (m).
     pub astray: f64,
-    /// Dissipation that is missing to that of friction at its bound, against the slip (N).
-    pub not_opposed: f64,
+    /// Slip times the part of the tangential force across it (N).
+    pub aside: f64,
     /// Displacement (m).
     pub displacement: f64,
     /// Prescribed displacement, gap, slip before, or closing motion (m).
@@ -56,7 +56,7 @@ impl Most {
             bound: larger(self.bound, other.bound),
             beyond_bound: larger(self.beyond_bound, other.beyond_bound),
             astray: larger(self.astray, other.astray),
-            not_opposed: larger(self.not_opposed, other.not_opposed),
+            aside: larger(self.aside, other.aside),
             displacement: larger(self.displacement, other.displacement),
             driven: larger(self.driven, other.driven),
             jump: larger(self.jump, other.jump),

@@ -6,6 +6,9 @@ use super::most::Most;
 use crate::vector::NOTHING;
 use crate::vector::larger;
 
+/// Part of the largest displacement that counts as much as the whole force of friction: displacements are known better.
+const SLIP_LIKE_FORCE: f64 = 0.1;
+
 /// The largest scales of some load steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
@@ -61,5 +64,22 @@ impl Scales {
                 *own = earlier;
             }
         }
+    }
+}
+
+/// The scales by which slips and the forces that oppose them are measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SlipScales {
+    /// Forces of friction (N/m).
+    pub force: f64,
+    /// Displacement (m).
+    pub displacement: f64,
+}
+
+impl SlipScales {
+    /// The lesser of a slip (m) and of what a force lacks (N/m).
+    pub(super) fn lesser(self, slip: f64, lacks: f64) -> f64 {
+        let slip = slip / (SLIP_LIKE_FORCE * self.displacement);
+        slip.min(lacks / self.force).max(0.0)
     }
 }

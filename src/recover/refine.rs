@@ -5,17 +5,17 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
 
-use crate::certificate::check::BlockCheck;
+use crate::certificate::check::{BlockCheck, not_opposed};
 use crate::certificate::most::Most;
 use crate::certificate::shared::at_shared_nodes;
 use crate::certificate::{Certificate, certificate};
 use crate::contact::jumps::JumpOf;
 use crate::context::Context;
 use crate::context::hierarchy::jumps;
-use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::fixed_conditions::{change_forces, conditions};
 use crate::recover::motions::Field;
+use crate::recover::{DiscreteSolution, GroupSolution};
 use crate::sweep::AGAINST_FRICTION;
 use crate::vector::larger;
 
@@ -264,7 +264,7 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
     for of_rank in comm.collect(&elsewhere) {
         elsewhere.include(of_rank);
     }
-    match fixed.root {
+    let mut certificate = match fixed.root {
         Some(_) => certificate(
             &checks,
             elsewhere,
@@ -272,7 +272,19 @@ fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate
             fixed.context.catalog.plane,
         ),
         None => Certificate::default(),
+    };
+    if fixed.context.catalog.has_friction() {
+        let mut scales = certificate.of_slips;
+        comm.broadcast(&mut scales);
+        let of_group = |(g, of_group): (&GroupId, &GroupSolution)| {
+            let numbers = [&of_group.gaps[..], &of_group.forces];
+            not_opposed(&fixed.context.groups[g], numbers, &of_group.closed, scales)
+        };
+        let own = solution.groups.iter().map(of_group).fold(0.0, larger);
+        let all = comm.collect(&own).into_iter();
+        certificate.friction = all.fold(certificate.friction, larger);
     }
+    certificate
 }
 
 /// Corrects a solution by what it leaves unbalanced, where that can be solved for, whatever its certificate is then. Collective.

@@ -1,6 +1,8 @@
 use contact_dd_partition::contact_point::{ContactPoint, Law, LocalFrame};
 
 use super::*;
+use crate::certificate::check::not_opposed;
+use crate::certificate::scales::SlipScales;
 use crate::fem::contact_node::ContactNode;
 
 /// A point in space with this law, on a node.
@@ -84,5 +86,30 @@ fn a_point_that_opens_keeps_given_friction_alone() {
         assert!(!point.closed[0]);
         assert_eq!(point.forces[1], left);
         assert_eq!(point.closed[1], left != 0.0);
+    }
+}
+
+#[test]
+fn the_certificate_sees_a_small_slip_that_a_small_force_drives() {
+    let scales = SlipScales {
+        force: 2.0,
+        displacement: 10.0,
+    };
+    let group = group(COULOMB);
+    for (forces, gaps, expected) in [
+        // At its bound, against the slip.
+        ([1.2, 1.6], [-0.3, -0.4], 0.0),
+        // Both 1e-6 of their scales, whose product would be far below any limit.
+        ([2.0 - 2e-6, 0.0], [-1e-6, 0.0], 1e-6),
+        // The lesser of both counts: a slip of no size may have any force.
+        ([-2.0, 0.0], [-1e-15, 0.0], 1e-15),
+    ] {
+        let point = pressed(forces, gaps, false);
+        let numbers = [&point.gaps[..], &point.forces];
+        let found = not_opposed(&group, numbers, &point.closed, scales);
+        assert!(
+            (found - expected).abs() < 1e-16 + 1e-9 * expected,
+            "{found:e}"
+        );
     }
 }
