@@ -66,6 +66,9 @@ pub struct Certificate {
     pub moment_balance: f64,
     /// Largest jump of the displacement across Γ over the largest displacement.
     pub interface_jump: f64,
+    /// True if loads work along motions that no contact force resists.
+    #[serde(skip)]
+    pub is_driven: bool,
     /// The scales of what was checked.
     #[serde(skip)]
     pub scales: Scales,
@@ -107,6 +110,7 @@ impl Certificate {
             force_balance: worse(self.force_balance, other.force_balance),
             moment_balance: worse(self.moment_balance, other.moment_balance),
             interface_jump: worse(self.interface_jump, other.interface_jump),
+            is_driven: self.is_driven || other.is_driven,
             scales: self.scales.and(other.scales),
         }
     }
@@ -178,6 +182,7 @@ pub fn certificate(
         force_balance: to_load * ratio(largest(&external.force), external.force_scale),
         moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
         interface_jump: ratio(most.jump, most.displacement),
+        is_driven: false,
         scales,
     }
 }

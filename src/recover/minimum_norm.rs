@@ -44,6 +44,8 @@ pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolu
 pub struct MinimumNorm {
     /// True if there were more than those that are free whatever the contacts do; on all ranks.
     pub has_released_modes: bool,
+    /// True if loads work along motions that nothing in the solution resists; on the root.
+    pub is_driven: bool,
     /// Conditions that opened by it; on the root.
     pub opened: usize,
     /// Warnings to the user; on the root.
@@ -81,6 +83,7 @@ pub fn take_minimum_norm(
     }
     let mut nearer = solution.clone();
     let (mut released, mut minimum_norm) = move_nearer(fixed, analysis, &mut nearer);
+    certificate.is_driven = minimum_norm.is_driven;
     if !minimum_norm.has_released_modes {
         *solution = nearer;
         return minimum_norm;
@@ -103,9 +106,11 @@ pub fn take_minimum_norm(
         let moved;
         (released, moved) = move_nearer(fixed, analysis, &mut nearer);
         minimum_norm.opened += moved.opened;
+        minimum_norm.is_driven |= moved.is_driven;
     }
+    let is_driven = minimum_norm.is_driven;
     let (after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
-    *certificate = after;
+    *certificate = Certificate { is_driven, ..after };
     minimum_norm.conclude(taken);
     minimum_norm
 }
@@ -123,8 +128,13 @@ fn move_nearer(
     let mut list: Vec<FreeMotion> =
         (released.as_ref()).map_or_else(Vec::new, |l| l.motions.clone());
     fixed.context.comm.broadcast(&mut list);
+    let is_driven = released.as_ref().is_some_and(|released| released.is_driven);
     if list.is_empty() {
-        return (list, MinimumNorm::default());
+        let nothing = MinimumNorm {
+            is_driven,
+            ..MinimumNorm::default()
+        };
+        return (list, nothing);
     }
     let motions = Motions {
         list: &list,
@@ -152,6 +162,7 @@ fn move_nearer(
     solution.share(&fixed.context, &fixed.step.loads);
     let mut minimum_norm = MinimumNorm {
         has_released_modes: list.len() > fixed.free.list.len(),
+        is_driven,
         ..MinimumNorm::default()
     };
     let largest = before.max(largest_displacement(fixed, solution));

@@ -14,6 +14,9 @@ use crate::vector::largest;
 /// Largest contact force that counts as round-off, over what is missing to the equilibrium of a body.
 const IN_DOUBT: f64 = 4.0;
 
+/// Work of loads along a motion, relative to the sum of all, that is no round-off.
+const DRIVEN: f64 = 1e-7;
+
 /// A condition in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionState {
@@ -38,6 +41,8 @@ pub struct ReleasedModes {
     gaps: Vec<f64>,
     /// The normal conditions whose forces hold nothing: they are round-off of the equilibrium of nodes or of rigid bodies.
     pub unneeded: Vec<usize>,
+    /// True if loads work along motions that nothing resists, so that the solution is none; these aren't among the motions then.
+    pub is_driven: bool,
     /// Warnings.
     pub warnings: Vec<String>,
 }
@@ -69,10 +74,14 @@ impl Scene {
         let found = kinematics.unheld(&of_conditions(&held), free);
         let found = found.unwrap_or_else(|| DMatrix::zeros(kinematics.len, 0));
         let mut motions = free.to_vec();
-        if found.is_empty() && kinematics.len >= MANY {
+        let work = found.tr_mul(&kinematics.load(&self.bodies)).norm();
+        let all: f64 = self.bodies.iter().map(|body| body.load_scale).sum();
+        let is_driven = work > DRIVEN * all;
+        if is_driven || found.is_empty() && kinematics.len >= MANY {
             return ReleasedModes {
                 motions,
                 rows: DMatrix::zeros(0, free.len()),
+                is_driven,
                 ..ReleasedModes::default()
             };
         }
@@ -92,6 +101,7 @@ impl Scene {
             unneeded: (redundant.into_iter())
                 .filter(|&j| conditions[j].force != 0.0)
                 .collect(),
+            is_driven,
             warnings: (released.iter())
                 .map(|what| format!("position not unique, as no contact force resists {what}"))
                 .collect(),
@@ -289,6 +299,24 @@ mod tests {
         assert_eq!(left(1e-9, 0.0), (3, vec![0, 1]));
         // A millionth of what it weighs is missing.
         assert_eq!(left(0.5 * (1.0 - 1e-6), 1.0), (1, vec![]));
+    }
+
+    #[test]
+    fn a_motion_that_loads_drive_is_none_of_many_places() {
+        let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
+        for (sideways, is_driven, motions) in [(1e-9, false, 1), (1e-3, true, 0)] {
+            let body = square([sideways, -1.0, 0.0]);
+            let rows = corners.map(|x| body.row(0, x, [0.0, -1.0, 0.0])).to_vec();
+            let pressed = ConditionState {
+                carrying: true,
+                closed: true,
+                gap: 0.0,
+                force: 0.5,
+            };
+            let found = scene(2, vec![body], rows).released_modes(&[], &[pressed; 2]);
+            assert_eq!(found.is_driven, is_driven, "{sideways:e}");
+            assert_eq!(found.motions.len(), motions, "{sideways:e}");
+        }
     }
 
     /// A square on a floor below its corners: what is left to it where their normal and tangential conditions carry

@@ -201,6 +201,7 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         penetration,
         friction,
         drift,
+        is_driven,
         ..
     } = *certificate;
     if friction > AGAINST_FRICTION || drift > DRIFT {
@@ -212,8 +213,8 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED || farther > TOO_FAR;
     let unbalanced =
         equilibrium > NOT_BALANCED || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
-    if unbalanced || penetration > NOT_BALANCED || !certificate.is_a_number() {
-        let moves = match equilibrium_of_load > MOVES {
+    if unbalanced || is_driven || penetration > NOT_BALANCED || !certificate.is_a_number() {
+        let moves = match is_driven || equilibrium_of_load > MOVES {
             true => ", or something slides or parts on and on",
             false => "",
         };
