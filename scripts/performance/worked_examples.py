@@ -17,11 +17,6 @@ from matplotlib.patches import Circle
 FIGURES = Path(__file__).resolve().parents[2] / "docs/figures"
 # Radius of the ball and its modulus, of the scene sphere.
 RADIUS, MODULUS = 8.0, 200.0 / (1 - 0.3**2)
-# Gaps along the crowned pin, in the hole and in the fork (mm).
-CROWNED = {
-    'sides = ["hole", "pin in the plate"]\n': 'gap = "0.05 + z^2/(2*500)"\n',
-    'sides = ["pin in the fork"]\n': 'gap = "0.05 + (z - 16)^2/(2*500)"\n',
-}
 
 
 def run(folder, *command):
@@ -51,26 +46,10 @@ def ball(folder):
     save(figure, FIGURES / "ball.png")
 
 
-def crowned_pin(folder):
-    """The pin in a plate and a fork, crowned so that its pressures have a limit."""
-
-    def scene():
-        made = folder / "crowned"
-        run(folder, "contact-dd-partition", "--example", "pin", "--refine", "2", "--write-scene", made.name)
-        text = (made / "scene.toml").read_text()
-        for sides, gap in CROWNED.items():
-            text = text.replace(sides, sides + gap)
-        (made / "scene.toml").write_text(text)
-        return [f"{made.name}/scene.toml"]
-
-    save(solved(folder, "crowned", scene).plot(), FIGURES / "crowned-pin.png")
-
-
 def main():
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     ball(folder)
-    crowned_pin(folder)
 
 
 main()

@@ -35,6 +35,14 @@ type Place = [usize; 3];
 /// A face: its axis, and whether it is at the end of it.
 type Face = (usize, usize);
 
+/// The place at a part of the way over lines between cells, whose cells take equal parts of the way.
+pub(super) fn along(lines: &[f64], part: f64) -> f64 {
+    let place = part * (lines.len() - 1) as f64;
+    let cell = (place as usize).min(lines.len() - 2);
+    let rest = place - cell as f64;
+    lines[cell] * (1.0 - rest) + lines[cell + 1] * rest
+}
+
 impl Cube {
     /// A cube whose cells have straight edges, with the groups of its faces.
     pub(super) fn new(

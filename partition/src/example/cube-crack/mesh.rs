@@ -1,7 +1,7 @@
 //! The granite block in space: two inclined edge cracks that end inside the block, across it and along its depth.
 
 use super::Shape;
-use super::cubes::Cube;
+use super::cubes::{Cube, along};
 use crate::element::ElementKind;
 
 pub(super) const ABOUT: &str = "the granite block in space, with cracks that end inside it";
@@ -15,10 +15,19 @@ pub(super) const SHAPE: Shape = Shape::Cubes {
 const HEIGHT: f64 = 10.0;
 /// Start and end of the left crack, end and start of the right one: across and up (m).
 const LINE: [[f64; 2]; 4] = [[0.0, 6.5], [3.0, 5.0], [7.0, 5.0], [10.0, 6.5]];
-/// Along the depth: the plane of symmetry, the end of the cracks, the end of the block (m).
-const DEPTHS: [f64; 3] = [0.0, 3.0, 5.0];
-/// Cells across the three columns, along the two parts of the depth, and from the line to either end.
-const CELLS: ([usize; 3], [usize; 2], usize) = ([5, 6, 5], [5, 3], 6);
+/// Lines between cells, close to each other at the fronts of the cracks: across the three columns (parts of each), along
+/// the depth from the plane of symmetry to the end of the cracks and on to that of the block (m), and from either end up or
+/// down to the line (parts of the way).
+const COLUMNS: [&[f64]; 3] = [
+    &[0.0, 0.22, 0.44, 0.64, 0.81, 0.93, 1.0],
+    &[0.0, 0.07, 0.2, 0.37, 0.5, 0.63, 0.8, 0.93, 1.0],
+    &[0.0, 0.07, 0.19, 0.36, 0.56, 0.78, 1.0],
+];
+const DEPTHS: [&[f64]; 2] = [
+    &[0.0, 0.7, 1.4, 2.0, 2.45, 2.8, 3.0],
+    &[3.0, 3.2, 3.7, 5.0],
+];
+const ROWS: [f64; 8] = [0.0, 0.2, 0.4, 0.58, 0.74, 0.87, 0.95, 1.0];
 
 fn cubes() -> Vec<Cube> {
     let parts = (0..3).flat_map(|column| (0..2).map(move |part| (column, part)));
@@ -30,16 +39,19 @@ fn cubes() -> Vec<Cube> {
 /// A column, in a part of the depth, below or above the line.
 fn cube(column: usize, part: usize, upper: bool) -> Cube {
     let [[left, start], [right, end]] = [LINE[column], LINE[column + 1]];
-    let [near, far] = [DEPTHS[part], DEPTHS[part + 1]];
     let map = move |[s, t, r]: [f64; 3]| {
+        let s = along(COLUMNS[column], s);
         let line = start * (1.0 - s) + end * s;
         let height = match upper {
-            false => r * line,
-            true => line * (1.0 - r) + HEIGHT * r,
+            false => along(&ROWS, r) * line,
+            true => {
+                let part = along(&ROWS, 1.0 - r);
+                line * part + HEIGHT * (1.0 - part)
+            }
         };
         [
             left * (1.0 - s) + right * s,
-            near * (1.0 - t) + far * t,
+            along(DEPTHS[part], t),
             height,
         ]
     };
@@ -60,10 +72,10 @@ fn cube(column: usize, part: usize, upper: bool) -> Cube {
         false => [Some("bottom"), crack],
         true => [crack, Some("top")],
     };
-    let (columns, depths, rows) = CELLS;
+    let lines = [COLUMNS[column].len(), DEPTHS[part].len(), ROWS.len()];
     Cube::new(
         "block",
-        [columns[column], depths[part], rows],
+        lines.map(|count| count - 1),
         map,
         [across, along, up],
     )

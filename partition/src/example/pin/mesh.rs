@@ -25,7 +25,7 @@ const END: f64 = 60.0;
 /// Half of the plate's thickness, where the fork begins and where the pin ends (mm).
 const DEPTHS: [f64; 4] = [0.0, 10.0, 11.0, 21.0];
 /// Cells of the pin along those, along an eighth of its round, and between square and round.
-const OF_PIN: ([usize; 3], usize, usize) = ([2, 1, 2], 3, 2);
+const OF_PIN: ([usize; 3], usize, usize) = ([2, 1, 3], 3, 2);
 /// Cells of the plate along its thickness, along an eighth of the hole, from there outwards, and to its end.
 const OF_PLATE: (usize, usize, usize, usize) = (2, 4, 3, 2);
 

@@ -1,7 +1,7 @@
 //! Three square blocks on top of each other, the upper two held by contact alone: semi-coercive.
 
 use super::Shape;
-use super::cubes::Cube;
+use super::cubes::{Cube, along};
 use crate::element::ElementKind;
 
 pub(super) const ABOUT: &str =
@@ -15,8 +15,14 @@ pub(super) const SHAPE: Shape = Shape::Cubes {
 /// Half of the blocks' widths, from below (m).
 const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];
 
-/// Cells per metre.
-const CELLS: f64 = 4.0;
+/// Lines between cells from the middle outwards, close to each other at the edges of the upper block (m).
+const ACROSS: [f64; 10] = [0.0, 0.4, 0.7, 0.87, 0.95, 1.0, 1.06, 1.2, 1.5, 2.0];
+/// Lines between cells of each block upwards, close to each other at the upper joint (m).
+const UPWARDS: [&[f64]; 3] = [
+    &[0.0, 0.5, 1.0],
+    &[1.0, 1.4, 1.7, 1.87, 1.95, 2.0],
+    &[2.0, 2.06, 2.18, 2.45, 3.0],
+];
 
 fn cubes() -> Vec<Cube> {
     let blocks = [
@@ -25,15 +31,14 @@ fn cubes() -> Vec<Cube> {
         ("upper block", ["upper joint above", "loaded"]),
     ];
     let block = |(level, (body, up)): (usize, (&str, [&'static str; 2]))| {
-        let half = HALF_WIDTHS[level];
+        let outwards = (ACROSS.iter().copied()).take_while(|&line| line <= HALF_WIDTHS[level]);
+        let inwards: Vec<f64> = outwards.clone().skip(1).map(|line| -line).collect();
+        let across: Vec<f64> = inwards.into_iter().rev().chain(outwards).collect();
+        let upwards = UPWARDS[level];
+        let cells = [across.len() - 1, across.len() - 1, upwards.len() - 1];
         let map = move |[s, t, r]: [f64; 3]| {
-            [
-                (2.0 * s - 1.0) * half,
-                (2.0 * t - 1.0) * half,
-                level as f64 + r,
-            ]
+            [along(&across, s), along(&across, t), along(upwards, r)]
         };
-        let cells = [2.0 * half, 2.0 * half, 1.0].map(|size| (size * CELLS) as usize);
         Cube::new(body, cells, map, [[None; 2], [None; 2], up.map(Some)])
     };
     blocks.into_iter().enumerate().map(block).collect()
