@@ -94,7 +94,7 @@ impl Certificate {
     /// For every check the worse of two.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
-        // What isn't a number is worse than any.
+        // NaN is worse than any number.
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
         Self {
             equilibrium: worse(self.equilibrium, other.equilibrium),

@@ -115,7 +115,7 @@ impl Context<'_> {
             return failure;
         };
         let ratio = most / least;
-        // What is no number isn't small.
+        // NaN doesn't count as small.
         if failure.kind != FailureKind::IllPosed || ratio < INDISTINCT {
             return failure;
         }

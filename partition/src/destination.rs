@@ -97,7 +97,7 @@ impl Destination {
         temporary.disable_cleanup(true);
         // What had the temporary name has none any more.
         std::mem::replace(&mut self.temporary, temporary).disable_cleanup(true);
-        // Nobody takes that name for a left file; who wants to look into it may lock it.
+        // The name isn't mistaken for that of a left file; who wants to look into it may lock it.
         self.owned = None;
         self.is_kept = true;
         Ok(())

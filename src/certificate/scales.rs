@@ -79,7 +79,11 @@ pub struct SlipScales {
 impl SlipScales {
     /// The lesser of a slip (m) and of what a force lacks (N/m).
     pub(super) fn lesser(self, slip: f64, lacks: f64) -> f64 {
+        if lacks <= 0.0 {
+            // Without any contact force there is no scale of it either.
+            return 0.0;
+        }
         let slip = slip / (SLIP_LIKE_FORCE * self.displacement);
-        slip.min(lacks / self.force).max(0.0)
+        slip.min(lacks / self.force)
     }
 }

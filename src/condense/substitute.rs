@@ -44,7 +44,7 @@ impl Factors<'_> {
                 let load = loads.remove(&b).unwrap_or_default();
                 of_nodes.insert(v, block.factor.condense(load));
             } else if let Some(merge) = condensed.merges.get(&v) {
-                // What isn't there has no load.
+                // Absent children have no load.
                 let arrived = children.iter().map(|child| arrived.get(child));
                 let of_children: Vec<&[f64]> = arrived
                     .map(|load: Option<&Vec<f64>>| load.map_or(&[][..], Vec::as_slice))

@@ -77,7 +77,7 @@ fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
     options.read(true).write(true).create(true).truncate(false);
     let mut file = options.open(path)?;
     let mut text = String::new();
-    // What is no text was written by nobody.
+    // A lock file that isn't text has no holder.
     let _ = file.read_to_string(&mut text);
     let holder = Holder::read(&text);
     match file.try_lock() {

@@ -256,7 +256,7 @@ impl ResultFile {
             if step != steps {
                 return Err(format!("step {step} is missing").into());
             }
-            // What is open keeps a file from being closed.
+            // Open groups keep the file from being closed.
             drop((grid, contacts));
             attribute(&file, "report", report_json)?;
             file.flush()?;

@@ -95,7 +95,7 @@ impl Plan {
                 };
                 estimate.bytes += PER_ENTRY * (eliminated + own) * (eliminated + kept);
             }
-            // What is merged there is kept for other active sets.
+            // Merged fronts are kept for other active sets.
             if (self.merged_into(v)).is_some_and(|parent| self.has_active_set_at(parent)) {
                 estimate.bytes += PER_ENTRY * kept * kept;
             }

@@ -69,7 +69,7 @@ impl Scene {
         let of_conditions = |numbers: &[usize]| -> Vec<RigidRow> {
             numbers.iter().map(|&j| self.rows[j].clone()).collect()
         };
-        // What is free anyway comes first; the rest is orthogonal to it. Where a signal stopped that, the run ends before
+        // Motions that are free anyway come first; the rest is orthogonal to it. Where a signal stopped that, the run ends before
         // it matters.
         let found = kinematics.unheld(&of_conditions(&held), free);
         let found = found.unwrap_or_else(|| DMatrix::zeros(kinematics.len, 0));

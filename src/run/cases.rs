@@ -137,7 +137,7 @@ impl Varied {
 
     /// Multiplies the load that parameter `number` is.
     fn scale_load(&mut self, number: Option<usize>, factor: f64) {
-        // What isn't changed keeps its bits.
+        // A factor of 1 leaves the load bit for bit.
         if factor == 1.0 {
             return;
         }

@@ -57,7 +57,7 @@ impl Sweeps<'_, '_> {
             let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before;
             stalls = if stalled { stalls + 1 } else { 0 };
             if stalls == PATIENCE && !self.is_converged(&residual) {
-                // What is left is round-off, or a pair's: the certificate decides.
+                // The remaining residual is round-off, or a pair's: the certificate decides.
                 self.outcome.is_settled = true;
                 return Ok(self.gave_up(&residual, "newton got no further"));
             }

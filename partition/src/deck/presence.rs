@@ -15,7 +15,7 @@ pub(super) fn write(all: &[Presence], step: usize, document: &mut Document) {
     for (key, comes) in [("add", true), ("remove", false)] {
         let changes = |of: &&Presence| match step.checked_sub(1) {
             Some(before) => of.steps[before] != comes && of.steps[step] == comes,
-            // What is added later isn't there at first.
+            // Bodies that are added later are absent at first.
             None => !comes && !of.steps.contains(&true),
         };
         // Equations share names.

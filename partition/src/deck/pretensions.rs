@@ -140,7 +140,7 @@ impl Section {
         steps: &Steps,
         thickness: f64,
     ) -> Result<Vec<Given>, InputError> {
-        // What is positive pulls where the direction points away from the elements of the surface.
+        // A positive force pulls where the direction points away from the elements of the surface.
         let sense = match groups.points_outward(&self.surface, self.direction) {
             true => 1.0,
             false => -1.0,

@@ -102,7 +102,7 @@ impl Loads {
             (Some(false), _) if !is_held => "of the reference node of a coupling",
             (None, Some(op)) if op.eq_ignore_ascii_case("NEW") => "and OP=NEW",
             _ => {
-                // What is held already stays as it is.
+                // Supports that hold already stay as they are.
                 if of_pretension == Some(true) || !is_held {
                     self.fixed.insert(key);
                     self.supports.set(key, 0.0, origin);

@@ -247,7 +247,7 @@ impl Graph {
                 }
                 at += 1;
             }
-            // What is left between others joins one of them.
+            // A part that is left between others joins one of them.
             if members.len() < size / 2 {
                 let others = members.iter().flat_map(|&vertex| self.edges(vertex));
                 let other = others

@@ -278,7 +278,14 @@ fn a_mesh_by_gmsh_is_refined_by_gmsh_only() {
 fn cells_are_well_shaped() {
     // Meshes graded towards points have long cells far from them.
     let graded = [
-        "hertz", "crack", "rollers", "mindlin", "pin", "sphere", "stack3d", "cube-crack",
+        "hertz",
+        "crack",
+        "rollers",
+        "mindlin",
+        "pin",
+        "sphere",
+        "stack3d",
+        "cube-crack",
     ];
     let is_graded = |name: &str| graded.contains(&name);
     for example in EXAMPLES.iter().filter(|e| !is_graded(e.name)) {

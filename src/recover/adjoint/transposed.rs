@@ -101,7 +101,7 @@ impl<'a> TransposedProblem<'a> {
             directions,
             around_contact: match solved.fixed.free.list.is_empty() {
                 true => context.plan.around_contact(),
-                // What is projected is loaded everywhere.
+                // A projected load acts everywhere.
                 false => context.plan.tree.nodes.like(true),
             },
             loads,

@@ -113,3 +113,19 @@ fn the_certificate_sees_a_small_slip_that_a_small_force_drives() {
         );
     }
 }
+
+#[test]
+fn a_slip_that_nothing_presses_lacks_no_force() {
+    let open = GroupSolution {
+        forces: vec![0.0; 3],
+        closed: vec![false; 3],
+        gaps: vec![0.1, -1.0, 0.0],
+    };
+    let numbers = [&open.gaps[..], &open.forces];
+    let scales = SlipScales {
+        force: 0.0,
+        displacement: 1.0,
+    };
+    let found = not_opposed(&group(COULOMB), numbers, &open.closed, scales);
+    assert_eq!(found, 0.0);
+}

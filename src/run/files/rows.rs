@@ -48,7 +48,7 @@ pub fn write_solution(
     let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
     for parcel in parcels.iter().filter(|_| beside.is_none()) {
         match (parcel.owner, comm.is_root()) {
-            // What is the root's own needs no message.
+            // Rows of the root need no message.
             (ROOT, true) => parcel.append_to(&mut slab, context, solution),
             (owner, true) => slab.append(comm.receive(owner)),
             (owner, false) if owner == comm.rank() => {

@@ -122,7 +122,7 @@ impl Contacts<'_> {
             let facets = facets.iter().copied().collect();
             let sides = |side: &Surface| self.sides(0, (&facets, side), other, keys.pairing, what);
             sides(side).or_else(|apart| {
-                // What is tied needs no material in front of it.
+                // A tie needs no material in front of it.
                 let paired = sides(&side.turned()).map_err(|_| apart)?;
                 face_the_same_way = true;
                 Ok(paired)

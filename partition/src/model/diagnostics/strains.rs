@@ -50,7 +50,7 @@ impl Diagnostics<'_> {
             .find(is_absurd)
             .filter(|_| !self.scene.large_strains)
         {
-            // What is expected stands for the question.
+            // The expectation takes the place of the question.
             let fact = absurd.words.rsplit_once("; ");
             return Err(InputError::new(format!(
                 "{}; expected loads and gaps in the units of stiffness and mesh, or large_strains = true in the scene, where this is \
@@ -75,7 +75,7 @@ impl Diagnostics<'_> {
                 ));
             }
         }
-        // Said once for all nodes and steps.
+        // One warning for all nodes and steps.
         warnings.sort();
         warnings.dedup_by_key(|warning| warning.split(": ").next().map(str::to_owned));
         Ok(warnings)
@@ -190,7 +190,7 @@ impl Diagnostics<'_> {
         size: impl Fn([f64; 3]) -> Result<f64, String>,
     ) -> f64 {
         let mesh = &self.bodies.mesh;
-        // What is the same everywhere needn't be asked for twice.
+        // A uniform field needs one evaluation.
         let last = if is_constant {
             first + 1
         } else {

@@ -26,7 +26,7 @@ impl Explicit {
         let ties = scene.tie.iter().map(Tie::contact);
         for (number, contact) in contacts.chain(ties).enumerate() {
             for (side, names) in contact.sides().enumerate() {
-                // What is wrong with a group is said where the contact is made.
+                // Faults of a group are reported where the contact is made.
                 for facet in groups::facets(mesh, names, "").unwrap_or_default() {
                     for place in topology.cells_at(mesh.facets.nodes_of(facet as usize)) {
                         of_facet.entry(place).or_default().insert((number, side));

@@ -205,7 +205,7 @@ fn is_empty(file: &hdf5::File, group: &str) -> bool {
 /// of these. No link leads out of the file.
 fn check_names(file: &hdf5::File) -> Result<(), InputError> {
     for path in schema::groups() {
-        // What is no group is found where its datasets are opened.
+        // An entry that isn't a group is reported where its datasets are opened.
         let Ok(group) = file.group(path) else {
             continue;
         };
