@@ -23,10 +23,7 @@ const COLUMNS: [&[f64]; 3] = [
     &[0.0, 0.07, 0.2, 0.37, 0.5, 0.63, 0.8, 0.93, 1.0],
     &[0.0, 0.07, 0.19, 0.36, 0.56, 0.78, 1.0],
 ];
-const DEPTHS: [&[f64]; 2] = [
-    &[0.0, 0.7, 1.4, 2.0, 2.45, 2.8, 3.0],
-    &[3.0, 3.2, 3.7, 5.0],
-];
+const DEPTHS: [&[f64]; 2] = [&[0.0, 0.7, 1.4, 2.0, 2.45, 2.8, 3.0], &[3.0, 3.2, 3.7, 5.0]];
 const ROWS: [f64; 8] = [0.0, 0.2, 0.4, 0.58, 0.74, 0.87, 0.95, 1.0];
 
 fn cubes() -> Vec<Cube> {
@@ -49,11 +46,7 @@ fn cube(column: usize, part: usize, upper: bool) -> Cube {
                 line * part + HEIGHT * (1.0 - part)
             }
         };
-        [
-            left * (1.0 - s) + right * s,
-            along(DEPTHS[part], t),
-            height,
-        ]
+        [left * (1.0 - s) + right * s, along(DEPTHS[part], t), height]
     };
     let crack = match (column, part, upper) {
         (0, 0, false) => Some("left crack lower"),

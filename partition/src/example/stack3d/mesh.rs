@@ -36,9 +36,8 @@ fn cubes() -> Vec<Cube> {
         let across: Vec<f64> = inwards.into_iter().rev().chain(outwards).collect();
         let upwards = UPWARDS[level];
         let cells = [across.len() - 1, across.len() - 1, upwards.len() - 1];
-        let map = move |[s, t, r]: [f64; 3]| {
-            [along(&across, s), along(&across, t), along(upwards, r)]
-        };
+        let map =
+            move |[s, t, r]: [f64; 3]| [along(&across, s), along(&across, t), along(upwards, r)];
         Cube::new(body, cells, map, [[None; 2], [None; 2], up.map(Some)])
     };
     blocks.into_iter().enumerate().map(block).collect()
