@@ -1,5 +1,6 @@
 //! Runs that a signal stops.
 
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use rustix::process::Signal;
@@ -205,24 +206,25 @@ pub fn killed_again_and_again(trials: &mut Trials) {
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         let expected = datasets(&case.result());
         fs::remove_file(case.result()).unwrap();
-        let unfinished = case.folder().join("problem.vtkhdf.unfinished");
-        let (mut first, mut kills) = (Vec::new(), 0);
+        let state = case.folder().join("problem.vtkhdf.unfinished.state");
+        let written = |path: &Path| fs::metadata(path).and_then(|of| of.modified()).ok();
+        let (mut first, mut kills) = (Vec::new(), 0_u32);
         while !case.result().exists() {
             // As users do: by paths that are relative to the folder.
             let mut command = program(ranks);
             command.current_dir(case.folder());
             let running = Running::start(command.args(["problem.h5", "--restart"]));
-            let deadline = Instant::now() + LIMIT;
-            while !unfinished.exists() && !case.result().exists() && Instant::now() < deadline {
-                thread::sleep(Duration::from_millis(1));
-            }
             // Some steps later, in another place every time.
-            let time = if kills == 0 {
-                ended.took / 9
-            } else {
-                ended.took * (20 + 12 * kills) / 50
-            };
-            thread::sleep(time + Duration::from_millis(u64::from(kills)));
+            let (mut kept, mut steps) = (written(&state), 0);
+            let deadline = Instant::now() + LIMIT;
+            while steps < 2 + kills && !case.result().exists() && Instant::now() < deadline {
+                thread::sleep(Duration::from_millis(1));
+                let now = written(&state);
+                if now != kept && now.is_some() {
+                    (kept, steps) = (now, steps + 1);
+                }
+            }
+            thread::sleep(Duration::from_millis(u64::from(kills)));
             let all = running.descendants("contact-dd-mpi");
             if let Some(&one) = all.get(kills as usize % ranks) {
                 send(one, Signal::KILL);
