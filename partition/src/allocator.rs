@@ -47,12 +47,12 @@ fn end(bytes: usize) -> ! {
     unsafe extern "C" {
         fn _exit(code: c_int) -> !;
     }
-    let mut text = [0; 160];
+    let mut text = [0; 192];
     let mut line = Cursor::new(&mut text[..]);
     let _ = writeln!(
         line,
         "error: out of memory: the system has no {bytes} bytes more for this process; expected more memory, or a \
-         higher limit (ulimit -v)"
+         higher limit (ulimit -v) [--explain out-of-memory]"
     );
     let length = line.position() as usize;
     let _ = stderr().write_all(&text[..length]);
