@@ -64,7 +64,7 @@ pub enum Law {
     /// No tangential force.
     #[default]
     Frictionless,
-    /// Given friction, after Tresca: |λ_t| ≤ bound·area, whether the contact is closed or not.
+    /// Tresca friction: |λ_t| ≤ bound·area, whether the contact is closed or not.
     Given {
         /// The bound (Pa).
         bound: f64,
@@ -82,7 +82,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// Given friction with a `bound` (Pa) of at least 0, which at 0 is none.
+    /// Tresca friction with a `bound` (Pa) of at least 0, which at 0 is none.
     pub fn given(bound: f64) -> Self {
         match bound > 0.0 {
             true => Self::Given { bound },

@@ -5,7 +5,7 @@ use crate::contact::friction::Status;
 use crate::interface::s_con::ConTotals;
 use serde::{Deserialize, Serialize};
 
-/// Equilibrium and penetration above which a certificate isn't what is promised.
+/// Target of the equilibrium and the penetration in a certificate.
 const NOT_BALANCED: f64 = 1e-14;
 /// Equilibrium that may be round-off of a scene without load.
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;

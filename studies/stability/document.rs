@@ -13,7 +13,7 @@ use crate::support::stress::{FAMILIES, space};
 /// Number of the worst cases that are shown.
 const WORST: usize = 3;
 
-/// A figure: its name, the limit that is promised, and how to read it off.
+/// A figure: its name, the limit that is the target, and how to read it off.
 type Figure = (&'static str, Option<f64>, fn(&Ran) -> Option<f64>);
 
 const FIGURES: [Figure; 8] = [
@@ -232,23 +232,23 @@ fn distributions(text: &mut String, ran: &[Ran]) {
 /// Median and largest of every figure.
 fn figures(text: &mut String, ran: &[Ran], figures: &[Figure]) {
     text.push_str(
-        "| figure | promised | median | 99 % | largest | seed of the largest |\n\
+        "| figure | target | median | 99 % | largest | seed of the largest |\n\
          |---|--:|--:|--:|--:|--:|\n",
     );
-    for &(name, promised, figure) in figures {
+    for &(name, target, figure) in figures {
         let mut values: Vec<(f64, u64)> = (ran.iter())
             .filter_map(|one| Some((figure(one)?, one.seed)))
             .collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let promised = promised.map_or("–".into(), |limit| format!("≤ {}", number(limit)));
+        let target = target.map_or("–".into(), |limit| format!("≤ {}", number(limit)));
         let Some(&(largest, seed)) = values.last() else {
-            let _ = writeln!(text, "| {name} | {promised} | – | – | – | – |");
+            let _ = writeln!(text, "| {name} | {target} | – | – | – | – |");
             continue;
         };
         let at = |share: f64| number(values[((values.len() - 1) as f64 * share) as usize].0);
         let _ = writeln!(
             text,
-            "| {name} | {promised} | {} | {} | {} | {seed} |",
+            "| {name} | {target} | {} | {} | {} | {seed} |",
             at(0.5),
             at(0.99),
             number(largest)
@@ -272,7 +272,7 @@ fn worst(text: &mut String, ran: &[Ran]) {
         text,
         "## The worst cases\n\n\
          {failed}\n\n\
-         Those that aren't right, then those closest to a promised limit.\n\n\
+         Those that aren't right, then those closest to a target.\n\n\
          | seed | family | dofs | conditions | subdomains | {HEADER}\n\
          |--:|---|--:|--:|--:|{RULE}"
     );
