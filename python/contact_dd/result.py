@@ -52,10 +52,10 @@ class Result:
     displacement: Floats
     """Their displacements; (n, 3)."""
     since: int
-    """The load step at whose end the newest body or contact came, of whose displacements and gaps those count; 0 where
-    none came."""
+    """The load step at whose end the newest body or contact was added, whose displacements and gaps count from there;
+    0 where none was added."""
     deformation: Floats
-    """Displacements since then, with which what came later lies where it belongs; (n, 3)."""
+    """Displacements since then, with which bodies that were added lie where they belong; (n, 3)."""
     stress: Floats
     """Recovered stresses at nodes, XX YY ZZ XY YZ XZ, positive in tension; (n, 6), without rows after `--no-stress`."""
     cells: list[Cells]
@@ -237,7 +237,7 @@ class Result:
 
 
 def since(steps: list[dict[str, Any]], step: int) -> int:
-    """The last step before `step`, from 1, behind which something came."""
+    """The last step before `step`, from 1, at whose end bodies or contacts were added; 0 where there is none."""
     absent = [set(one["absent"]) for one in steps[:step]]
     return max((k for k in range(1, step) if absent[k - 1] - absent[k]), default=0) if absent else 0
 
