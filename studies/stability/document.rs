@@ -70,6 +70,8 @@ Rows of `--interface iterative` are of [scenes drawn anew](#what-methods-behind-
 right were counted without their kinds, and of the two wrong ones without their solver. Without friction the iterative solver has no count
 of its own here.
 
+The sections that follow are for developers of the solver.
+
 ";
 
 /// The chapter on methods behind Newton's, of which each was switched off in turn.
@@ -87,7 +89,9 @@ pub fn document(first: u64, kinds: &Kinds, rows: &[Row]) -> String {
     let mut text = format!(
         "# Stability
 
-Random and extreme scenes, run and written by `scripts/stress` on {}; `scripts/stress --only SEED` repeats one.
+Random and extreme scenes, run and written by `scripts/stress`; `scripts/stress --only SEED` repeats one.
+
+{}.
 
 {}## What was run
 
@@ -98,7 +102,7 @@ gaps, clearances and interferences, layers of a thousandth of a block, loads fro
 usual, up to 30 subdomains.
 
 ",
-        crate::today(),
+        crate::measured(),
         in_short(kinds),
         ran.len(),
         first + ran.len() as u64 - 1,

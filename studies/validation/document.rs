@@ -95,9 +95,9 @@ fn anchor_of(title: &str) -> String {
 /// The whole document, of the lines on all cases and their chapters.
 pub fn whole(lines: &str, chapters: &str) -> String {
     format!(
-        "{HEAD}## In short\n\n{}. Of each case the kind of cells with the smallest error, on its finest mesh.\n\n\
+        "{HEAD}{}.\n\n## In short\n\nOf each case the kind of cells with the smallest error, on its finest mesh.\n\n\
          | case | cells, dofs | errors | verdict |\n|---|---|---|---|\n{lines}\n{chapters}{TAIL}",
-        crate::today()
+        crate::measured()
     )
 }
 
