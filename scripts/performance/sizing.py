@@ -91,7 +91,7 @@ def main():
         return
     before, rest = PAGE.read_text().split("<!-- measured -->\n", 1)
     _, after = rest.split("<!-- end of what is measured -->\n", 1)
-    before = re.sub("(?m)^Measured on .*$", f"{measured()}.", before)
+    before = re.sub(r"(?m)^Measured on .*$", f"{measured()}.", before)
     head = "## Measured\n\nOne rank, processor time of the whole run.\n\n"
     PAGE.write_text(f"{before}<!-- measured -->\n\n{head}{written}\n<!-- end of what is measured -->\n{after}")
 
