@@ -40,7 +40,7 @@ fn had(memory: *mut u8, bytes: usize) -> *mut u8 {
     memory
 }
 
-/// Ends the program, without memory for the message or for what is done at an ordered exit; a launcher ends the other
+/// Ends the program, without memory for the message or for an ordered exit; a launcher ends the other
 /// ranks.
 #[cold]
 fn end(bytes: usize) -> ! {

@@ -44,12 +44,12 @@ pub struct SweepRecord {
     pub seconds: f64,
 }
 
-/// Why sweeps ended.
+/// Reason for which sweeps ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SweepStatus {
     /// The residual is below the tolerance and no contact changes any more.
     Converged,
-    /// They stopped short of that, for this reason.
+    /// Sweeps that ended before convergence, for this reason.
     NotConverged(String),
 }
 
@@ -67,7 +67,7 @@ pub struct IterativeSolves {
 pub struct SweepOutcome {
     /// U.
     pub u: Vec<f64>,
-    /// Why they ended.
+    /// Reason for which they ended.
     pub status: SweepStatus,
     /// True if refinement may find the rest: no status changed any more, or those of friction cycle.
     pub is_settled: bool,
@@ -165,7 +165,7 @@ impl SweepOutcome {
         self.took_over = Some(why);
     }
 
-    /// Says that a load step took several increments.
+    /// Notes that a load step took several increments.
     pub fn count_increments(&mut self, increments: usize) {
         self.increments = increments;
         self.notes.push(format!(

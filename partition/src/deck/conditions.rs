@@ -13,7 +13,7 @@ use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::LinePlace;
 
-/// Relative size of what is nothing.
+/// Relative size of factors that count as 0.
 const ROUND_OFF: f64 = 1e-12;
 
 /// Factors by nodes and the axes of the scene.
@@ -23,7 +23,7 @@ type Terms = BTreeMap<NodeAxis, f64>;
 pub(super) struct Condition {
     place: Option<LinePlace>,
     terms: Terms,
-    /// By step; none where it isn't there.
+    /// Values by step; none where the condition isn't active.
     values: Vec<Option<f64>>,
     /// The plain name of those that have values.
     word: &'static str,
@@ -329,7 +329,7 @@ impl SceneEquation {
         }
     }
 
-    /// In which steps it is there, where it isn't in all.
+    /// The steps in which it is active, unless it is in all.
     pub(super) fn presence(&self) -> Option<Presence> {
         let name = self.name.clone().filter(|_| self.values.contains(&None))?;
         let steps = self.values.iter().map(Option::is_some).collect();

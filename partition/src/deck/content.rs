@@ -29,7 +29,7 @@ use crate::name;
 #[derive(Default)]
 pub(super) struct Content {
     pub(super) title: Option<String>,
-    /// By name in capitals.
+    /// Materials by name in capitals.
     pub(super) materials: BTreeMap<String, Material>,
     /// The material that is read.
     open: Option<String>,

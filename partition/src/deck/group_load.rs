@@ -37,7 +37,7 @@ impl OnGroup {
 pub(super) struct OnGroups<'a, 'b, 'c> {
     pub(super) steps: &'a Steps,
     pub(super) dim: usize,
-    /// Of plane sections: forces of the scene are per thickness.
+    /// Thickness of plane sections: forces of the scene are per thickness.
     pub(super) thickness: f64,
     pub(super) groups: Groups<'b, 'c>,
 }

@@ -75,7 +75,7 @@ pub(super) fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
 /// is there.
 ///
 /// # Errors
-/// The body, or the contact, with what is expected.
+/// The body, or the contact, with the expectation.
 pub(super) fn check(
     scene: &Scene,
     bodies: &Bodies,

@@ -35,7 +35,7 @@ impl LawRow {
     /// The law of a row whose values are each as the schema says.
     ///
     /// # Errors
-    /// A value that its law doesn't have: the dataset, and what was expected there.
+    /// A value that its law doesn't have: the dataset, and the expectation.
     pub fn law(&self) -> Result<Law, (&'static str, String)> {
         let &Self {
             law,

@@ -88,10 +88,10 @@ pub struct Body {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Integration {
-    /// At three points in each direction.
+    /// Three points in each direction.
     #[default]
     Full,
-    /// At two.
+    /// Two points in each direction.
     Reduced,
 }
 
@@ -313,7 +313,7 @@ impl TryFrom<ObstacleKeys> for Obstacle {
 }
 
 impl Obstacle {
-    /// Why it is none in space of `dim` dimensions.
+    /// Fault of the obstacle in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         let own = match self {
             Self::HalfSpace { point, .. } => point.dim,

@@ -51,7 +51,7 @@ impl Friction {
         }
     }
 
-    /// Why it is no law in space of `dim` dimensions, and the key to say so at.
+    /// Fault of the law in space of `dim` dimensions, and the key that has it.
     pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         let numbers = match self {
             Self::Given { bound } => [Some(("tresca", bound)), None],

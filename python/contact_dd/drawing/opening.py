@@ -10,7 +10,7 @@ from contact_dd.drawing.units import si
 STATES = {"strain": "in plane strain", "stress": "in plane stress", "axisymmetric": "around an axis", None: "in space"}
 # Estimated errors of stresses up to which these are good, and usable.
 GOOD, USABLE = 0.01, 0.05
-# Certificates of what is solved to round-off.
+# Certificates of results that are solved to round-off.
 ROUND_OFF = 1e-12
 
 

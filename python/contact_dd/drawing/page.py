@@ -21,7 +21,7 @@ from contact_dd.drawing.view import view
 
 PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
 COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
-# What the checks of the solution mean, and what is demanded of them, where something is.
+# Meanings of the checks of the solution, and their limits, where they have one.
 CERTIFICATE = {
     "equilibrium": (1e-14, "forces at the nodes balance, relative to their terms"),
     "equilibrium_of_load": (1e-6, "the same, relative to the largest load"),
@@ -77,7 +77,7 @@ def problem_of(report):
 
 
 def forces(found, unit):
-    """Forces with their units; what is round-off of the largest is nothing."""
+    """Forces with their units; round-off of the largest counts as 0."""
     largest = max((abs(f) for one in found for f in one["force"] if f is not None), default=0)
     return [
         [si(f if f is None or abs(f) > 1e-9 * largest else 0, unit) for f in one["force"][: len(force_head("", found))]]

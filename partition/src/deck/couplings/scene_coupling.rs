@@ -25,7 +25,7 @@ pub(in crate::deck) struct SceneCoupling {
     /// A point and the direction of the axis around which these turn.
     axis: Option<([f64; 3], [f64; 3])>,
     dim: usize,
-    /// By step.
+    /// Loads and supports of the reference node by step.
     acting: Vec<AtReference>,
 }
 

@@ -1,4 +1,4 @@
-//! Nodes and elements of a part, or of a deck without parts, and what can be said of them.
+//! Nodes and elements of a part, or of a deck without parts, and their faults.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
