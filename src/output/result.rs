@@ -54,7 +54,7 @@ pub(super) enum Of {
     Solution,
     /// Left out where stresses are.
     Stress,
-    /// Left out where nothing comes or goes.
+    /// Left out where no load step adds or removes anything.
     Presence,
     /// Left out where stresses are, or where the scene asks for no quantity.
     Quantity,

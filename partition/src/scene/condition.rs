@@ -77,7 +77,7 @@ pub struct Body {
     pub body_force: Option<Vector>,
     /// Stress before it is loaded (Pa).
     pub initial_stress: Option<InitialStress>,
-    /// Expansion by heat.
+    /// Thermal expansion.
     pub thermal: Option<Thermal>,
     /// The rule by which its quadratic quadrilaterals and hexahedra are integrated.
     #[serde(default)]
@@ -96,7 +96,7 @@ pub enum Integration {
 }
 
 impl Body {
-    /// True if it has stress without strain, from before or by heat.
+    /// True if it has stress without strain: initial stress or thermal stress.
     pub fn has_initial_stress(&self) -> bool {
         self.initial_stress.is_some() || self.thermal.is_some()
     }

@@ -1,4 +1,4 @@
-//! Stress that a body has before it is loaded, and heat.
+//! Initial stress and thermal strain of a body.
 
 use serde::Deserialize;
 
