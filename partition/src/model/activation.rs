@@ -71,8 +71,8 @@ pub(super) fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
     is_absent
 }
 
-/// Checks that a body that is added or removed has its nodes to itself, and that no contact point lies on a side of which
-/// a part is there.
+/// Checks that a body that is added or removed has its nodes to itself, and that no contact point lies on a side of
+/// which a part is there.
 ///
 /// # Errors
 /// The body, or the contact, with the expectation.

@@ -302,7 +302,7 @@ def friction_head(report):
 
 
 def friction_of(part, report, units):
-    """How many conditions of a contact or a step slip, and friction's work, where any contact has friction."""
+    """Number of conditions of a contact or a step that slip, and friction's work, where any contact has friction."""
     friction = part.get("friction")
     if friction:
         return [friction["slipping"], si(friction["dissipated_work"], units.work)]
@@ -371,7 +371,7 @@ def most(quantity):
 
 
 def bars(results):
-    """How far off pressures and forces are, by comparison of meshes."""
+    """Errors of pressures and forces, by comparison of meshes."""
     if len(results) == 1:
         return ""
     found = compare(results)

@@ -25,7 +25,7 @@ SHADE = 0.72
 
 @dataclass
 class Camera:
-    """Where the eye is: above the horizon and around the vertical (degrees), far away."""
+    """Position of the eye: above the horizon and around the vertical (degrees), far away."""
 
     elevation: float
     azimuth: float
