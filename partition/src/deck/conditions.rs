@@ -94,7 +94,7 @@ pub(super) fn all(
             (condition.terms.is_empty(), wrong, condition.place)
         {
             let message = format!(
-                "what holds its nodes contradicts the equation by {value:e}; expected supports that agree with it"
+                "supports of its nodes contradict the equation by {value:e}; expected supports that agree with it"
             );
             return Err(places.source.error(place, message));
         }

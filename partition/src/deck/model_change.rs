@@ -58,7 +58,7 @@ impl Changes {
             [None, Some(_)] => false,
             [Some(_), None] => {
                 return refuse(
-                    "*MODEL CHANGE with ADD=WITH STRAIN isn't read; expected ADD: what comes is free of stress".into(),
+                    "*MODEL CHANGE with ADD=WITH STRAIN isn't read; expected ADD: added elements are free of stress".into(),
                 );
             }
             _ => {

@@ -115,7 +115,7 @@ fn check_presence(
     match going.find(|((_, nodes), _)| is_on_cut(nodes)) {
         None => Ok(()),
         Some(_) => Err(InputError::new(format!(
-            "pretension '{}': its body comes or goes, which isn't supported; expected a body that is there in all steps",
+            "pretension '{}': its body is added or removed, which isn't supported; expected a body that is active in all steps",
             pretension.name
         ))),
     }

@@ -45,7 +45,7 @@ impl Digest {
         match digest == of_bytes(&mut file, length).map_err(unreadable)? {
             true => Ok(Self::Right),
             false => Err(InputError::new(
-                "is damaged: it isn't what its digest is of; expected the file as contact-dd-partition wrote it. Copy \
+                "is damaged: its digest doesn't match; expected the file as contact-dd-partition wrote it. Copy \
                  it again, or make it again",
             )),
         }

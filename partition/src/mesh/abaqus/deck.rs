@@ -201,7 +201,7 @@ impl Deck {
                         source.place(data.place)
                     );
                     (self.notes).add(
-                        "what stands behind the nodes of an element is left out",
+                        "entries behind the nodes of an element are left out",
                         item,
                     );
                     break;

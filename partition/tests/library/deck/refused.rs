@@ -211,7 +211,7 @@ fn loads_that_arent_read_are_refused_with_their_line() {
     let held = "*EQUATION\n1\n100, 3, 1.\n*BOUNDARY\n100, 3, 3, 0.5\n";
     refused(
         &format!("{CUBES}{MODEL}*NODE\n100, 0., 0., 0.\n{held}{}", step(LOAD)),
-        "line 52: what holds its nodes contradicts the equation by -5e-1; expected supports that agree with it",
+        "line 52: supports of its nodes contradict the equation by -5e-1; expected supports that agree with it",
     );
     let up_and_down = "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n";
     let load = step("*DLOAD, AMPLITUDE=A\nUpper, P2, 1.");
