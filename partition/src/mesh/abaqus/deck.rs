@@ -200,10 +200,7 @@ impl Deck {
                         element.tag,
                         source.place(data.place)
                     );
-                    (self.notes).add(
-                        "entries behind the nodes of an element are left out",
-                        item,
-                    );
+                    (self.notes).add("entries behind the nodes of an element are left out", item);
                     break;
                 }
                 let tag = source.tag(data.place, item, "the number of a node")?;
