@@ -1,5 +1,5 @@
 //! Linear conditions between displacements of nodes of bodies: what `*EQUATION` says without the nodes of no body, and supports
-//! that are along no axis of the scene, or that come or go.
+//! that are along no axis of the scene, or that begin or end with a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -172,7 +172,7 @@ fn without(
         .position(|other| other.is_some() != held[0].is_some())
     {
         let message = format!(
-            "supports of the node {}, which is of no body, come or go in this step, which isn't supported; expected the same in \
+            "supports of the node {}, which is of no body, begin or end in this step, which isn't supported; expected the same in \
              every step",
             places.deck.node_tags[node as usize]
         );

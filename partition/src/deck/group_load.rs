@@ -139,7 +139,7 @@ impl OnGroups<'_, '_, '_> {
                 .position(|of_step| held(of_step) != held(&course[0]))
             {
                 let message = format!(
-                    "supports come or go in this step, on {} nodes ({on}), which isn't supported yet; expected the same \
+                    "supports begin or end in this step, on {} nodes ({on}), which isn't supported yet; expected the same \
                      degrees of freedom in every step",
                     nodes.len()
                 );

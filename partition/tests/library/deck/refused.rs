@@ -206,7 +206,7 @@ fn loads_that_arent_read_are_refused_with_their_line() {
     let two = [step(LOAD), step("*BOUNDARY\n100, 3, 3")].concat();
     refused(
         &format!("{CUBES}{MODEL}{loose}{two}"),
-        "line 59: supports of the node 100, which is of no body, come or go in this step",
+        "line 59: supports of the node 100, which is of no body, begin or end in this step",
     );
     let held = "*EQUATION\n1\n100, 3, 1.\n*BOUNDARY\n100, 3, 3, 0.5\n";
     refused(
