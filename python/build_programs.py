@@ -38,7 +38,7 @@ class Programs(BuildHookInterface[Any]):
             )
         with ExitStack() as stack:
             try:
-                # pip keeps what a build prints to itself; this takes minutes, so it is shown where somebody looks.
+                # pip hides the output of a build; as this takes minutes, it is shown on the terminal.
                 progress = stack.enter_context(open("/dev/tty", "w"))
             except OSError:
                 progress = None

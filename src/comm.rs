@@ -51,7 +51,7 @@ pub struct Comm {
 }
 
 impl Comm {
-    /// This rank.
+    /// Number of this rank.
     pub fn rank(&self) -> usize {
         self.rank
     }

@@ -62,9 +62,9 @@ impl LoadPoint {
 /// The loads on the blocks and contact groups of this rank.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loads {
-    /// On its blocks, by their number.
+    /// Loads on its blocks, by their number.
     pub blocks: OnBlocks<BlockLoads>,
-    /// On its contact groups, by their number.
+    /// Loads on its contact groups, by their number.
     pub groups: OnGroups<GroupLoads>,
 }
 

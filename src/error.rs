@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum FailureKind {
-    /// Anything that has no code of its own.
+    /// Failure that has no code of its own.
     #[default]
     Internal = 1,
     /// Bad usage or bad input.

@@ -77,7 +77,7 @@ fn tell(answer: &Answer) -> ExitCode {
     }
 }
 
-/// Says why the program ends.
+/// Prints why the program ends.
 fn fail(log: LogFormat, failure: &Failure) -> ExitCode {
     event::error(log, failure.kind as u8, &failure.message);
     failure.exit_code()

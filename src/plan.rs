@@ -289,7 +289,7 @@ impl Plan {
         clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
-    /// From the owner of every such group to that of its cluster, cluster by cluster.
+    /// Pairs of the owner of every such group and that of its cluster, cluster by cluster.
     pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|cluster| {

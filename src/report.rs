@@ -168,7 +168,7 @@ fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     totals.catalog.has_friction().then(|| why.into())
 }
 
-/// Why the interface problem was solved directly where the iterative solver was asked for.
+/// Reason for which the interface problem was solved directly where the iterative solver was asked for.
 fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_asked_for = settings.interface == Some(InterfaceMethod::Iterative);
     if !is_asked_for
@@ -237,7 +237,7 @@ fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     skipped
 }
 
-/// Why the sweeps ended, in words.
+/// Reason for which the sweeps ended, in words.
 pub fn reason(totals: &Totals<'_>) -> String {
     let sweeps: usize = totals.steps.iter().map(StepTotals::sweeps).sum();
     let in_the_end = match totals.catalog.steps.is_empty() {
@@ -257,7 +257,7 @@ pub fn reason(totals: &Totals<'_>) -> String {
     }
 }
 
-/// Why load steps didn't converge.
+/// Reasons for which load steps didn't converge.
 pub fn failures(totals: &Totals<'_>) -> Vec<String> {
     let of_step = |(k, step): (usize, &StepTotals)| {
         let SweepStatus::NotConverged(why) = &step.outcome.status else {

@@ -96,7 +96,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     faer::set_global_parallelism(par);
     let log = RunLog::new(comm, settings, began);
 
-    // A stage ends where bodies or contacts come or go; most problems have one.
+    // A stage ends where bodies or contacts are added or removed; most problems have one.
     let stages = Stages {
         comm,
         file: &file,

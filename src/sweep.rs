@@ -60,9 +60,9 @@ pub struct Residual {
 /// Start of the sweeps.
 #[derive(Debug)]
 pub enum Start {
-    /// At the solution of the bilateral problem, (16)-(17).
+    /// Start at the solution of the bilateral problem, (16)-(17).
     Bilateral,
-    /// At the solution of the load step before: U, and the statuses of every pair.
+    /// Start at the solution of the load step before: U, and the statuses of every pair.
     Before(Vec<f64>, Vec<Vec<Status>>),
 }
 

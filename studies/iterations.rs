@@ -154,10 +154,12 @@ fn document(linear: &[(&str, Taken)], contact: &[(&str, Taken)]) -> String {
          `scripts/iterations` counts the iterations of `--interface iterative` on scenes whose mesh and number of \
          clusters\ngrow together, and writes this page. Clusters are subtrees of the hierarchy, cut like subdomains; \
          nodes inside the\nplates are moved at random. An iteration ends where the error in the energy norm is about \
-         1e-14 of the solution.\n\n{}: a linear problem takes {} iterations at most, a contact problem with all its \
-         active sets {:.1} times those\nof one solve; the targets are {MOST} and {MOST_IN_ALL:.1}.\n\n## Without contact\n\n\
+         1e-14 of the solution.\n\n{}.\n\n## In short\n\n\
+         A linear problem takes {} iterations at most, a contact problem with all its \
+         active sets {:.1} times those\nof one solve; the targets are {MOST} and {MOST_IN_ALL:.1}.\n\n\
+         The sections that follow are for developers of the solver.\n\n## Without contact\n\n\
          | scene | dofs | clusters | coarse dofs | iterations |\n|---|--:|--:|--:|--:|\n",
-        crate::today(),
+        crate::measured(),
         most.unwrap_or(0),
         in_all.fold(0.0, f64::max),
     );

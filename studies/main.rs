@@ -45,10 +45,24 @@ enum Study {
     Compare(record::compare::Arguments),
 }
 
-/// The date of today, which measured pages have.
-fn today() -> String {
-    let date = Command::new("date").arg("+%F").output().unwrap();
-    String::from_utf8_lossy(&date.stdout).trim().to_owned()
+/// Date and commit of a measured page, in the words of all of them.
+fn measured() -> String {
+    let said = |command: &mut Command| match command.output() {
+        Ok(output) => String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+        Err(_) => "unknown".to_owned(),
+    };
+    let commit = [
+        "describe",
+        "--always",
+        "--dirty",
+        "--exclude=*",
+        "--abbrev=8",
+    ];
+    format!(
+        "Measured on {} at commit {}",
+        said(Command::new("date").arg("+%F")),
+        said(Command::new("git").args(commit))
+    )
 }
 
 fn main() -> ExitCode {

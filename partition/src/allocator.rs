@@ -40,19 +40,19 @@ fn had(memory: *mut u8, bytes: usize) -> *mut u8 {
     memory
 }
 
-/// Ends the program, without memory for the message or for what is done at an ordered exit; a launcher ends the other
+/// Ends the program, without memory for the message or for an ordered exit; a launcher ends the other
 /// ranks.
 #[cold]
 fn end(bytes: usize) -> ! {
     unsafe extern "C" {
         fn _exit(code: c_int) -> !;
     }
-    let mut text = [0; 160];
+    let mut text = [0; 192];
     let mut line = Cursor::new(&mut text[..]);
     let _ = writeln!(
         line,
         "error: out of memory: the system has no {bytes} bytes more for this process; expected more memory, or a \
-         higher limit (ulimit -v)"
+         higher limit (ulimit -v) [--explain out-of-memory]"
     );
     let length = line.position() as usize;
     let _ = stderr().write_all(&text[..length]);

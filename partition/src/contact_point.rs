@@ -20,8 +20,8 @@ pub struct ContactPoint<N> {
     pub place: u32,
     /// Nodes and their weights. Those of side a sum to 1, those of side b to −1; an obstacle has none.
     pub entries: Vec<(N, f64)>,
-    /// Of an equation the direction of every entry, whose displacement along it has the weight as its factor; none where all
-    /// have those of the frame.
+    /// Directions of the entries of an equation, along which displacements have the weights as their factors; none
+    /// where all have those of the frame.
     pub axes: Vec<[f64; 3]>,
     /// The directions in which jumps and forces are told apart.
     pub frame: LocalFrame,
@@ -52,7 +52,7 @@ pub struct ContactPoint<N> {
     /// Displacement of the obstacle that it faces in every load step (m); of an equation, along the axis of its first entry,
     /// what its value is beyond `gap`. None where nothing moves.
     pub motion: Vec<[f64; 3]>,
-    /// Of the first point of a pretension the force that loads give it in every load step (N, per metre of thickness in the
+    /// Force of the loads on the first point of a pretension in every load step (N, per metre of thickness in the
     /// plane); none elsewhere.
     pub preload: Vec<f64>,
 }
@@ -64,7 +64,7 @@ pub enum Law {
     /// No tangential force.
     #[default]
     Frictionless,
-    /// Given friction, after Tresca: |λ_t| ≤ bound·area, whether the contact is closed or not.
+    /// Tresca friction: |λ_t| ≤ bound·area, whether the contact is closed or not.
     Given {
         /// The bound (Pa).
         bound: f64,
@@ -82,7 +82,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// Given friction with a `bound` (Pa) of at least 0, which at 0 is none.
+    /// Tresca friction with a `bound` (Pa) of at least 0, which at 0 is none.
     pub fn given(bound: f64) -> Self {
         match bound > 0.0 {
             true => Self::Given { bound },

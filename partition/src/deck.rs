@@ -110,7 +110,7 @@ pub fn read(path: &Path) -> Result<Translation, InputError> {
 fn translate(path: &Path) -> Result<Translation, InputError> {
     let mut source = Source::read(path)?;
     keyword::spell(&mut source.blocks);
-    // What can't be computed is said before what is wrong with the mesh.
+    // Unsupported keywords are refused before faults of the mesh.
     let mut not_needed = BTreeSet::new();
     for block in &source.blocks {
         if keyword::meaning(&source, block)? == Meaning::NotNeeded {

@@ -21,7 +21,7 @@ pub struct Destination {
     target: PathBuf,
     temporary: TempPath,
     is_kept: bool,
-    /// Tells others, as long as it is open and locked, that the temporary file is somebody's.
+    /// Lock by which others see that the temporary file is in use, as long as it is open.
     owned: Option<File>,
 }
 
@@ -151,14 +151,14 @@ pub fn unfinished(path: &Path) -> PathBuf {
 /// The end of the names of temporary files.
 const PART: &str = ".part";
 
-/// Removes temporary files that killed programs left: those that nobody holds.
+/// Removes temporary files of killed programs: those that no process locks.
 fn remove_left(folder: &Path, prefix: &OsStr) {
     let prefix = prefix.as_encoded_bytes();
     let is_part = |name: &OsStr| {
         let name = name.as_encoded_bytes();
         name.starts_with(prefix) && name.ends_with(PART.as_bytes())
     };
-    // Where the folder can't be read, or a file not be removed, what was left stays.
+    // Where the folder can't be read, or a file not be removed, such files stay.
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if is_part(&entry.file_name()) {
             let file = File::options().read(true).write(true).open(entry.path());

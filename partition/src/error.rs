@@ -48,7 +48,7 @@ const LONGEST_WORD: usize = 1000;
 /// Characters of a message that are shown.
 const LONGEST: usize = 5000;
 
-/// A message whose words, and which itself, isn't longer than somebody would read.
+/// A message, cut to a length that can be read, as are its words.
 fn shortened(message: &str) -> String {
     if message.len() <= LONGEST_WORD {
         return message.to_owned();

@@ -26,7 +26,7 @@ use contact_dd_partition::problem::{Problem, trial};
 use contact_dd_partition::scene::Scene;
 use rustix::stdio::dup2_stdout;
 
-/// Why no problem file was written.
+/// Reason for which no problem file was written.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error(transparent)]
@@ -119,7 +119,7 @@ fn without_stdout<T>(work: impl FnOnce() -> T) -> T {
     let (Ok(kept), Ok(nowhere)) = (kept, nowhere) else {
         return work();
     };
-    // Where stdout can't be exchanged, remarks are the lesser evil.
+    // Where stdout can't be redirected, remarks are the lesser evil.
     let _ = dup2_stdout(nowhere);
     let done = work();
     // SAFETY: with a null pointer fflush writes out what every stream of the C library has buffered.
@@ -221,7 +221,8 @@ fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure>
     }))
 }
 
-/// Says where a scene was written and, where no problem file was asked for beside it, what to do with it; whether one was.
+/// Prints where a scene was written and, where no problem file was asked for beside it, what to do with it; true if one
+/// was.
 fn goes_on(args: &CommandLine, scene: &Path) -> Result<bool, Failure> {
     if let Some(output) = &args.output {
         keep(scene, output)?;

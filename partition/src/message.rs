@@ -14,7 +14,7 @@ pub const ERROR: Style = AnsiColor::Red.on_default().bold();
 /// Style of the word "warning:".
 pub const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 
-/// Prints on stdout. Where nobody reads any more, as behind `| head`, there is nobody to tell.
+/// Prints on stdout. A closed pipe, as behind `| head`, is no error.
 ///
 /// # Errors
 /// It can't be written otherwise, as on a full disk.
@@ -23,7 +23,7 @@ pub fn say(text: &str) -> Result<(), OutputError> {
     heard((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
 }
 
-/// The result of having `said` something on stdout, see [`say`].
+/// The result of a write to stdout, `said`; a closed pipe is no error, see [`say`].
 ///
 /// # Errors
 /// It can't be written.
@@ -53,6 +53,6 @@ fn print(style: Style, word: &str, text: &str) {
         ColorChoice::Never => format!("{word} {text}\n"),
         _ => format!("{style}{word}{style:#} {text}\n"),
     };
-    // In one piece: a launcher may be speaking, too. Where it can't be printed there is nobody to tell.
+    // In one piece, as a launcher may print, too. An error of stderr can't be reported.
     let _ = stderr().write_all(line.as_bytes());
 }

@@ -94,7 +94,7 @@ pub struct Model {
     pub tips: Vec<(u32, CrackTip)>,
     /// Quantities that are asked for, and the parameters of their derivatives.
     pub goals: Goals,
-    /// Description of what was found by itself: contacts, each with its name, and crack tips that are passed by.
+    /// Description of contacts that were found, each with its name, and of crack tips that are passed by.
     pub found: Vec<String>,
     /// The last nodes of the mesh, which no cell has, each by a cell of the body that it belongs to.
     pub reference_nodes: Vec<u32>,

@@ -104,7 +104,7 @@ pub struct StepLoads {
 pub struct InitialStress {
     /// The mean over every cell.
     pub cells: Vec<[f64; 6]>,
-    /// At every node, in the first of the materials around it.
+    /// Stress at every node, in the first of the materials around it.
     pub nodes: Vec<[f64; 6]>,
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::InputError;
 
-/// Size beyond which nobody wrote a file by hand (bytes).
+/// Largest size of a file that is written by hand (bytes).
 const LARGEST: u64 = 16 << 20;
 
 /// Opens a file to read it. `what` is what it should hold, as in "a scene in TOML".
@@ -31,13 +31,13 @@ pub fn head(path: &Path) -> Vec<u8> {
     const LENGTH: u64 = 64;
     let mut bytes = Vec::new();
     if let Ok(file) = open(path, "") {
-        // What can't be read here is said by whoever reads the file.
+        // The reader of the file reports errors.
         let _ = file.take(LENGTH).read_to_end(&mut bytes);
     }
     bytes
 }
 
-/// Reads a file that somebody wrote by hand. `what` is what it should hold.
+/// Reads a file that is written by hand. `what` is its expected content.
 ///
 /// # Errors
 /// It can't be opened or read, is too large for that, or isn't UTF-8; then with the line.

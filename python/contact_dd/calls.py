@@ -14,7 +14,7 @@ TABLE = re.compile(r"""(?<![\w.])(bodies|materials)\.("(?:[^"\\]|\\.)*"|[\w-]+)"
 
 
 class Calls:
-    """By entries of a scene, the calls that made them."""
+    """The calls that made entries of a scene, by entry."""
 
     def __init__(self) -> None:
         self._made: list[tuple[dict[str, Any], str]] = []

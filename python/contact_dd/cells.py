@@ -17,9 +17,9 @@ class Cells(NamedTuple):
     kind: int
     """VTK's number."""
     members: NDArray[np.int64]
-    """Their places among all cells."""
+    """Places of the cells among all."""
     nodes: NDArray[np.int64]
-    """Their nodes, a row for each cell."""
+    """Nodes of the cells, a row for each."""
 
 
 def cells_of(grid: Any) -> list[Cells]:

@@ -25,7 +25,7 @@ from contact_dd.tables import write_tables
 
 
 def main() -> None:
-    # Where nobody reads on, as behind `| head`, there is nothing more to do.
+    # A closed pipe, as behind `| head`, is no error.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
     matplotlib.use("Agg")

@@ -32,12 +32,12 @@ class Compared:
     """A number of a report on meshes from coarse to fine."""
 
     name: str
-    """What it is: "largest pressure of left crack", "force on left crack, x"."""
+    """Name of the number: "largest pressure of left crack", "force on left crack, x"."""
     unit: str
     values: tuple[float, ...]
-    """Its values, the last one on the finest mesh."""
+    """Values on the meshes, the last one on the finest."""
     error: float | None
-    """By which the last one is off at most, most likely; None where it doesn't converge, as at an edge that pressures
+    """Error bar of the last value, most likely; None where it doesn't converge, as at an edge that pressures
     become the higher at the finer the mesh is."""
     order: float | None
     """The order of convergence in the size of cells that three meshes show; None where they show none, 0 where
@@ -105,7 +105,7 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
 
 
 def bar(values: Sequence[float], ratios: Sequence[float], round_off: float) -> tuple[float | None, float | None]:
-    """By which the last value is off at most, and the order that the values show."""
+    """Error bar of the last value, and the order that the values show."""
     steps = [fine - coarse for coarse, fine in zip(values, values[1:], strict=False)]
     last = abs(steps[-1])
     if max(map(abs, steps)) <= round_off:
@@ -138,7 +138,7 @@ def observed(shrinks: float, first: float, second: float) -> float:
 
 
 def numbers_of(result: Result) -> Iterator[tuple[tuple[str, str, str], float]]:
-    """What is compared: kind, name and unit, and the value."""
+    """Numbers to compare: kind, name and unit, and the value."""
     # With it comes matplotlib.
     from contact_dd.drawing.units import units_of
 

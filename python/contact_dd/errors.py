@@ -1,4 +1,4 @@
-"""What can go wrong, by the exit codes of the programs."""
+"""Errors, by the exit codes of the programs."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def write(folder: Path, scene: str, mesh: bytes | None) -> Path:
 
 
 def content(path: Path) -> bytes | None:
-    """What a file holds that is there, and is to be written."""
+    """Contents of an existing file that is to be written."""
     try:
         return path.read_bytes()
     except FileNotFoundError:

@@ -30,7 +30,7 @@ class Generate(argparse.Action):
 
 
 def commands_of(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str, argparse.ArgumentParser]]:
-    """Of each command its name, what it does in short, and its parser."""
+    """Name, summary and parser of each command."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for said in action._choices_actions:

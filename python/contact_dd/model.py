@@ -375,7 +375,7 @@ class Model:
 
 
 def scene_of(path: Path) -> tuple[dict[str, Any], Path]:
-    """What a `scene.toml` says, and its mesh file."""
+    """Tables of a `scene.toml`, and its mesh file."""
     try:
         scene = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
@@ -386,7 +386,7 @@ def scene_of(path: Path) -> tuple[dict[str, Any], Path]:
 
 
 def given(**keys: Any) -> dict[str, Any]:
-    """What isn't None."""
+    """Entries that aren't None."""
     return {name: value for name, value in keys.items() if value is not None}
 
 

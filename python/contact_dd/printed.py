@@ -1,4 +1,4 @@
-"""What a deck prints of a step of a result: values at nodes, and at those points of elements that CalculiX has."""
+"""Tables that a deck prints of a step of a result: values at nodes, and at CalculiX' points of elements."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Printed:
 
     @staticmethod
     def left_out(prints: dict[str, Any], plane: str | None) -> list[str]:
-        """What isn't printed, in words."""
+        """Tables that aren't printed, in words."""
         labels = {table["label"] for tables in prints["steps"] for table in tables}
         without = WITHOUT.get(plane, {})
         return [f"{label} of *EL PRINT isn't printed in {without[label]}" for label in sorted(labels & without.keys())]
@@ -196,7 +196,7 @@ class Printed:
         return total
 
     def _held(self, file: h5py.File) -> Floats:
-        """What contacts, ties, equations and springs take from nodes."""
+        """Forces of contacts, ties, equations and springs on nodes."""
         total = np.zeros((len(self.result.nodes), 3))
         first, row, dimension = self.problem.first, self.problem.row, self.dimension
         if "contact" in file:

@@ -48,7 +48,7 @@ def find(name: str) -> str:
 
 
 def launcher(ranks: int) -> list[str]:
-    """What starts `ranks` processes: MPIEXEC or mpirun; nothing for one."""
+    """Launcher of `ranks` processes: MPIEXEC or mpirun; none for one."""
     try:
         enough = operator.index(ranks) >= 1
     except TypeError:

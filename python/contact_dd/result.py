@@ -24,7 +24,7 @@ STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip", "ove
 
 
 class Result:
-    """What a result file holds of one load step, the last one without `step`.
+    """Results of one load step in a result file, the last one without `step`.
 
     Every node of the mesh is there once, in the order of the mesh's tags; where the stresses of two materials meet it
     may be there once for each. In 2-D forces are per unit of thickness, around an axis of the whole
@@ -48,21 +48,21 @@ class Result:
     nodes: NDArray[np.int64]
     """The tags that nodes have in the mesh file."""
     points: Floats
-    """Where the nodes are, undeformed; (n, 3)."""
+    """Coordinates of the nodes, undeformed; (n, 3)."""
     displacement: Floats
-    """Their displacements; (n, 3)."""
+    """Displacements of the nodes; (n, 3)."""
     since: int
-    """The load step at whose end the newest body or contact came, of whose displacements and gaps those count; 0 where
-    none came."""
+    """The load step at whose end the newest body or contact was added, whose displacements and gaps count from there;
+    0 where none was added."""
     deformation: Floats
-    """Displacements since then, with which what came later lies where it belongs; (n, 3)."""
+    """Displacements since then, with which bodies that were added lie where they belong; (n, 3)."""
     stress: Floats
     """Recovered stresses at nodes, XX YY ZZ XY YZ XZ, positive in tension; (n, 6), without rows after `--no-stress`."""
     cells: list[Cells]
     """The cells of each kind that are there in this step, by rows of `points`."""
     cell_data: dict[str, NDArray[Any]]
-    """Of every cell `Stress`, `PrincipalStress`, `VonMises`, `EnergyError`, `Material`, `Subdomain`; where bodies come
-    or go `Present`, 0 where a cell isn't there."""
+    """Arrays of the cells: `Stress`, `PrincipalStress`, `VonMises`, `EnergyError`, `Material`, `Subdomain`; where steps
+    add or remove bodies `Present`, 0 in cells of inactive ones."""
     contacts: dict[str, NDArray[Any]]
     """A structured array for each contact, a row for each condition: `position`, `normal`, `gap`, `force`, `pressure`,
     `status` (0 open, 1 closed, 2 slipping), `node_a`, `node_b` (-1 but for the node that has the condition, and its
@@ -187,7 +187,7 @@ class Result:
         return {one["parameter"]: number(one["derivative"]) for one in found[name]}
 
     def _report_of_step(self) -> dict[str, Any]:
-        """What the report says of this load step."""
+        """The report's entry of this load step."""
         steps = self.report.get("steps")
         part: dict[str, Any] = steps[self.step - 1] if steps else self.report
         return part
@@ -202,7 +202,7 @@ class Result:
 
     @property
     def is_in_space(self) -> bool:
-        """Whether the cells are volumes."""
+        """True if the cells are volumes."""
         return any(cells.kind in (10, 12, 24, 25, 29) for cells in self.cells)
 
     def plot(self, picture: str = "overview", scale: float | None = None, circle: float | None = None) -> Figure:
@@ -237,7 +237,7 @@ class Result:
 
 
 def since(steps: list[dict[str, Any]], step: int) -> int:
-    """The last step before `step`, from 1, behind which something came."""
+    """The last step before `step`, from 1, at whose end bodies or contacts were added; 0 where there is none."""
     absent = [set(one["absent"]) for one in steps[:step]]
     return max((k for k in range(1, step) if absent[k - 1] - absent[k]), default=0) if absent else 0
 

@@ -1,4 +1,4 @@
-"""How large cells have to be for an error that is asked, from the errors that they have."""
+"""Sizes of cells for an error that is asked, from the errors that they have."""
 
 from __future__ import annotations
 

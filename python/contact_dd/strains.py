@@ -30,7 +30,7 @@ class Strained:
         jacobian = np.einsum("cnd,qnk->cqdk", corners, slopes)
         determinant = np.linalg.det(jacobian)
         self.volume = np.abs(determinant) * weights
-        """What each point stands for, (cells, points); around an axis of the whole ring."""
+        """Weights of the points, (cells, points); around an axis of the whole ring."""
         gradients = np.einsum("qnk,cqkd->cqnd", slopes, np.linalg.inv(jacobian))
         self.operator = operator(gradients, 4 if is_around_axis else None)
         """B, (cells, points, components, displacements): what makes strains of nodal displacements."""
@@ -48,7 +48,7 @@ class Strained:
 
 
 def operator(gradients: Floats, components: int | None) -> Floats:
-    """What makes strains of displacements along functions with these gradients, (cells, points, functions, d)."""
+    """Matrices from displacements to strains, of functions with these gradients, (cells, points, functions, d)."""
     cells, points, functions, dimension = gradients.shape
     components = components or (3 if dimension == 2 else 6)
     made = np.zeros((cells, points, components, functions, dimension))

@@ -31,13 +31,13 @@ class Study:
     parameters: tuple[str, ...]
     """Names of the parameters."""
     values: NDArray[np.float64]
-    """Their values in every case: factors of loads, additions to gaps, coefficients of friction."""
+    """Values of the parameters in every case: factors of loads, additions to gaps, coefficients of friction."""
     quantities: dict[str, NDArray[np.float64]]
     """The quantities by their names, a number a case; NaN where a case is ill-posed."""
     kinds: dict[str, str]
     """The kinds of quantities by their names."""
     status: tuple[str, ...]
-    """Of every case "converged", "not_converged" or "ill_posed"."""
+    """Status of every case: "converged", "not_converged" or "ill_posed"."""
 
     def plot(self) -> Figure:
         """A picture by matplotlib: quantities over the first parameter, a line for each combination of the others."""

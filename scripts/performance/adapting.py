@@ -1,6 +1,5 @@
 """Measures meshes that adapt against uniform ones and writes docs/adapting.md; run it by scripts/adapting."""
 
-import datetime
 import math
 import os
 import pathlib
@@ -24,6 +23,7 @@ from contact_dd import Model, adapt, programs
 from contact_dd.mesh import of_gmsh
 from contact_dd.sizes import relative_errors
 from hertz import true_error
+from runs import measured
 
 ASKED = {"hertz": [1e-2, 1e-3, 1e-4], "granite": [2e-2, 1e-2, 1e-3], "mindlin": [3e-2, 1e-2]}
 COARSEST = {"hertz": 0.5, "granite": 1.0, "mindlin": 2.0}
@@ -145,7 +145,7 @@ def page(measurements):
     return (
         template.replace("TABLE", table(measurements))
         .replace("PRESSURE", f"{pressure:.1f}").replace("WORK", f"{work:.5f}").replace("LOAD", f"{os.getloadavg()[0]:.1f}")
-        .replace("DATE", str(datetime.date.today()))
+        .replace("MEASURED", measured())
     )
 
 

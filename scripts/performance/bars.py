@@ -60,7 +60,7 @@ def main():
                     for name, bars in off.items():
                         print(f"{scene.__name__} {cells} {order}, {meshes} meshes from {first}: {name}: {bars:.2g} bars",
                               file=sys.stderr)
-    print("| cells | meshes | | numbers | with a bar | truth in it | farthest, in bars |\n|---|--:|---|--:|--:|--:|--:|")
+    print("| cells | meshes | | numbers | with a bar | exact value inside | farthest, in bars |\n|---|--:|---|--:|--:|--:|--:|")
     for (order, meshes, kind), (every, barred, off, most) in sorted(counts.items()):
         name = "linear" if order == 1 else "quadratic"
         held = f"{(barred - off) / barred:.0%}" if barred else ""

@@ -1,5 +1,6 @@
 """Problems of a wanted size, and runs of the two programs."""
 
+import datetime
 import json
 import os
 import pathlib
@@ -27,6 +28,13 @@ def name_of(dofs):
         if dofs >= factor:
             return f"{float(f'{dofs / factor:.3g}'):g}{letter}"
     return str(dofs)
+
+
+def measured():
+    """Date and commit of a measured page, in the words of all of them."""
+    describe = ["git", "describe", "--always", "--dirty", "--exclude=*", "--abbrev=8"]
+    commit = subprocess.run(describe, cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    return f"Measured on {datetime.date.today()} at commit {commit or 'unknown'}"
 
 
 def say(text):

@@ -1,7 +1,6 @@
 """Memory and processor time of built-in scenes on one rank, and what --check expects: the tables of docs/sizing.md."""
 
 import argparse
-import datetime
 import json
 import math
 import os
@@ -9,6 +8,8 @@ import pathlib
 import re
 import subprocess
 import tempfile
+
+from runs import measured
 
 PAGE = pathlib.Path("docs/sizing.md")
 PROGRAMS = pathlib.Path(os.environ["CONTACT_DD_BIN"]).resolve()
@@ -90,8 +91,9 @@ def main():
         return
     before, rest = PAGE.read_text().split("<!-- measured -->\n", 1)
     _, after = rest.split("<!-- end of what is measured -->\n", 1)
-    date = f"## Measured\n\n{datetime.date.today()}, one rank, processor time of the whole run.\n\n"
-    PAGE.write_text(f"{before}<!-- measured -->\n\n{date}{written}\n<!-- end of what is measured -->\n{after}")
+    before = re.sub(r"(?m)^Measured on .*$", f"{measured()}.", before)
+    head = "## Measured\n\nOne rank, processor time of the whole run.\n\n"
+    PAGE.write_text(f"{before}<!-- measured -->\n\n{head}{written}\n<!-- end of what is measured -->\n{after}")
 
 
 main()

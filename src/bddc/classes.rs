@@ -69,9 +69,9 @@ impl Class {
 pub struct Classes {
     /// The classes that several clusters have, by these in ascending order.
     pub list: Vec<Class>,
-    /// For every cluster the numbers of these, ascending.
+    /// Numbers of the classes of every cluster, ascending.
     pub of_clusters: Numbered<MergeRootId, Vec<usize>>,
-    /// For every cluster the unknowns that no other has.
+    /// Unknowns of every cluster that no other has.
     pub own: Numbered<MergeRootId, Vec<InterfaceDof>>,
 }
 

@@ -57,7 +57,7 @@ enum Share {
 pub enum Side {
     /// The stiffness of each unknown.
     Diagonal(#[serde(with = "crate::bytes")] Vec<f64>),
-    /// With all other unknowns held, and with them free.
+    /// The stiffness with all other unknowns held, and with them free.
     Whole {
         /// S_FF.
         #[serde(with = "crate::bytes::symmetric")]

@@ -146,7 +146,7 @@ enum Others {
 }
 
 impl Others {
-    /// As precise as this `level` asks for, and what they leave to the coarse unknowns.
+    /// Factors as precise as this `level` asks for, and the Schur complement that they leave to the coarse unknowns.
     fn new(
         s: Mat<f64>,
         count: usize,

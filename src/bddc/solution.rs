@@ -36,7 +36,7 @@ pub struct Accuracy<'a> {
 }
 
 impl Accuracy<'_> {
-    /// As far as round-off lets it be, about, from nothing: with less, a solution is refined more often than not.
+    /// Accuracy of about round-off, from zero: with less, a solution is refined more often than not.
     pub const FULL: Self = Self {
         tolerance: 1e-14,
         start: None,

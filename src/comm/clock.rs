@@ -19,11 +19,11 @@ const BUSY: f64 = 0.25;
 /// The place of a rank in its run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Times {
-    /// By the clock on the wall (s).
+    /// Time by the clock on the wall (s).
     pub elapsed: f64,
     /// Work, without messages and waiting (s).
     pub work: f64,
-    /// On a core of its own, messages by the network that is assumed (s).
+    /// Time on a core of its own, messages by the network that is assumed (s).
     pub modelled: f64,
 }
 
@@ -47,7 +47,7 @@ impl AddAssign for Times {
     }
 }
 
-/// When a message left, as its receiver has to know.
+/// Time of sending, which a message carries to its receiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stamp {
     /// The sender's modelled time (s).

@@ -16,7 +16,7 @@ pub fn is_asked_to_stop() -> bool {
     asked.is_some_and(|asked| asked.load(Ordering::Relaxed))
 }
 
-/// From now on the signals are remembered; the same one again ends the process as ever.
+/// Begins to remember signals; the same one again ends the process as ever.
 pub(super) fn listen() -> io::Result<()> {
     let asked = ASKED.get_or_init(Arc::default);
     for signal in [SIGTERM, SIGINT, SIGUSR1] {

@@ -72,7 +72,7 @@ pub fn start() -> Result<World, Failure> {
     Ok(world)
 }
 
-/// From now on a panic names the rank and its phase, and ends all ranks.
+/// Installs a panic hook that names the rank and its phase, and ends all ranks.
 fn end_all_at_a_panic(comm: &Comm) {
     let (rank, size, has_mpi) = (comm.rank, comm.size, comm.has_mpi());
     let report = panic::take_hook();

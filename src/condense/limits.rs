@@ -107,8 +107,8 @@ fn check_ties(
         let point = &group.points[condition.point];
         let contact = &context.catalog.contacts[point.contact as usize];
         return Err(Failure::input(format!(
-            "{} '{}': at node {} what supports and others prescribe contradicts it, by {:.3e}; expected displacements that \
-             leave it as it is",
+            "{} '{}': at node {} displacements that supports and others prescribe contradict it, by {:.3e}; expected \
+             displacements that leave it as it is",
             contact.kind.word(),
             contact.name,
             point.tag(),

@@ -41,9 +41,9 @@ pub fn carry(
 /// The direction of a message along the hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub enum Direction {
-    /// From a node to the one that it is merged into.
+    /// Step from a node to the one that it is merged into.
     Up,
-    /// From the node that it was merged into to a node.
+    /// Step to a node from the one that it was merged into.
     Down,
 }
 

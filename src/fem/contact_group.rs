@@ -35,8 +35,8 @@ pub struct Condition {
 /// The loads on a contact group in a load step: gaps and prescribed displacements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroupLoads {
-    /// For every condition the jump that it allows (m): the gap g, or the tangential jump at which the sides stick,
-    /// that of the load step before.
+    /// Allowed jump of every condition (m): the gap g, or the tangential jump at which the sides stick, that of the
+    /// load step before.
     pub gaps: Vec<f64>,
     /// The displacements that the supports of every node prescribe (m).
     pub held: Vec<Vec<f64>>,
@@ -83,7 +83,7 @@ impl ContactGroup {
         group
     }
 
-    /// Tells the nodes between sides how stiff what they are of is, as that of a material (Pa).
+    /// Gives the nodes between sides the stiffness of their bodies, as that of a material (Pa).
     fn take_stiffness_between_sides(&mut self) {
         for j in 0..self.points.len() {
             let point = &self.points[j];

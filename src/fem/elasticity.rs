@@ -151,7 +151,7 @@ impl ElementMatrix {
         }
     }
 
-    /// In D dimensions, with V components of strain, for up to N nodes.
+    /// Integral in D dimensions, with V components of strain, for up to N nodes.
     #[inline(always)]
     fn integrate<const D: usize, const V: usize, const N: usize>(
         &mut self,

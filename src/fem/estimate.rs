@@ -47,11 +47,11 @@ impl CellError {
 /// C⁻¹ of a material (1/Pa), in whose norm stresses are measured.
 #[derive(Clone, Debug)]
 pub enum Compliance {
-    /// In the plane.
+    /// Compliance in the plane.
     Plane(Matrix3<f64>),
-    /// Around an axis.
+    /// Compliance around an axis.
     Ring(Matrix4<f64>),
-    /// In space.
+    /// Compliance in space.
     Solid(Box<Matrix6<f64>>),
 }
 

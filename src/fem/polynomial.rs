@@ -57,7 +57,7 @@ impl From<Coefficients> for Polynomial {
 }
 
 impl Polynomial {
-    /// The one that is 0 everywhere.
+    /// The polynomial that is 0 everywhere.
     pub fn zero(dim: usize) -> Self {
         Self {
             dim,

@@ -146,7 +146,7 @@ fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
         .map(|node| node as usize)
 }
 
-/// From one node to another (m).
+/// Vector from one node to another (m).
 fn way(block: &Block, from: usize, to: usize) -> [f64; 3] {
     difference(block.points()[to], block.points()[from])
 }

@@ -20,7 +20,7 @@ use crate::vector::axpy;
 /// The stresses of a block.
 #[derive(Clone, Debug)]
 pub struct BlockStress {
-    /// Of every cell (Pa), order XX YY ZZ XY YZ XZ.
+    /// Stress of every cell (Pa), order XX YY ZZ XY YZ XZ.
     pub cells: Vec<[f64; 6]>,
     /// The largest strain of a cell.
     pub largest_strain: LargestStrain,
@@ -33,7 +33,7 @@ pub struct BlockStress {
 pub struct RecoveredStress {
     /// The block's materials, ascending.
     materials: Vec<usize>,
-    /// At every node in each of them (Pa).
+    /// Stresses at every node in each of its materials (Pa).
     at_nodes: Vec<Vec<NodalStress>>,
     /// Estimated error of every cell.
     pub errors: Vec<CellError>,

@@ -13,7 +13,7 @@ pub struct Numbering {
     pub len: usize,
     /// Number of those that no pair has; they come first.
     pub linear: usize,
-    /// For every cluster the numbers of its interface dofs.
+    /// Numbers of every cluster's interface dofs.
     pub interface_dofs: Vec<Vec<u32>>,
 }
 
@@ -70,7 +70,7 @@ impl Numbering {
 /// those of part p, `interface_dofs[p]` its unknowns, both ascending.
 ///
 /// # Errors
-/// A node that parts hold in different ways.
+/// A node at which parts hold different unknowns.
 pub fn check_agreement(
     interface_dofs: &[&[InterfaceDof]],
     nodes: &[&[u32]],

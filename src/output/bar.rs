@@ -122,7 +122,7 @@ impl Bar {
         part.seconds_left(part.began.elapsed())
     }
 
-    /// Tells the log, unless it has heard of the run just now.
+    /// Writes to the log, unless it has had a line of the run just now.
     fn tell(&self, doing: impl FnOnce() -> String) {
         let Some(told) = &self.told else { return };
         if told.get().elapsed() > SILENCE {

@@ -39,7 +39,7 @@ pub struct Summary<'a> {
     pub ranks: usize,
     /// Number of threads of each rank.
     pub threads: usize,
-    /// Why contact conditions are solved for as they are, in words.
+    /// Reason for the choice of the solver of contact conditions, in words.
     pub interface_choice: &'a str,
 }
 
@@ -75,7 +75,7 @@ pub struct Costs<'a> {
     pub flops: f64,
     /// Arithmetic of the busiest rank (flop).
     pub busiest_rank_flops: f64,
-    /// Why contact conditions are to be solved for as they are, in words.
+    /// Reason for the choice of the solver of contact conditions, in words.
     pub interface_choice: &'a str,
     /// Unknowns of the coarse problem of the iterative interface solver, about; none where it is direct.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -89,7 +89,7 @@ pub struct Finished<'a> {
     pub exit_code: u8,
     /// The result file.
     pub result: String,
-    /// Why the sweeps ended, in words.
+    /// Reason for which the sweeps ended, in words.
     pub reason: &'a str,
     /// The report.
     pub report: &'a Report,
@@ -139,7 +139,7 @@ pub enum Event<'a> {
     Sweep(&'a SweepRecord),
     /// A warning.
     Warning {
-        /// In words.
+        /// Text of the warning.
         message: &'a str,
     },
     /// Estimated cost of solving; in place of `finished` where it was `--check`.

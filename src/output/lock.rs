@@ -59,7 +59,7 @@ impl Drop for OutputLock {
     }
 }
 
-/// Why a lock can't be had.
+/// Reason for which a lock can't be had.
 enum Refusal {
     Held(String),
     System(io::Error),

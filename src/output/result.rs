@@ -30,7 +30,7 @@ pub(super) enum Per {
     Node,
     Cell,
     NodeOfCell,
-    /// And one more in each subdomain.
+    /// Starts of cells, one more than cells in each subdomain.
     StartOfCell,
 }
 
@@ -54,7 +54,7 @@ pub(super) enum Of {
     Solution,
     /// Left out where stresses are.
     Stress,
-    /// Left out where nothing comes or goes.
+    /// Left out where no load step adds or removes anything.
     Presence,
     /// Left out where stresses are, or where the scene asks for no quantity.
     Quantity,
@@ -126,8 +126,7 @@ lists! {
     nodal_von_mises: f64, "nodal von Mises stresses", "PointData/VonMises", Node, Stress;
     /// Nodes of the cells, numbered within their subdomain.
     connectivity: i64, "connectivity", "Connectivity", NodeOfCell, Mesh;
-    /// For every subdomain the start of each of its cells in its part of `connectivity`, and the
-    /// end: one more than cells.
+    /// Start of each cell of every subdomain in its part of `connectivity`, and the end: one more than cells.
     offsets: i64, "offsets", "Offsets", StartOfCell, Mesh;
     /// VTK's number of the type of every cell.
     types: u8, "cell types", "Types", Cell, Mesh;

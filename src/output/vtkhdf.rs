@@ -44,7 +44,7 @@ pub struct ResultFile {
     has_steps: bool,
     /// Number of load steps, one where the problem has none.
     steps: usize,
-    /// The one that is being written.
+    /// Number of the load step that is being written.
     step: usize,
     /// The digests of load steps that are written since the last one was kept.
     digests: Vec<Vec<u64>>,

@@ -1,4 +1,4 @@
-//! The ways between contact groups and the subdomains that have their nodes.
+//! Links between contact groups and the subdomains that have their nodes.
 
 use std::collections::BTreeMap;
 

@@ -39,7 +39,7 @@ pub struct Checked {
     pub costs: Vec<CostEstimate>,
     /// Memory that there is (bytes).
     pub available: f64,
-    /// Why contact conditions are to be solved for as they are, in words.
+    /// Reason for the choice of the solver of contact conditions, in words.
     pub why: String,
     /// Coarse unknowns of an iterative interface solver.
     pub coarse_dofs: Option<usize>,
@@ -57,7 +57,7 @@ pub struct RunLog<'a> {
     heard: Cell<Instant>,
     /// The first load step of this run, and when it began.
     first_step: Cell<Option<(usize, Instant)>>,
-    /// Why something that was said couldn't be written. A run goes on: it writes its results to a file.
+    /// Error of an event that couldn't be written. A run goes on: it writes its results to a file.
     unheard: OnceCell<OutputError>,
 }
 
@@ -140,7 +140,7 @@ impl<'a> RunLog<'a> {
         });
     }
 
-    /// Tells the problem and the settings, and `why` contact conditions are solved for as they are.
+    /// Prints the problem and the settings, and `why` contact conditions are solved for as they are.
     pub fn problem(&self, catalog: &Catalog, plan: &Plan, why: &str) {
         let summary = Summary {
             version: env!("CARGO_PKG_VERSION"),

@@ -20,7 +20,7 @@ pub struct Totals<'a> {
     pub catalog: &'a Catalog,
     /// The owners of blocks and fronts.
     pub plan: &'a Plan,
-    /// Why contact conditions were solved for as they were, in words.
+    /// Reason for the choice of the solver of contact conditions, in words.
     pub why: &'a str,
     /// Every load step, one where the problem has none.
     pub steps: Vec<StepTotals>,
@@ -122,7 +122,7 @@ impl Totals<'_> {
         }
     }
 
-    /// For every check, that of the step where it is worst.
+    /// The worst value of every check over all steps.
     pub fn certificate(&self) -> Certificate {
         let certificates = self.steps.iter().map(|step| step.certificate);
         certificates.fold(Certificate::default(), Certificate::worse)

@@ -31,7 +31,7 @@ const SLIDING: f64 = 2e-14;
 pub struct RigidMotions {
     /// Free ones.
     pub free: Vec<FreeMotion>,
-    /// As many pins as there are free motions, and those of bodies that aren't there.
+    /// Fixing dofs: as many as there are free motions, and those of bodies that aren't there.
     pub fixing_dofs: Vec<FixingDof>,
     /// Warnings.
     pub warnings: Vec<String>,
@@ -255,8 +255,8 @@ impl Kinematics {
         }
     }
 
-    /// As many components of candidate nodes as there are free motions, chosen one after the other
-    /// where the motions not yet stopped are largest.
+    /// Components of candidate nodes, as many as there are free motions, chosen one after the other where the motions
+    /// not yet stopped are largest.
     fn fixing_dofs(&self, bodies: &[BodyState], free: &DMatrix<f64>) -> Vec<FixingDof> {
         let mut candidates: Vec<(FixingDof, DVector<f64>)> = Vec::new();
         for (b, body) in bodies.iter().enumerate() {

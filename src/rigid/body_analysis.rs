@@ -25,8 +25,8 @@ pub struct RigidBodyAnalysis {
     pub motions: RigidMotions,
     /// The rigid motion by which every body comes to rest.
     pub closing_motions: Vec<Vec<f64>>,
-    /// For every cluster in contact of this rank, its conditions against the motions that supports
-    /// leave to the bodies that lie wholly in it: what moves them costs the cluster no energy.
+    /// Conditions of every cluster in contact of this rank against the motions that supports leave to the bodies that
+    /// lie wholly in it, which cost the cluster no energy.
     pub cluster_modes: OnPairs<RigidModes>,
     /// True if supports leave any rigid motion to any body.
     pub movable: bool,

@@ -100,8 +100,8 @@ impl Scene {
     }
 }
 
-/// For every cluster in contact of this rank, its conditions against the motions of the bodies wholly
-/// in it that leave the `fixing_dofs` where they are. Collective; `scene` counts on the root alone.
+/// Conditions of every cluster in contact of this rank against the motions of the bodies wholly in it that leave the
+/// `fixing_dofs` where they are. Collective; `scene` counts on the root alone.
 pub(super) fn cluster_modes(
     context: &Context<'_>,
     scene: &Scene,

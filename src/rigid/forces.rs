@@ -38,7 +38,7 @@ struct Generator {
 /// Part of a load that forces don't balance.
 #[derive(Debug)]
 pub(super) struct Unbalanced {
-    /// It, 0 where they balance it.
+    /// The unbalanced load, 0 where forces balance it.
     pub left: DVector<f64>,
     /// A motion along which the load does more work than forces take.
     pub proof: Option<DVector<f64>>,

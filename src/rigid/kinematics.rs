@@ -13,7 +13,7 @@ use crate::fem::body_frame::BodyFrame;
 pub(super) struct Kinematics {
     /// Dimension of space.
     pub dim: usize,
-    /// For each body its basis of motions, modes × kept.
+    /// Basis of the motions of each body, modes × kept.
     bases: Vec<DMatrix<f64>>,
     /// First unknown of each body.
     first: Vec<usize>,
@@ -141,7 +141,7 @@ impl Kinematics {
         sparse
     }
 
-    /// Of every body the motions that conditions `rows` touch, and those that none does, which are free.
+    /// Motions of every body that conditions `rows` touch, and those that no condition touches, which are free.
     pub fn touched(&self, rows: &[RigidRow]) -> (Self, Vec<FreeMotion>) {
         let mut of_body: Vec<Vec<Vec<f64>>> = vec![Vec::new(); self.bodies()];
         for (body, action) in rows.iter().flat_map(|row| &row.bodies) {

@@ -46,7 +46,7 @@ pub struct RigidRow {
     pub gap: f64,
     /// The bound of its force if that is tangential; a normal one presses.
     pub friction: Option<Friction>,
-    /// True if it is one of a tie, which holds both ways.
+    /// True if it is one of a tie, which holds in both directions.
     pub is_tied: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Ties in the analysis of rigid motions: what holds both ways is two conditions that press.
+//! Ties in the analysis of rigid motions: two opposite unilateral conditions for each.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::vector::{axpy, largest};
 const ROUND_OFF: f64 = 1e-12;
 
 impl Scene {
-    /// The conditions but for those of ties, then as few as say the same as these, each both ways.
+    /// The conditions of contacts, then the fewest that are equivalent to those of ties, each in both directions.
     pub(super) fn both_ways(&self) -> Vec<RigidRow> {
         let mut place = 0;
         let places: Vec<usize> = (self.rows.iter())
@@ -51,7 +51,7 @@ impl Scene {
     }
 }
 
-/// The conditions of ties of the same bodies in at most as many as these have motions, each both ways.
+/// The conditions of ties of the same bodies in at most as many as these have motions, each in both directions.
 fn joined(bodies: &[usize], of_bodies: Vec<Vec<f64>>) -> Vec<RigidRow> {
     let entries = of_bodies.first().map_or(0, Vec::len);
     let modes = (entries - 1) / bodies.len();

@@ -46,7 +46,7 @@ pub struct Parts {
     groups: OnGroups<ContactGroup>,
     costs: Vec<CostEstimate>,
     available: f64,
-    /// Why contact conditions are solved for as they are, in words.
+    /// Reason for the choice of the solver of contact conditions, in words.
     pub why: String,
 }
 

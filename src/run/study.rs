@@ -41,7 +41,7 @@ struct Case {
     values: Vec<f64>,
     /// "converged", "not_converged" or "ill_posed".
     status: &'static str,
-    /// Why it is ill-posed, in words.
+    /// Reason for which it is ill-posed, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     why: Option<String>,
     /// The values of the quantities; none where it is ill-posed.

@@ -11,7 +11,7 @@ use super::panel::Panel;
 use super::pattern::SparseSymmetric;
 use super::supernodes::Supernodes;
 
-/// Why a matrix couldn't be factorized.
+/// Reason for which a matrix couldn't be factorized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FactorError {
     /// The matrix isn't positive definite.

@@ -74,7 +74,7 @@ impl Spare {
     }
 }
 
-/// Why Schur complements can't be merged: this unknown can move although all that is kept is held.
+/// Unknown that can move although all kept unknowns are held, so that Schur complements can't be merged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreeInterfaceDof(pub InterfaceDof);
 

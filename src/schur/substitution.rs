@@ -100,8 +100,8 @@ impl Substitution {
         }
     }
 
-    /// With P the places of what is replaced, x_P = B y, and E what sets these to 0, T = E + P B and
-    /// Tᵀ A T = E A E + W B + Bᵀ Wᵀ, W = E A P + ½ Bᵀ (Pᵀ A P).
+    /// Product Tᵀ A T = E A E + W B + Bᵀ Wᵀ with W = E A P + ½ Bᵀ (Pᵀ A P), T = E + P B, P the places of the unknowns
+    /// that are replaced, x_P = B y, and E, which sets these to 0.
     fn multiply(&self, a: &mut Front<'_>) {
         let (n, m) = (a.len(), self.places.len());
         let mut columns: Vec<usize> = self.rows().flatten().map(|(place, _)| place).collect();
@@ -146,7 +146,7 @@ impl Substitution {
         }
     }
 
-    /// For everything that is replaced the places that make it, and how much of each.
+    /// Places and factors of every unknown that is replaced.
     fn rows(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)>> {
         self.staying
             .iter()

@@ -135,7 +135,7 @@ struct Merged {
 }
 
 impl Merged {
-    /// This and a child of it that comes directly before it as one supernode, if that pays.
+    /// One supernode of this and a child that comes directly before it, if that pays.
     fn with(&self, child: &Self) -> Option<Self> {
         let new = child.columns * (self.columns + self.below - child.below);
         let zeros = self.zeros + child.zeros + new;

@@ -1,5 +1,5 @@
-//! The transfer of state from one stage to the next: from the load steps before bodies or contacts come or go to those
-//! after that.
+//! The transfer of state from one stage to the next: from the load steps before bodies or contacts are added or removed
+//! to those after that.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -74,7 +74,7 @@ pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
     catalog.has_friction()
         && conditions > FEW
         && apart as f64 >= APART * catalog.points.len() as f64
-        // Quantities may name any point, and what comes or goes has a state of its own.
+        // Quantities may name any point, and bodies that are added or removed have a state of their own.
         && catalog.quantities.is_empty()
         && !catalog.has_stages()
         && wishes.method == Method::Newton

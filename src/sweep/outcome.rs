@@ -5,7 +5,7 @@ use crate::contact::friction::Status;
 use crate::interface::s_con::ConTotals;
 use serde::{Deserialize, Serialize};
 
-/// Equilibrium and penetration above which a certificate isn't what is promised.
+/// Target of the equilibrium and the penetration in a certificate.
 const NOT_BALANCED: f64 = 1e-14;
 /// Equilibrium that may be round-off of a scene without load.
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;
@@ -44,12 +44,12 @@ pub struct SweepRecord {
     pub seconds: f64,
 }
 
-/// Why sweeps ended.
+/// Reason for which sweeps ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SweepStatus {
     /// The residual is below the tolerance and no contact changes any more.
     Converged,
-    /// They stopped short of that, for this reason.
+    /// Sweeps that ended before convergence, for this reason.
     NotConverged(String),
 }
 
@@ -67,7 +67,7 @@ pub struct IterativeSolves {
 pub struct SweepOutcome {
     /// U.
     pub u: Vec<f64>,
-    /// Why they ended.
+    /// Reason for which they ended.
     pub status: SweepStatus,
     /// True if refinement may find the rest: no status changed any more, or those of friction cycle.
     pub is_settled: bool,
@@ -165,7 +165,7 @@ impl SweepOutcome {
         self.took_over = Some(why);
     }
 
-    /// Says that a load step took several increments.
+    /// Notes that a load step took several increments.
     pub fn count_increments(&mut self, increments: usize) {
         self.increments = increments;
         self.notes.push(format!(

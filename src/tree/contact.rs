@@ -45,7 +45,7 @@ pub struct TreeContact {
     pub outcome: SweepOutcome,
 }
 
-/// Where all is at rest, with these normal jumps open and all else closed and sticking.
+/// The start, all at rest, with these normal jumps open and all else closed and sticking.
 fn begin(
     laws: &OnGroups<ContactLaws<'_>>,
     open: &OnGroups<Vec<bool>>,

@@ -22,7 +22,7 @@ pub(super) struct TreeProblem<'a> {
     pub laws: OnGroups<ContactLaws<'a>>,
     /// The stiffness that the round-off of the force of every limit is relative to (N/m).
     pub stiffest: OnGroups<Vec<f64>>,
-    /// Where closed jumps are, and those of ties (m).
+    /// Prescribed values of closed jumps and of ties (m).
     pub bounds: OnGroups<Vec<f64>>,
     /// Loads on the boundaries of clusters, by node.
     pub loads: &'a OnTreeNodes<Vec<f64>>,

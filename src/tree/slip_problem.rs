@@ -121,7 +121,7 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// These forces where limits are open.
+    /// These forces on open friction conditions.
     fn on_open(&self, forces: &OnJumps) -> OnJumps {
         let of_group = |(&g, forces): (&GroupId, &Vec<f64>)| {
             let both = forces.iter().zip(&self.open[&g]);

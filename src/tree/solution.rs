@@ -46,7 +46,7 @@ impl ActiveSetSolution {
         comm.decide(!comm.collect(&is_finite).contains(&false))
     }
 
-    /// Nothing in the place of unknowns that are no finite numbers.
+    /// Zeros in place of unknowns that are no finite numbers.
     pub fn cut(&mut self) {
         for x in self.boundaries.values_mut().flatten() {
             *x = if x.is_finite() { *x } else { 0.0 };

@@ -140,7 +140,7 @@ impl Conclusions {
 
     /// In words.
     pub fn text(&self) -> String {
-        let mut text = "## What follows\n\n".to_owned();
+        let mut text = "## In short\n\n".to_owned();
         for scene in SCENES {
             text += &self.elements(scene).unwrap_or_default();
         }

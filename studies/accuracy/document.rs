@@ -17,6 +17,8 @@ by `scripts/accuracy`. [Adaptive refinement](adapting.md) finds the cells by its
 ";
 
 const HOW: &str = "\
+The sections that follow are for developers of the solver.
+
 ## How it is measured
 
 - **Scenes**: Hertz's cylinder on a plane and the manufactured solution of Signorini's problem, on the meshes
@@ -32,20 +34,18 @@ const SHOWN: [f64; 3] = [1e-2, 1e-10, 1e-14];
 
 /// The whole document.
 pub fn document(all: &Measurements, conclusions: &Conclusions, faults: &[String]) -> String {
-    let mut text = HEAD.to_owned();
+    let mut text = format!(
+        "{HEAD}{}: {}. Medians of {} runs.\n\n",
+        crate::measured(),
+        all.machine,
+        all.repetitions
+    );
     text += &conclusions.text();
     if !faults.is_empty() {
         let _ = writeln!(text, "Not kept:\n\n- {}\n", faults.join("\n- "));
     }
     text += "![Error in the energy over run time](figures/accuracy.svg)\n\n";
     text += HOW;
-    let _ = writeln!(
-        text,
-        "{}, {}. Medians of {} runs.\n",
-        crate::today(),
-        all.machine,
-        all.repetitions
-    );
     text += &at_goal(conclusions);
     text += &tolerances(all, conclusions);
     text

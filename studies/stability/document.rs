@@ -13,7 +13,7 @@ use crate::support::stress::{FAMILIES, space};
 /// Number of the worst cases that are shown.
 const WORST: usize = 3;
 
-/// A figure: its name, the limit that is promised, and how to read it off.
+/// A figure: its name, the limit that is the target, and how to read it off.
 type Figure = (&'static str, Option<f64>, fn(&Ran) -> Option<f64>);
 
 const FIGURES: [Figure; 8] = [
@@ -54,11 +54,23 @@ with the condition number.
 
 ";
 
+/// Rows of the iterative solver, of scenes drawn anew in the chapter on methods behind Newton's.
+const ITERATIVE: &str = "\
+| in the plane, with friction, `--interface iterative` | 500 | 490 | 0 | 10 of both kinds | |
+| in space, with friction, `--interface iterative` | 449 | 440 | 0 or 1 | 8 or 9 of both kinds | |
+";
+
 const IN_SHORT: &str = "
 *No answer* are runs that end with exit code 3 or were stopped: nothing false is said. *Refused* are scenes that are called
 without equilibrium and may have one, *unclear* those of which the checker can't tell. *Wrong* is an answer that claims to have
 converged and misses what the independent checker asks for; its certificate may fall short, of which the run then warns. Scenes
 are harder than models are: what isn't right has stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999 or large coefficients of friction.
+
+Rows of `--interface iterative` are of [scenes drawn anew](#what-methods-behind-newtons-are-worth) on 2026-11-28, whose answers that aren't
+right were counted without their kinds, and of the two wrong ones without their solver. Without friction the iterative solver has no count
+of its own here.
+
+The sections that follow are for developers of the solver.
 
 ";
 
@@ -77,7 +89,9 @@ pub fn document(first: u64, kinds: &Kinds, rows: &[Row]) -> String {
     let mut text = format!(
         "# Stability
 
-Random and extreme scenes, run and written by `scripts/stress` on {}; `scripts/stress --only SEED` repeats one.
+Random and extreme scenes, run and written by `scripts/stress`; `scripts/stress --only SEED` repeats one.
+
+{}.
 
 {}## What was run
 
@@ -88,7 +102,7 @@ gaps, clearances and interferences, layers of a thousandth of a block, loads fro
 usual, up to 30 subdomains.
 
 ",
-        crate::today(),
+        crate::measured(),
         in_short(kinds),
         ran.len(),
         first + ran.len() as u64 - 1,
@@ -125,7 +139,7 @@ fn in_short(kinds: &Kinds) -> String {
             count(&[Verdict::Refused, Verdict::Unclear]),
         );
     }
-    text + IN_SHORT
+    text + ITERATIVE + IN_SHORT
 }
 
 /// The chapters on all but scenes in the plane without friction, where any were run.
@@ -232,23 +246,23 @@ fn distributions(text: &mut String, ran: &[Ran]) {
 /// Median and largest of every figure.
 fn figures(text: &mut String, ran: &[Ran], figures: &[Figure]) {
     text.push_str(
-        "| figure | promised | median | 99 % | largest | seed of the largest |\n\
+        "| figure | target | median | 99 % | largest | seed of the largest |\n\
          |---|--:|--:|--:|--:|--:|\n",
     );
-    for &(name, promised, figure) in figures {
+    for &(name, target, figure) in figures {
         let mut values: Vec<(f64, u64)> = (ran.iter())
             .filter_map(|one| Some((figure(one)?, one.seed)))
             .collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let promised = promised.map_or("–".into(), |limit| format!("≤ {}", number(limit)));
+        let target = target.map_or("–".into(), |limit| format!("≤ {}", number(limit)));
         let Some(&(largest, seed)) = values.last() else {
-            let _ = writeln!(text, "| {name} | {promised} | – | – | – | – |");
+            let _ = writeln!(text, "| {name} | {target} | – | – | – | – |");
             continue;
         };
         let at = |share: f64| number(values[((values.len() - 1) as f64 * share) as usize].0);
         let _ = writeln!(
             text,
-            "| {name} | {promised} | {} | {} | {} | {seed} |",
+            "| {name} | {target} | {} | {} | {} | {seed} |",
             at(0.5),
             at(0.99),
             number(largest)
@@ -272,7 +286,7 @@ fn worst(text: &mut String, ran: &[Ran]) {
         text,
         "## The worst cases\n\n\
          {failed}\n\n\
-         Those that aren't right, then those closest to a promised limit.\n\n\
+         Those that aren't right, then those closest to a target.\n\n\
          | seed | family | dofs | conditions | subdomains | {HEADER}\n\
          |--:|---|--:|--:|--:|{RULE}"
     );
@@ -292,7 +306,7 @@ fn worst(text: &mut String, ran: &[Ran]) {
     text.push('\n');
 }
 
-/// Distance of a run from the promise; all that aren't right come before all that are.
+/// Distance of a run from its targets; all that aren't right come before all that are.
 fn badness(one: &Ran) -> f64 {
     let missed = (FIGURES.iter()).filter_map(|(_, limit, figure)| Some(figure(one)? / (*limit)?));
     let missed = missed.fold(0.0, f64::max).min(1e100);

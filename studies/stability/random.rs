@@ -110,7 +110,7 @@ impl Ran {
         }
     }
 
-    /// Whether it falls short of what is promised of every scene though it is right.
+    /// Whether it misses a target of every scene though it is right.
     pub fn is_short(&self) -> bool {
         let over = |keys: &[&str], limit: f64| {
             let value = self.trial.reported(keys);

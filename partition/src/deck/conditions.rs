@@ -1,5 +1,5 @@
 //! Linear conditions between displacements of nodes of bodies: what `*EQUATION` says without the nodes of no body, and supports
-//! that are along no axis of the scene, or that come or go.
+//! that are along no axis of the scene, or that begin or end with a step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::LinePlace;
 
-/// Relative size of what is nothing.
+/// Relative size of factors that count as 0.
 const ROUND_OFF: f64 = 1e-12;
 
 /// Factors by nodes and the axes of the scene.
@@ -23,7 +23,7 @@ type Terms = BTreeMap<NodeAxis, f64>;
 pub(super) struct Condition {
     place: Option<LinePlace>,
     terms: Terms,
-    /// By step; none where it isn't there.
+    /// Values by step; none where the condition isn't active.
     values: Vec<Option<f64>>,
     /// The plain name of those that have values.
     word: &'static str,
@@ -94,7 +94,7 @@ pub(super) fn all(
             (condition.terms.is_empty(), wrong, condition.place)
         {
             let message = format!(
-                "what holds its nodes contradicts the equation by {value:e}; expected supports that agree with it"
+                "supports of its nodes contradict the equation by {value:e}; expected supports that agree with it"
             );
             return Err(places.source.error(place, message));
         }
@@ -172,7 +172,7 @@ fn without(
         .position(|other| other.is_some() != held[0].is_some())
     {
         let message = format!(
-            "supports of the node {}, which is of no body, come or go in this step, which isn't supported; expected the same in \
+            "supports of the node {}, which is of no body, begin or end in this step, which isn't supported; expected the same in \
              every step",
             places.deck.node_tags[node as usize]
         );
@@ -329,7 +329,7 @@ impl SceneEquation {
         }
     }
 
-    /// In which steps it is there, where it isn't in all.
+    /// The steps in which it is active, unless it is in all.
     pub(super) fn presence(&self) -> Option<Presence> {
         let name = self.name.clone().filter(|_| self.values.contains(&None))?;
         let steps = self.values.iter().map(Option::is_some).collect();

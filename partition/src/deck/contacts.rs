@@ -91,7 +91,7 @@ struct General {
 /// All contacts of a deck.
 #[derive(Default)]
 pub(super) struct Contacts {
-    /// By name, one at least, those of later steps behind.
+    /// Interactions by name, one at least, those of later steps behind.
     interactions: BTreeMap<String, Vec<Interaction>>,
     /// The interaction that is read, by name in capitals.
     open: Option<String>,

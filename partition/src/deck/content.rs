@@ -29,7 +29,7 @@ use crate::name;
 #[derive(Default)]
 pub(super) struct Content {
     pub(super) title: Option<String>,
-    /// By name in capitals.
+    /// Materials by name in capitals.
     pub(super) materials: BTreeMap<String, Material>,
     /// The material that is read.
     open: Option<String>,
@@ -47,7 +47,7 @@ pub(super) struct Content {
     pub(super) sectors: Sectors,
     pub(super) prints: Requests,
     pub(super) steps: Steps,
-    /// The sets that come and go.
+    /// The sets that steps add and remove.
     pub(super) changes: Changes,
     /// The first step that asks for large displacements.
     pub(super) nlgeom: Option<LinePlace>,
@@ -146,7 +146,7 @@ impl Content {
         Ok(())
     }
 
-    /// A block of contacts, of what comes and goes, or of tables, which depends on the step that it stands in.
+    /// A block of contacts, of model changes, or of tables, which depends on the step that it stands in.
     fn change_or_print(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let step = self.steps.number();
         match block.keyword.as_str() {

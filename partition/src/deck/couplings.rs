@@ -67,7 +67,7 @@ impl Couplings {
     /// The nodes that stand for reference points.
     ///
     /// # Errors
-    /// A coupling of which it isn't said how nodes follow.
+    /// A coupling without the way in which nodes follow.
     pub(super) fn references(
         &self,
         places: &Places,

@@ -13,7 +13,7 @@ use crate::name;
 /// A tie of the sides of a sector.
 struct CyclicTie {
     place: LinePlace,
-    /// In capitals, as the names of surfaces are.
+    /// Name in capitals, as those of surfaces are.
     name: String,
     slave: String,
     master: String,

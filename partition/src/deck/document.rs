@@ -58,7 +58,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// As a vector of numbers and expressions.
+    /// The vector as numbers and expressions.
     pub(super) fn shown(&self, dim: usize) -> String {
         let component = |i: usize| {
             let mut text = format!("{:?}", self.constant[i]);

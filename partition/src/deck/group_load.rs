@@ -37,7 +37,7 @@ impl OnGroup {
 pub(super) struct OnGroups<'a, 'b, 'c> {
     pub(super) steps: &'a Steps,
     pub(super) dim: usize,
-    /// Of plane sections: forces of the scene are per thickness.
+    /// Thickness of plane sections: forces of the scene are per thickness.
     pub(super) thickness: f64,
     pub(super) groups: Groups<'b, 'c>,
 }
@@ -139,7 +139,7 @@ impl OnGroups<'_, '_, '_> {
                 .position(|of_step| held(of_step) != held(&course[0]))
             {
                 let message = format!(
-                    "supports come or go in this step, on {} nodes ({on}), which isn't supported yet; expected the same \
+                    "supports begin or end in this step, on {} nodes ({on}), which isn't supported yet; expected the same \
                      degrees of freedom in every step",
                     nodes.len()
                 );

@@ -7,7 +7,7 @@ use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Face, LinePlace};
 
-/// Names of groups by what is in them.
+/// Names of groups by their members.
 pub(super) struct Groups<'a, 'b> {
     places: &'a mut Places<'b>,
     /// Number of sets of any kind that have a name, in capitals.
@@ -128,7 +128,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         self.places.dim()
     }
 
-    /// The error of what is wrong at a place of the deck.
+    /// An error at a place of the deck.
     pub(super) fn error(&self, at: LinePlace, message: &str) -> InputError {
         self.places.source.error(at, message)
     }

@@ -111,7 +111,7 @@ const NOT_LINEAR: &str = "bodies are linear elastic here";
 const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
-/// Keywords that would change the answer: what is said of them, and what to do instead.
+/// Keywords that would change the answer: the message, and what to do instead.
 const REFUSED: [(&[&str], &str, &str); 19] = [
     (
         &[

@@ -195,7 +195,7 @@ impl Loads {
 }
 
 impl BodyKind {
-    /// With directions of length 1; `None` where one has none.
+    /// The load with directions of length 1; `None` where one has none.
     fn normalized(self) -> Option<Self> {
         Some(match self {
             Self::Along(axis) => Self::Along(axis),

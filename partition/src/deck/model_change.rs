@@ -1,4 +1,4 @@
-//! `*MODEL CHANGE`: pairs of contact and elements that come and go with the steps.
+//! `*MODEL CHANGE`: pairs of contact and elements that steps add and remove.
 
 use super::contacts::Pair;
 use super::loads::item;
@@ -7,7 +7,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Of};
 use crate::name;
 
-/// Pairs or elements that come or go.
+/// Pairs or elements that are added or removed.
 struct Change {
     /// The step, from 0 on.
     step: usize,
@@ -16,7 +16,7 @@ struct Change {
     comes: bool,
 }
 
-/// A set that comes or goes.
+/// A set that is added or removed.
 enum Changed {
     /// A pair, by its place among all.
     Pair(usize),
@@ -58,7 +58,7 @@ impl Changes {
             [None, Some(_)] => false,
             [Some(_), None] => {
                 return refuse(
-                    "*MODEL CHANGE with ADD=WITH STRAIN isn't read; expected ADD: what comes is free of stress".into(),
+                    "*MODEL CHANGE with ADD=WITH STRAIN isn't read; expected ADD: added elements are free of stress".into(),
                 );
             }
             _ => {
@@ -93,7 +93,7 @@ impl Changes {
         Ok(())
     }
 
-    /// True if elements come or go.
+    /// True if elements are added or removed.
     pub(super) fn have_elements(&self) -> bool {
         self.0
             .iter()

@@ -20,9 +20,9 @@ struct Distribution {
 /// All orientations of a deck.
 #[derive(Default)]
 pub(super) struct Orientations {
-    /// By name in capitals.
+    /// Systems by name in capitals.
     pub(super) all: BTreeMap<String, System>,
-    /// By name in capitals.
+    /// Distributions by name in capitals.
     distributions: BTreeMap<String, Distribution>,
     /// The elements of orientations that name a distribution, and what theirs are called, by name in capitals.
     parts: BTreeMap<String, Vec<(Vec<u32>, String)>>,

@@ -4,7 +4,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
-/// Parameters that are read, refused by whoever reads the block, or change nothing.
+/// Parameters that are read, refused by the reader of the block, or have no effect.
 const PARAMETERS: [(&str, &[&str]); 39] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("CHANGE FRICTION", &["INTERACTION"]),

@@ -96,7 +96,7 @@ impl<'a> Places<'a> {
         Ok(found)
     }
 
-    /// The one node that a parameter names.
+    /// The single node that a parameter names.
     pub(super) fn one_node(&mut self, block: &Block, key: &str) -> Result<u32, InputError> {
         let item = self.source.required(block, key)?;
         match self.members(block.place, Of::Nodes, item)?[..] {
@@ -134,7 +134,7 @@ impl<'a> Places<'a> {
             .unwrap_or_default()
     }
 
-    /// Of every node whether a cell has it.
+    /// True for every node that a cell has.
     pub(super) fn with_cells(&self) -> Vec<bool> {
         let dim = self.dim();
         let mut has_cell = vec![false; self.deck.points.len()];

@@ -10,7 +10,7 @@ pub(super) struct Presence {
     pub(super) steps: Vec<bool>,
 }
 
-/// Writes what comes and goes in a step.
+/// Writes activations and deactivations of a step.
 pub(super) fn write(all: &[Presence], step: usize, document: &mut Document) {
     for (key, comes) in [("add", true), ("remove", false)] {
         let changes = |of: &&Presence| match step.checked_sub(1) {

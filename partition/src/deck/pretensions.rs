@@ -37,7 +37,7 @@ pub(super) struct ScenePretension {
     name: String,
     on: String,
     direction: Option<String>,
-    /// By step.
+    /// Force or displacement by step.
     given: Vec<Given>,
 }
 
@@ -173,7 +173,7 @@ impl Section {
 }
 
 impl ScenePretension {
-    /// Writes the section, with what is given in the first step.
+    /// Writes the section, with its force or displacement in the first step.
     pub(super) fn write(&self, document: &mut Document) {
         document.table("[[pretension]]");
         document.key("name", quoted(&self.name));
@@ -188,7 +188,7 @@ impl ScenePretension {
     }
 }
 
-/// Writes what is given of sections in a step.
+/// Writes forces and displacements of sections in a step.
 pub(super) fn write_step(all: &[ScenePretension], step: usize, document: &mut Document) {
     if !all.is_empty() {
         document.table("[step.pretension]");

@@ -184,7 +184,7 @@ impl Requests {
         labels
     }
 
-    /// Says what isn't printed along axes of nodes or of materials, where there are some.
+    /// Notes that tables along axes of nodes or of materials aren't printed, where there are some.
     pub(super) fn note_axes(&mut self, of_nodes: bool, of_materials: bool) {
         let keywords = ["*NODE PRINT", "*EL PRINT"].into_iter().zip(self.has_local);
         for ((keyword, asks), has_axes) in keywords.zip([of_nodes, of_materials]) {

@@ -1,4 +1,4 @@
-//! From what a deck says to the scene that means the same.
+//! The scene that means the same as a deck.
 
 use std::collections::BTreeMap;
 

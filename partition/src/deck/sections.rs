@@ -75,7 +75,7 @@ pub(super) struct Body {
 }
 
 impl Body {
-    /// In which steps it is there, where it isn't in all.
+    /// The steps in which a body is active, unless it is in all.
     pub(super) fn presence(&self, name: &str) -> Option<Presence> {
         self.steps.contains(&false).then(|| Presence {
             name: name.to_owned(),
@@ -88,7 +88,7 @@ impl Body {
 struct Classes(Vec<Option<u32>>);
 
 impl Classes {
-    /// Tells elements of a class apart whose `value` differs.
+    /// Splits classes into elements of equal `value`.
     fn refine(&mut self, mut value: impl FnMut(u32) -> u64) {
         let mut known: HashMap<(u32, u64), u32> = HashMap::new();
         for (element, class) in (0..).zip(&mut self.0) {

@@ -27,7 +27,7 @@ const REFUSED: [&str; 3] = ["NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"];
 /// Elements of one block that are springs.
 struct Elements {
     place: LinePlace,
-    /// In capitals.
+    /// Type of the elements in capitals.
     kind: String,
     /// Their set, by name in capitals.
     set: String,
@@ -38,7 +38,7 @@ struct Elements {
 /// The springs of a set of elements.
 struct Property {
     place: LinePlace,
-    /// By name in capitals.
+    /// Set by name in capitals.
     set: String,
     /// `None` along the line between the ends.
     axis: Option<usize>,

@@ -105,7 +105,7 @@ impl<K: Ord + Clone> Table<K> {
         }
     }
 
-    /// Where the value of a place comes from.
+    /// Place of the line that gives the value of a key.
     pub(super) fn place(&self, key: &K) -> Option<LinePlace> {
         self.0.get(key).map(|entry| entry.origin.place)
     }

@@ -17,7 +17,7 @@ const NONE: u32 = u32::MAX;
 /// All cells of a mesh.
 pub(super) struct Cells {
     graph: Graph,
-    /// For every cell the number of its aggregate in the set that it is in now.
+    /// Number of every cell's aggregate in the set that it is in now.
     aggregate: Vec<AtomicU32>,
 }
 

@@ -45,9 +45,9 @@ const TIDIED: usize = 50_000;
 /// The end of a dissection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Wanted {
-    /// With sets of at most so many dofs, or single vertices.
+    /// Sets of at most so many dofs, or single vertices.
     Dofs(f64),
-    /// With exactly so many sets that hang together across facets.
+    /// Exactly so many sets that are connected across facets.
     Sets(usize),
 }
 
@@ -80,7 +80,7 @@ impl Branch {
         }
     }
 
-    /// Numbers what is under it, and returns the nodes that hang next to each other: itself, or its sides.
+    /// Numbers its descendants, and returns the nodes that are adjacent: itself, or its sides.
     fn hang(
         &self,
         is_top: bool,

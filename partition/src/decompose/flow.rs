@@ -30,7 +30,7 @@ struct Network {
     demand: Vec<u32>,
 }
 
-/// Not reached by the search.
+/// Distance of vertices that the search didn't reach.
 const FAR: u32 = u32::MAX;
 
 /// The cheapest cuts of the edges between what is `Left` and what is `Right`: whether each vertex is on the
@@ -125,7 +125,7 @@ impl Network {
         reached
     }
 
-    /// Lets flow what can along shortest ways; whether anything did.
+    /// Augments the flow along shortest paths; true if there was any.
     fn augment(&mut self) -> bool {
         let mut level = vec![FAR; self.supply.len()];
         let mut queue: Vec<u32> = (0..level.len() as u32)

@@ -29,7 +29,7 @@ impl Edge {
         Self { to, ..self }
     }
 
-    /// This edge and another one as one.
+    /// One edge in place of this one and another.
     pub fn joined(self, other: &Self) -> Self {
         let is_facet = self.is_facet() || other.is_facet();
         Self::new(self.to, self.weight() + other.weight(), is_facet)
@@ -264,8 +264,8 @@ impl Graph {
         (of, count as usize)
     }
 
-    /// For every vertex the part of the graph that it hangs together with by edges that `holds`; parts are
-    /// numbered in the order of their first vertex. And their number.
+    /// Connected component of every vertex by edges that `holds`, numbered in the order of first vertices, and the
+    /// number of components.
     pub fn parts(&self, holds: impl Fn(usize, &Edge) -> bool) -> (Vec<u32>, usize) {
         let mut of = vec![u32::MAX; self.len()];
         let mut count = 0;

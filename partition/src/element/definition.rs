@@ -112,15 +112,15 @@ pub struct Definition {
 /// the cube in each direction.
 #[derive(Clone, Copy, Debug)]
 pub struct CellRules {
-    /// Of ∫ Bᵀ C B: exact for ∫ ∇N_i, and with it the patch test, on cells of any shape with curved
-    /// edges, and for the stiffness of cells with an affine map.
+    /// Order of ∫ Bᵀ C B: exact for ∫ ∇N_i, and with it the patch test, on cells of any shape with curved edges, and
+    /// for the stiffness of cells with an affine map.
     pub stiffness: usize,
-    /// Of the points where stresses are more accurate than elsewhere, or make patches that are
-    /// (Barlow, Int. J. Numer. Meth. Eng. 10, 1976; Zienkiewicz and Zhu 1992).
+    /// Order of the points where stresses are more accurate than elsewhere, or make patches that are (Barlow, Int. J.
+    /// Numer. Meth. Eng. 10, 1976; Zienkiewicz and Zhu 1992).
     pub stress: usize,
-    /// Of ∫ N_i b for a constant load, in a cell of any shape.
+    /// Order of ∫ N_i b for a constant load, in a cell of any shape.
     pub constant_load: usize,
-    /// Of the same for a cubic load, in a cell with straight edges and nodes in their middle.
+    /// Order of the same for a cubic load, in a cell with straight edges and nodes in their middle.
     pub cubic_load: usize,
 }
 

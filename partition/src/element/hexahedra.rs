@@ -46,7 +46,7 @@ const FACES: [[usize; 9]; 6] = [
     [4, 5, 6, 7, 12, 13, 14, 15, 25],
 ];
 
-/// Mirror image with ξ and η exchanged.
+/// Mirror image with ξ and η swapped.
 const REVERSED: &[usize; 27] = &[
     0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 22, 23, 20, 21, 24, 25,
     26,

@@ -260,7 +260,7 @@ fn elements_of(start: Place, kind: ElementKind) -> Vec<Vec<Place>> {
     orders.map(tetrahedron).into()
 }
 
-/// For every node of every cube the first one that it is glued to.
+/// First node that every node of every cube is glued to.
 fn glue(cubes: &[Cube], placed: &[Placed], points: &[[f64; 3]], kind: ElementKind) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..points.len()).collect();
     let size = points

@@ -189,7 +189,7 @@ fn straighten(cells: &Elements, points: &mut [[f64; 2]]) {
     }
 }
 
-/// For every node of every square the first one that it is glued to.
+/// First node that every node of every square is glued to.
 fn glue(squares: &[Square], placed: &[Placed]) -> Vec<usize> {
     let count = placed.iter().map(|p| p.points.len()).sum();
     let mut parent: Vec<usize> = (0..count).collect();

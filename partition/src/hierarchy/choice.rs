@@ -75,7 +75,7 @@ pub struct OperatorTimes {
     pub coarse: f64,
     /// The choice that is left for want of memory.
     last_resort: Option<Operator>,
-    /// Why others are left out.
+    /// Reasons for which other operators are left out.
     left_out: Vec<String>,
     /// Number of contact conditions, tangential ones among them.
     conditions: usize,
@@ -188,7 +188,7 @@ impl OperatorTimes {
         }
     }
 
-    /// Why `chosen` is, in words: its time against those of others, and why others are left out.
+    /// Reason for `chosen` in words: its time against those of others, and why others are left out.
     pub fn reason(&self, chosen: Operator) -> String {
         let (own, others): (Vec<_>, Vec<_>) = self
             .all

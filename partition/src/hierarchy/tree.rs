@@ -268,7 +268,7 @@ impl Tree {
         self.nodes[v].conditions - below
     }
 
-    /// For every node, the sum of `costs` over it and all that is under it.
+    /// Sums of `costs` over every node and all nodes under it.
     pub fn sums(&self, costs: &Numbered<TreeNodeId, f64>) -> Numbered<TreeNodeId, f64> {
         let mut sums = costs.clone();
         for v in self.nodes.ids() {
@@ -313,7 +313,7 @@ impl Tree {
 }
 
 impl Hierarchy {
-    /// This tree once for every contact group and once for what has no contact, and one root above all.
+    /// One root above a copy of this tree for every contact group and one for subdomains without contact.
     fn by_group(&self, catalog: &Catalog) -> Self {
         let linear = catalog.groups.len();
         let mut classes: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); self.parent.len()];

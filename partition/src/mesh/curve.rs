@@ -1,4 +1,4 @@
-//! The order of a mesh in memory: what is near in space is near there too, whatever order a mesher chose.
+//! The order of a mesh in memory: neighbours in space are near there, too, whatever order a mesher chose.
 
 use super::Mesh;
 use crate::element::Elements;

@@ -144,7 +144,7 @@ impl Facets {
         facets
     }
 
-    /// Tells facets apart that have the same corners but not the same nodes between them.
+    /// Separates facets that have the same corners but not the same nodes between them.
     fn tell_sheets(&mut self, cells: &Elements) {
         let sorted = |entry: &Entry| {
             let mut nodes = entry.facet.nodes(cells);

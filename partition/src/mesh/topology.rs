@@ -117,8 +117,7 @@ impl Topology {
         self.neighbours.items()
     }
 
-    /// For every cell the piece of the mesh that it hangs together with across facets; pieces are
-    /// numbered in the order of their first cell.
+    /// Component of every cell, connected across facets; components are numbered in the order of their first cell.
     pub fn pieces(&self) -> Vec<u32> {
         let mut piece = vec![u32::MAX; self.neighbours.len()];
         let mut count = 0;

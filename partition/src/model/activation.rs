@@ -71,11 +71,11 @@ pub(super) fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
     is_absent
 }
 
-/// Checks that a body that comes or goes has its nodes to itself, and that no contact point lies on a side of which a part
-/// is there.
+/// Checks that a body that is added or removed has its nodes to itself, and that no contact point lies on a side of
+/// which a part is there.
 ///
 /// # Errors
-/// The body, or the contact, with what is expected.
+/// The body, or the contact, with the expectation.
 pub(super) fn check(
     scene: &Scene,
     bodies: &Bodies,

@@ -166,7 +166,7 @@ pub(super) fn prescribed_subdomains(mesh: &Mesh, names: &Names) -> Result<Vec<u3
     Ok(owner.into_iter().flatten().collect())
 }
 
-/// Takes x for the radius: what is round-off of the axis lies on it.
+/// Takes x for the radius: points within round-off of the axis lie on it.
 ///
 /// # Errors
 /// A node on its other side, by its body.

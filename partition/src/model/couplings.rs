@@ -56,8 +56,8 @@ pub(super) fn couplings(
     let comes = absent.find(|name| scene.bodies.contains_key(*name));
     if let (Some(coupling), Some(body)) = (scene.coupling.first(), comes) {
         return Err(InputError::new(format!(
-            "coupling '{}': the body '{body}' comes or goes, which isn't supported beside couplings; expected bodies that are \
-             there in all steps",
+            "coupling '{}': the body '{body}' is added or removed, which isn't supported beside couplings; expected bodies \
+             that are active in all steps",
             coupling.name
         )));
     }

@@ -162,7 +162,7 @@ impl<'a> Outline<'a> {
         Self { mesh, edges, at }
     }
 
-    /// The one edge that starts (0) or ends (1) at a node through which the outline passes once.
+    /// The single edge that starts (0) or ends (1) at a node through which the outline passes once.
     fn one(&self, node: u32, end: usize) -> Option<usize> {
         match &self.at.get(&node)? {
             [starts, ends] if starts.len() == 1 && ends.len() == 1 => Some([starts, ends][end][0]),

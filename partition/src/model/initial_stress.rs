@@ -27,7 +27,7 @@ pub struct InitialStress {
     pub cells: Vec<Stress>,
     /// The measure of every cell of a body that has any (m², m³; around an axis that of the ring).
     pub measures: Vec<f64>,
-    /// By node and material, of which each body that has any has one of its own.
+    /// Stresses by node and material; each body that has any has a material of its own.
     pub nodes: HashMap<(u32, u32), Stress>,
 }
 

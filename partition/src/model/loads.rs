@@ -24,7 +24,7 @@ use crate::scene::step::Scale;
 const FACET_DEGREES: [usize; 2] = [9, 11];
 /// A load of a loading.
 pub(super) enum Load<'a> {
-    /// On a body, by its number.
+    /// Load on a body, by its number.
     Body(u32, &'a Vector),
     /// A traction.
     Traction(&'a Traction),

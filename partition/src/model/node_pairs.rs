@@ -9,7 +9,7 @@ use crate::contact_point::ContactPoint;
 use crate::element::geometry::{advance, dot, length};
 use crate::mesh::Mesh;
 
-/// Why two sides have no pairs of nodes.
+/// Reason for which two sides have no pairs of nodes.
 pub(super) enum Unpaired {
     /// Sides that face each other, but not node by node.
     Unmatched(String),
@@ -70,7 +70,7 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
     Ok(points)
 }
 
-/// Why sides don't match where nodes lie opposite the inside of facets of the other side, each with that side's letter.
+/// Reason of a mismatch where nodes lie opposite the inside of facets of the other side, each with that side's letter.
 fn mismatch(mesh: &Mesh, unmatched: &[(u32, &str, &SurfaceFacet)]) -> Option<String> {
     let (node, side, facet) = unmatched.first()?;
     let shown: Vec<u32> = unmatched.iter().take(5).map(|u| u.0).collect();

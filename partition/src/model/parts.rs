@@ -22,7 +22,7 @@ pub struct Material {
 /// The way in which the stiffness of cells is integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
-    /// In full.
+    /// Full integration.
     #[default]
     Full,
     /// 4-node quadrilaterals and 8-node hexahedra have incompatible modes, with which they bend.

@@ -47,7 +47,7 @@ impl Pretensions {
     /// The pretensions across the opened cuts, the contacts numbered from `first` on; their forces are added to `loads`.
     ///
     /// # Errors
-    /// A direction along the cut, a bolt that comes or goes.
+    /// A direction along the cut, a bolt that a step adds or removes.
     pub fn new(
         scene: &Scene,
         (bodies, topology): (&Bodies, &Topology),
@@ -96,7 +96,7 @@ fn contact(name: String, points: Vec<ContactPoint<u32>>) -> Contact {
     }
 }
 
-/// Refuses a bolt that comes or goes.
+/// Refuses a bolt that a step adds or removes.
 fn check_presence(
     scene: &Scene,
     bodies: &Bodies,
@@ -115,7 +115,7 @@ fn check_presence(
     match going.find(|((_, nodes), _)| is_on_cut(nodes)) {
         None => Ok(()),
         Some(_) => Err(InputError::new(format!(
-            "pretension '{}': its body comes or goes, which isn't supported; expected a body that is there in all steps",
+            "pretension '{}': its body is added or removed, which isn't supported; expected a body that is active in all steps",
             pretension.name
         ))),
     }

@@ -96,7 +96,7 @@ impl Known<'_> {
         Ok((quantity, weights))
     }
 
-    /// Tells a quantity of a contact what it is of.
+    /// Gives a quantity of a contact its kind, its directions and its contact.
     fn of_contact(&self, target: &Target, quantity: &mut Quantity) -> Result<(), String> {
         match target {
             Target::ContactForce { contact, along } => {

@@ -24,7 +24,7 @@ pub(super) enum Hit {
     Nodes(Vec<u32>),
     /// The inside of a facet.
     Facet(usize),
-    /// Nothing, though facets that face the same way as the line may lie on it.
+    /// No facet, though facets that face the same way as the line may lie on it.
     Nothing {
         /// True if there are such facets.
         back_facing: bool,

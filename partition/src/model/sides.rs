@@ -65,7 +65,7 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// Why sides that don't meet anywhere have no condition; `back_facing` if they would, were one of them
+/// Reason for which sides that don't meet anywhere have no condition; `back_facing` if they would, were one of them
 /// turned round.
 pub(super) fn apart(back_facing: bool) -> String {
     if back_facing {

@@ -7,7 +7,7 @@ use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 
-/// A load step of a model: what is prescribed and what acts, where that is in any step.
+/// A load step of a model: prescribed displacements and loads, where any step has them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelStep {
     /// Name.

@@ -1,4 +1,4 @@
-//! Γ_u and Γ_o: what is prescribed at each node, as orthonormal rows.
+//! Γ_u and Γ_o: prescribed displacements of each node, as orthonormal rows.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -52,13 +52,13 @@ fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
 pub(super) struct Supports {
     /// Ascending by node, the rows of one node orthonormal.
     pub rows: Vec<Support>,
-    /// For every condition those before it that hold a part of what it prescribes: at nodes that both have, the force
+    /// Earlier conditions of every condition that hold a part of what it prescribes: at nodes that both have, the force
     /// along the direction of the earlier one is counted as that one's.
     holders: Vec<BTreeSet<usize>>,
 }
 
 impl Supports {
-    /// Says of the `names` of the conditions what others hold of theirs.
+    /// Names of the conditions with a note on the part that others hold.
     pub fn names(&self, names: Vec<String>) -> Vec<String> {
         let short = |holder: &usize| names[*holder].split(" on ").next().unwrap_or_default();
         let named = names.iter().zip(&self.holders).map(|(name, holders)| {

@@ -33,7 +33,7 @@ const NEAR: f64 = 0.25;
 /// small ones.
 const CLOSING: f64 = 0.1;
 
-/// A contact of the scene, and what is known of it where it was found.
+/// A contact of the scene, and its facets where it was found.
 pub(super) struct Declared {
     pub contact: Contact,
     /// The name in the scene of what asks for it.
@@ -42,7 +42,7 @@ pub(super) struct Declared {
     pub words: Option<String>,
 }
 
-/// A table of the scene that wants contacts wherever bodies touch, and what was found for it.
+/// A table of the scene that asks for contacts wherever bodies touch, and the contacts found for it.
 struct Search<'a> {
     between: &'a Between,
     patches: Vec<Patch>,
@@ -230,7 +230,7 @@ fn parting(
     ))
 }
 
-/// Writes down what was found.
+/// Records the contacts that were found.
 struct Sides<'a> {
     scene: &'a Scene,
     skin: &'a Skin<'a>,

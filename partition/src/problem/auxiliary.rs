@@ -52,7 +52,7 @@ impl Auxiliary {
         }
     }
 
-    /// Where it is held in load step k, along a `direction` (m).
+    /// Prescribed displacement in load step k along a `direction` (m).
     fn value<N: Copy>(self, point: &ContactPoint<N>, k: usize, direction: [f64; 3]) -> f64 {
         match self {
             Self::Moving => dot(point.motion[k], direction),

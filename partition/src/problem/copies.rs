@@ -80,7 +80,7 @@ impl Subdomain {
     }
 }
 
-/// Something on which subdomains disagree; the first one is the least.
+/// Entry on which subdomains disagree; the first one is the least.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Disagreement {
     /// Copies before tags, by subdomain and number on Γ, or by tag.

@@ -2,7 +2,7 @@
 //! library, which may crash on one, sees it.
 //!
 //! HDF5 doesn't look behind its end of file, and cuts off what is there whenever it opens the file to write to it. So
-//! the digest is there as long as nobody edited the file, and gone with the first edit.
+//! the digest is there until the first edit of the file.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -45,7 +45,7 @@ impl Digest {
         match digest == of_bytes(&mut file, length).map_err(unreadable)? {
             true => Ok(Self::Right),
             false => Err(InputError::new(
-                "is damaged: it isn't what its digest is of; expected the file as contact-dd-partition wrote it. Copy \
+                "is damaged: its digest doesn't match; expected the file as contact-dd-partition wrote it. Copy \
                  it again, or make it again",
             )),
         }
@@ -64,7 +64,7 @@ pub fn append(path: &Path) -> io::Result<()> {
     file.write_all(&parts.concat())
 }
 
-/// The digest that a file has at its end, and the length of what is before.
+/// The digest at the end of a file, and the number of bytes before it.
 fn trailer(file: &mut File) -> io::Result<Option<(u128, u64)>> {
     let Some(length) = file.metadata()?.len().checked_sub(TRAILER as u64) else {
         return Ok(None);

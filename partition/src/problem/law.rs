@@ -4,11 +4,11 @@ use crate::contact_point::Law;
 
 /// A row of the three.
 pub(super) struct LawRow {
-    /// 0 without friction, 1 given friction, 2 Coulomb's, 3 a tie.
+    /// 0 without friction, 1 Tresca friction, 2 Coulomb's, 3 a tie.
     pub law: i64,
     /// Coefficient of friction.
     pub friction: f64,
-    /// Given bound or cohesion (Pa).
+    /// Tresca bound or cohesion (Pa).
     pub shear_bound: f64,
 }
 
@@ -35,7 +35,7 @@ impl LawRow {
     /// The law of a row whose values are each as the schema says.
     ///
     /// # Errors
-    /// A value that its law doesn't have: the dataset, and what was expected there.
+    /// A value that its law doesn't have: the dataset, and the expectation.
     pub fn law(&self) -> Result<Law, (&'static str, String)> {
         let &Self {
             law,

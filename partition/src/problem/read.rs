@@ -44,7 +44,7 @@ pub struct ProblemFile {
 /// Signature of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// The error about a file that somebody wrote by hand, or a mesh, with the command that makes a problem file of it.
+/// The error about a scene or a mesh, with the command that makes a problem file of it.
 fn instead_of_problem(path: &Path) -> Option<InputError> {
     let head = source::head(path);
     if head.starts_with(HDF5) {
@@ -83,7 +83,7 @@ impl ProblemFile {
             return Err(error);
         }
         hdf5::silence_errors(true);
-        // Locks fail on some network file systems, and nobody writes under this name in place.
+        // Locks fail on some network file systems, and no program writes under this name in place.
         let file = hdf5::File::with_options()
             .with_fapl(|access| access.file_locking(false))
             .open(path)

@@ -215,7 +215,7 @@ pub const FIELDS: &[Field] = &[
     field("/contact/entry_weight", "E", Numbers,
         "weight w of the node's displacement: w n is its coefficient"),
     optional("/contact/law", "R", Codes("law", 4),
-        "what bounds the tangential force: 0 nothing, there is none; 1 given friction, `shear_bound` wherever the \
+        "what bounds the tangential force: 0 nothing, there is none; 1 Tresca friction, `shear_bound` wherever the \
          point is; 2 Coulomb's, `friction` times the normal force, and `shear_bound` as cohesion, where it is closed; 3 nothing \
          bounds any force: a tie, whose jump is 0 along the normal and the tangents, whatever the gap"),
     optional("/contact/entry_axis", "E, d", Numbers,

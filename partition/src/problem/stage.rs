@@ -34,7 +34,7 @@ impl Catalog {
         stages
     }
 
-    /// True if bodies or contacts come or go.
+    /// True if load steps add or remove bodies or contacts.
     pub fn has_stages(&self) -> bool {
         self.steps
             .iter()

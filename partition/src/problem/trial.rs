@@ -76,7 +76,7 @@ pub fn answer() -> Option<ExitCode> {
     Some(ExitCode::SUCCESS)
 }
 
-/// Has another process read the file.
+/// Reads the file in another process.
 fn attempt(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputError> {
     let damaged = |how: &dyn Display| {
         InputError::new(format!(

@@ -19,13 +19,13 @@ pub struct ContactStiffness {
 }
 
 impl ContactStiffness {
-    /// Why it is none in space of `dim` dimensions.
+    /// Fault of the stiffness in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         let numbers = std::iter::once(&self.normal).chain(&self.tangential);
         numbers.into_iter().find_map(|number| number.fault(dim))
     }
 
-    /// The stiffness along the normal and along the tangents at a point (m), 0 for what is rigid.
+    /// The stiffness along the normal and along the tangents at a point (m), 0 where it is rigid.
     ///
     /// # Errors
     /// The key and what it is there, which isn't a number above 0.

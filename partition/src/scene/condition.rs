@@ -77,7 +77,7 @@ pub struct Body {
     pub body_force: Option<Vector>,
     /// Stress before it is loaded (Pa).
     pub initial_stress: Option<InitialStress>,
-    /// Expansion by heat.
+    /// Thermal expansion.
     pub thermal: Option<Thermal>,
     /// The rule by which its quadratic quadrilaterals and hexahedra are integrated.
     #[serde(default)]
@@ -88,15 +88,15 @@ pub struct Body {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Integration {
-    /// At three points in each direction.
+    /// Three points in each direction.
     #[default]
     Full,
-    /// At two.
+    /// Two points in each direction.
     Reduced,
 }
 
 impl Body {
-    /// True if it has stress without strain, from before or by heat.
+    /// True if it has stress without strain: initial stress or thermal stress.
     pub fn has_initial_stress(&self) -> bool {
         self.initial_stress.is_some() || self.thermal.is_some()
     }
@@ -313,7 +313,7 @@ impl TryFrom<ObstacleKeys> for Obstacle {
 }
 
 impl Obstacle {
-    /// Why it is none in space of `dim` dimensions.
+    /// Fault of the obstacle in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         let own = match self {
             Self::HalfSpace { point, .. } => point.dim,

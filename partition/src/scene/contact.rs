@@ -97,7 +97,7 @@ impl Contact {
 pub struct TieReach {
     /// Up to which distance nodes are tied (m); `None` for a part of the size of facets.
     pub tolerance: Option<f64>,
-    /// True if nodes are moved onto the other side, so that no gap is left between what is tied.
+    /// True if nodes are moved onto the other side, so that no gap is left between tied sides.
     pub adjust: bool,
 }
 
@@ -124,22 +124,22 @@ pub enum Pairing {
 /// Contacts wherever bodies touch: what they have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Between {
-    /// With what their names begin.
+    /// Beginning of their names.
     pub name: String,
     /// The bodies.
     pub bodies: Chosen,
     /// Up to which gap facets that face each other belong to a contact (m); `None` for what touches but for
     /// the standing off of facets from curves.
     pub within: Option<f64>,
-    /// As in [`Contact`].
+    /// Pairing as in [`Contact`].
     pub pairing: Option<Pairing>,
-    /// As in [`Contact`].
+    /// Gap as in [`Contact`].
     pub gap: Option<Number>,
-    /// As in [`Contact`].
+    /// Interference as in [`Contact`].
     pub interference: bool,
-    /// As in [`Contact`].
+    /// Friction as in [`Contact`].
     pub friction: Option<Friction>,
-    /// As in [`Contact`].
+    /// Stiffness as in [`Contact`].
     pub stiffness: Option<ContactStiffness>,
 }
 

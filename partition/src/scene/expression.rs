@@ -121,7 +121,7 @@ impl Expression {
         &self.text
     }
 
-    /// Why it has no value in the plane: it names z.
+    /// Fault of the expression in the plane: it names z.
     pub fn fault_in_plane(&self) -> Option<String> {
         let at = self.z_at?;
         Some(located(

@@ -9,7 +9,7 @@ use crate::contact_point::Law;
 /// The bound of tangential forces; numbers of at least 0, or expressions of position.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Friction {
-    /// `tresca`: a given bound (Pa).
+    /// `tresca`: bound of Tresca friction (Pa).
     Given {
         /// The bound (Pa).
         bound: Number,
@@ -36,7 +36,7 @@ impl Friction {
         match (coefficient, cohesion, bound) {
             (None, None, None) => Ok(None),
             (Some(_), _, Some(_)) => Err(
-                "'friction' (Coulomb's) and 'tresca' (a given bound) are both there; expected one of them"
+                "'friction' (Coulomb's) and 'tresca' (Tresca's) are both there; expected one of them"
                     .into(),
             ),
             (None, Some(_), _) => Err(
@@ -51,7 +51,7 @@ impl Friction {
         }
     }
 
-    /// Why it is no law in space of `dim` dimensions, and the key to say so at.
+    /// Fault of the law in space of `dim` dimensions, and the key that has it.
     pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         let numbers = match self {
             Self::Given { bound } => [Some(("tresca", bound)), None],

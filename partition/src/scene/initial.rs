@@ -1,4 +1,4 @@
-//! Stress that a body has before it is loaded, and heat.
+//! Initial stress and thermal strain of a body.
 
 use serde::Deserialize;
 
@@ -11,7 +11,7 @@ use super::number::{Constant, Number, OR_IN_SPACE};
 pub struct InitialStress(Vec<Number>);
 
 impl InitialStress {
-    /// Why it is no stress in space of `dim` dimensions.
+    /// Fault of the stress in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize, plane: Option<PlaneState>) -> Option<String> {
         let (count, order) = match plane {
             None => (6, "xx, yy, zz, yz, xz, xy"),

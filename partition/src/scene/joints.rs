@@ -1,4 +1,4 @@
-//! Pretensions in load steps, and what is wrong with them and with cyclic symmetries.
+//! Pretensions in load steps, and faults of these and of cyclic symmetries.
 
 use std::collections::BTreeSet;
 
@@ -72,7 +72,7 @@ impl Scene {
         None
     }
 
-    /// Why step `index` can't ask for a change of a pretension.
+    /// Reason for which step `index` can't ask for a change of a pretension.
     fn wrong_change_of(
         &self,
         index: usize,

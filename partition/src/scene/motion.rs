@@ -193,7 +193,7 @@ impl Scene {
 }
 
 impl ConstantVector {
-    /// Why it is no vector of space of `dim` dimensions.
+    /// Fault of the vector in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         (self.dim != dim).then(|| super::number::expected_components(dim))
     }

@@ -35,7 +35,7 @@ impl Number {
         matches!(self, Self::Constant(_))
     }
 
-    /// Why it has no value in space of `dim` dimensions.
+    /// Fault of the number in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         match self {
             Self::Varying(expression) if dim == 2 => {
@@ -158,7 +158,7 @@ impl Vector {
         self.0.len()
     }
 
-    /// Why it is no vector of space of `dim` dimensions.
+    /// Fault of the vector in space of `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         match self.dim() == dim {
             true => self.0.iter().find_map(|number| number.fault(dim)),

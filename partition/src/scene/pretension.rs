@@ -35,7 +35,7 @@ pub enum Tightening {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "StepKeys")]
 pub enum PretensionChange {
-    /// Another force (N); what was locked is no more.
+    /// Another force (N), which ends a lock.
     Force(f64),
     /// Another shortening (m).
     Shortening(f64),

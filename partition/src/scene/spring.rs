@@ -11,7 +11,7 @@ use crate::element::geometry::length;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "SpringKeys")]
 pub enum AnySpring {
-    /// To the ground.
+    /// Spring to the ground.
     ToGround(Spring),
     /// Between points.
     Between(SpringBetween),

@@ -46,16 +46,16 @@ pub struct LoadStep {
     pub coupling: BTreeMap<String, CouplingLoads>,
     /// The pretensions of these names from here on.
     pub pretension: BTreeMap<String, PretensionChange>,
-    /// In place of all tractions of the scene.
+    /// Tractions in place of all those of the scene.
     #[serde(deserialize_with = "list")]
     pub traction: Option<Vec<Traction>>,
-    /// In place of all its pressures.
+    /// Pressures in place of all those of the scene.
     #[serde(deserialize_with = "list")]
     pub pressure: Option<Vec<Pressure>>,
-    /// In place of all its forces on nodes.
+    /// Forces on nodes in place of all those of the scene.
     #[serde(deserialize_with = "list")]
     pub force: Option<Vec<Force>>,
-    /// In place of all its displacements: others at the same nodes along the same axes.
+    /// Displacements in place of all those of the scene: others at the same nodes along the same axes.
     #[serde(deserialize_with = "list")]
     pub displacement: Option<Vec<Displacement>>,
 }
@@ -64,25 +64,25 @@ pub struct LoadStep {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields, default)]
 pub struct Scale {
-    /// Of body forces.
+    /// Scale of body forces.
     #[serde(deserialize_with = "number")]
     pub body_force: f64,
-    /// Of tractions.
+    /// Scale of tractions.
     #[serde(deserialize_with = "number")]
     pub traction: f64,
-    /// Of pressures.
+    /// Scale of pressures.
     #[serde(deserialize_with = "number")]
     pub pressure: f64,
-    /// Of forces on nodes.
+    /// Scale of forces on nodes.
     #[serde(deserialize_with = "number")]
     pub force: f64,
-    /// Of prescribed displacements, those of obstacles among them.
+    /// Scale of prescribed displacements, those of obstacles among them.
     #[serde(deserialize_with = "number")]
     pub displacement: f64,
-    /// Of initial stresses.
+    /// Scale of initial stresses.
     #[serde(deserialize_with = "number")]
     pub initial_stress: f64,
-    /// Of temperatures.
+    /// Scale of temperatures.
     #[serde(deserialize_with = "number")]
     pub thermal: f64,
 }

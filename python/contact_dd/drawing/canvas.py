@@ -40,7 +40,7 @@ def canvas(title, units, points):
 
 
 def deformation_of(result, scale):
-    """What deformed shapes show, in words."""
+    """Scale of the deformed shapes, in words."""
     since = f", since step {result.since}" if result.since else ""
     return f"deformation × {scale:g}{since}"
 

@@ -17,7 +17,7 @@ def carried(tables):
 
 
 def turned(table):
-    """A table, or a copy with its sides exchanged where it is side b whose nodes have the conditions."""
+    """A table, or a copy with its sides swapped where the nodes of side b have the conditions."""
     on_b = (table["node_a"] == -1) & (table["node_b"] != -1)
     if not on_b.any():
         return table

@@ -17,16 +17,16 @@ ON_THE_CUT = 1e-6
 
 @dataclass
 class Chart:
-    """Where conditions are on paper."""
+    """Places of the conditions on paper."""
 
     rows: np.ndarray
     """Which ones are seen."""
     x: np.ndarray
     y: np.ndarray
     labels: tuple[str, str]
-    """What the axes are."""
+    """Titles of the axes."""
     radius: float | None = None
-    """By which an angle becomes x, where a side is unrolled."""
+    """Factor from an angle to x, where a side is unrolled."""
 
 
 def chart_of(table):

@@ -1,4 +1,4 @@
-"""What can be drawn: numbers that are finite, as those of a run that failed may not be."""
+"""Finite numbers, which alone can be drawn: those of a run that failed may not be."""
 
 import numpy as np
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from contact_dd.drawing.carried import carried
 
-# What of the size nobody sees.
+# Part of the size that can't be seen.
 INVISIBLE = 0.002
 
 # Closed conditions of a contact that are looked at: of more, every so many.

@@ -10,7 +10,7 @@ from contact_dd.drawing.units import si
 STATES = {"strain": "in plane strain", "stress": "in plane stress", "axisymmetric": "around an axis", None: "in space"}
 # Estimated errors of stresses up to which these are good, and usable.
 GOOD, USABLE = 0.01, 0.05
-# Certificates of what is solved to round-off.
+# Certificates of results that are solved to round-off.
 ROUND_OFF = 1e-12
 
 
@@ -56,7 +56,7 @@ def warnings(report):
 
 
 def sentences(report, result, units):
-    """What an engineer would write of the run."""
+    """Sentences that an engineer would write of the run."""
     found = [
         solved(report, result), stresses(result, units), pressures(report, result, units), balance(report, units),
         trust(report),
@@ -65,7 +65,7 @@ def sentences(report, result, units):
 
 
 def solved(report, result):
-    """What was solved."""
+    """Sentence on the problem."""
     steps = f" in {result.steps} load steps" if result.steps > 1 else ""
     materials = len(np.unique(result.cell_data["Material"])) if "Material" in result.cell_data else 1
     contacts = len(report["contacts"])
@@ -104,7 +104,7 @@ def place(result, node, units):
 
 
 def pressures(report, result, units):
-    """What contacts carry."""
+    """Sentence on forces of contacts."""
     contacts = [contact for contact in report["contacts"] if contact.get("kind") not in WITHOUT_PRESSURE]
     found = [contact for contact in contacts if contact["largest_pressure"]]
     if not contacts:
@@ -131,7 +131,7 @@ def pressures(report, result, units):
 
 
 def balance(report, units):
-    """What supports carry, and whether forces balance."""
+    """Sentence on reactions, and the balance of forces."""
     off = report["certificate"].get("force_balance")
     words = "Loads and reactions balance" + ("" if off is None else f" to {short(off)} of the forces")
     sums = [sum(one["force"][k] or 0 for one in report["reactions"]) for k in range(3)] if report["reactions"] else []
@@ -144,7 +144,7 @@ def balance(report, units):
 
 
 def trust(report):
-    """How far the result is to be trusted."""
+    """Sentence on the accuracy of the result."""
     if report["status"] != "converged":
         return "The run did not converge: its numbers show where the trouble is, and are not to be used."
     equilibrium = report["certificate"]["equilibrium"]

@@ -262,7 +262,7 @@ def band(*corners):
 
 
 def entries(sides, largest, has_moved, unit):
-    """What the legend says of pressures, friction and deformation."""
+    """Legend of pressures, friction and deformation."""
     found = []
     if has_moved:
         found.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))

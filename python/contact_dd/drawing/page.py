@@ -21,7 +21,7 @@ from contact_dd.drawing.view import view
 
 PHASES = ["read", "assemble", "factorize", "interface", "sweeps", "recover", "write"]
 COLORS = ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]
-# What the checks of the solution mean, and what is demanded of them, where something is.
+# Meanings of the checks of the solution, and their limits, where they have one.
 CERTIFICATE = {
     "equilibrium": (1e-14, "forces at the nodes balance, relative to their terms"),
     "equilibrium_of_load": (1e-6, "the same, relative to the largest load"),
@@ -77,7 +77,7 @@ def problem_of(report):
 
 
 def forces(found, unit):
-    """Forces with their units; what is round-off of the largest is nothing."""
+    """Forces with their units; round-off of the largest counts as 0."""
     largest = max((abs(f) for one in found for f in one["force"] if f is not None), default=0)
     return [
         [si(f if f is None or abs(f) > 1e-9 * largest else 0, unit) for f in one["force"][: len(force_head("", found))]]
@@ -302,7 +302,7 @@ def friction_head(report):
 
 
 def friction_of(part, report, units):
-    """How many conditions of a contact or a step slip, and friction's work, where any contact has friction."""
+    """Number of conditions of a contact or a step that slip, and friction's work, where any contact has friction."""
     friction = part.get("friction")
     if friction:
         return [friction["slipping"], si(friction["dissipated_work"], units.work)]
@@ -371,7 +371,7 @@ def most(quantity):
 
 
 def bars(results):
-    """How far off pressures and forces are, by comparison of meshes."""
+    """Errors of pressures and forces, by comparison of meshes."""
     if len(results) == 1:
         return ""
     found = compare(results)

@@ -25,7 +25,7 @@ SHADE = 0.72
 
 @dataclass
 class Camera:
-    """Where the eye is: above the horizon and around the vertical (degrees), far away."""
+    """Position of the eye: above the horizon and around the vertical (degrees), far away."""
 
     elevation: float
     azimuth: float
@@ -84,7 +84,7 @@ def grouped(faces):
 
 
 class Raster:
-    """A picture of faces: what is nearest to the eye at every pixel."""
+    """A picture of faces: the one nearest to the eye at every pixel."""
 
     def __init__(self, camera, points, width):
         self.frame = camera.axes()

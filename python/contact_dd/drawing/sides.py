@@ -14,7 +14,7 @@ DIRECTION = (
 
 @dataclass
 class Side:
-    """What a contact does along its side a."""
+    """Pressures and gaps of a contact along its side a."""
 
     pieces: list
     """Of each piece the rows in their order, and the arc length of each."""

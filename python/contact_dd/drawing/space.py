@@ -181,7 +181,7 @@ class Solid:
         return (least < -SAME_WAY) & (most > SAME_WAY)
 
     def pictures(self):
-        """What there is to draw, by name."""
+        """Drawings, by name."""
         drawn = {"displacement": self.displacement}
         if self.has_stress():
             drawn["von_mises"] = self.von_mises

@@ -204,7 +204,7 @@ def draw(axes, paper, conditions):
 
 
 def entries(conditions, dimension):
-    """What the legend says of the symbols."""
+    """Legend of the symbols."""
     found = []
 
     def add(marker, face, edge, words):

@@ -8,7 +8,7 @@ from matplotlib.ticker import EngFormatter, FuncFormatter
 
 @dataclass(frozen=True)
 class Units:
-    """Their symbols. Units that have a prefix themselves are shown without another."""
+    """Symbols of the units. Units that have a prefix themselves are shown without another."""
 
     length: str = "m"
     stress: str = "Pa"

@@ -68,7 +68,7 @@ def view(result, scale, picture):
 
 
 def contents(result, scale):
-    """What the view holds, and its numbers, packed."""
+    """Contents of the view, and its numbers, packed."""
     numbers = Numbers()
     steps = steps_of(result)
     for one in steps:

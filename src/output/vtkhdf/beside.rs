@@ -42,7 +42,7 @@ pub struct FileBeside {
     placement: GridPlacement,
     datasets: Vec<u64>,
     step: usize,
-    /// Of what was written of each dataset in this load step.
+    /// Digest of each dataset as written in this load step.
     digests: Vec<u64>,
     file: File,
     /// Final name.

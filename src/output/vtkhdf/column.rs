@@ -87,7 +87,7 @@ pub(super) struct Written {
     rows: usize,
     /// Number of load steps that it has rows for.
     steps: Option<usize>,
-    /// Of what was written in this load step.
+    /// Digest of the values written in this load step.
     digest: u64,
 }
 
@@ -121,7 +121,7 @@ impl Written {
         std::mem::take(&mut self.digest)
     }
 
-    /// As it lies in the file.
+    /// The column as it lies in the file.
     pub(super) fn column(&self) -> Result<Column> {
         Column::new(&self.dataset, self.rows, self.steps)
     }

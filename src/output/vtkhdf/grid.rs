@@ -106,7 +106,7 @@ pub(super) struct Grid {
     datasets: Vec<Dataset>,
     placement: GridPlacement,
     written: Vec<bool>,
-    /// Of what was written of each dataset in this load step.
+    /// Digest of each dataset as written in this load step.
     digests: Vec<u64>,
 }
 

@@ -17,7 +17,7 @@ pub struct Layout {
     pub times: Vec<f64>,
     /// True if there are stresses.
     pub stress: bool,
-    /// True if bodies or contacts come or go.
+    /// True if load steps add or remove bodies or contacts.
     pub presence: bool,
     /// True if there are stresses and quantities.
     pub quantities: bool,

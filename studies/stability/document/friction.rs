@@ -88,7 +88,7 @@ impl Kind {
         "
 ## {}
 
-{} random scenes with friction{}, seeds {first} to {} (`scripts/stress {} --only SEED`): {} with given bounds of
+{} random scenes with friction{}, seeds {first} to {} (`scripts/stress {} --only SEED`): {} with Tresca bounds of
 1e-10 to 100 times the pressure, {} with coefficients up to {USUAL}, {} with coefficients up to 1.5, some with cohesion;
 {} with 1 to 5 load steps, in which loads along the joints {}; {} also run on 2 to 4 ranks.
 
@@ -112,7 +112,7 @@ impl Kind {
         for family in self.families {
             line(family.name, &|one| one.family == family.name);
         }
-        line("given bounds", &given);
+        line("Tresca bounds", &given);
         line("μ ≤ 0.5", &upto);
         line("μ > 0.5", &above);
         line("without equilibrium", &|one| {

@@ -1,38 +1,57 @@
 //! The page for troubleshooting: the messages that it explains are those of the programs, and it explains them all.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use contact_dd_partition::explanation::Explanation;
 
 use super::page::root;
 
 const PAGE: &str = "docs/troubleshooting.md";
 
-/// Openings of calls whose next string is a message.
-const CALLS: [&str; 8] = [
+/// Openings of calls and statements whose next string is a message.
+const CALLS: [&str; 22] = [
     "Failure::internal(",
     "Failure::input(",
     "Failure::ill_posed(",
     "Failure::interrupted(",
     "InputError::new(",
+    "InputError::about(",
+    "MeshError::new(",
+    "Error::custom(",
+    ".error(",
+    "refuse(",
+    "refused(",
+    "failure(",
+    "fails(",
+    "Err(",
+    ".ok_or(",
+    ".ok_or_else(|| ",
+    "let message = ",
+    "notes).add(",
     "NotConverged(",
     "warnings.push(",
     "fell_back(",
+    "#[error(",
 ];
 
-/// Folders whose messages are explained one by one; those of mesh and problem files explain themselves.
-const EXPLAINED: [&str; 4] = [
-    "src",
-    "partition/src/model",
-    "partition/src/decompose",
-    "partition/src/scene",
-];
+/// Words that an error, and nothing else, has in any call.
+const EXPECTED: &str = "expected ";
+
+/// Folders of the two programs.
+const EXPLAINED: [&str; 2] = ["src", "partition/src"];
 
 /// A message with less of its own words is made of others.
 const SHORTEST: usize = 12;
 
+/// A reason that is a message of its own, and ends the one that takes it.
+const REASON: &str = "{why}";
+
 /// A test: the first column of tables of messages quotes the sources.
 pub fn quotes_messages() {
-    let sources: String = (sources("src").chain(sources("partition/src")))
+    let sources: String = (EXPLAINED.iter())
+        .flat_map(|folder| sources(folder))
         .chain(python_sources("python/contact_dd"))
         .collect();
     let quoted = quoted();
@@ -43,27 +62,33 @@ pub fn quotes_messages() {
     assert!(wrong.is_empty(), "{PAGE}: no program says {wrong:#?}");
 }
 
-/// A test: messages of the programs have entries.
+/// A test: messages of the programs have entries, whose names the programs print.
 pub fn explains_every_message() {
-    let quoted = quoted();
     let messages: Vec<String> = (EXPLAINED.iter())
         .flat_map(|folder| sources(folder))
         .flat_map(|source| messages(&source))
         .collect();
-    assert!(messages.len() > 50, "{} messages", messages.len());
+    assert!(messages.len() > 500, "{} messages", messages.len());
     let without: Vec<_> = (messages.iter())
-        .filter(|message| !quoted.iter().any(|part| message.contains(part.as_str())))
+        .filter(|message| !message.contains(REASON) && Explanation::of(message).is_none())
         .collect();
     assert!(without.is_empty(), "{PAGE} has no entry for {without:#?}");
 }
 
-/// A test: messages are found in calls, without their comments and continuations.
+/// A test: messages are found in calls, without their comments and continuations, and by what they expect.
 pub fn finds_messages() {
     let source = "// warnings.push(\"no message\")\n\
         warnings.push(format!(\n \"body '{}' isn't held: \\\n   hold it\", name));\n\
         InputError::new(reason); let other = \"no message at all\";\n\
+        InputError::new(why).in_file(\"no message either\");\n\
+        let what = \"a side; expected two sides\"; InputError::new(what);\n\
         InputError::new(format!(\"{what}: {reason}\"))";
-    assert_eq!(messages(&joined(source)), ["body '{}' isn't held: hold it"]);
+    let found: Vec<String> = messages(&joined(source)).into_iter().collect();
+    let expected = [
+        "a side; expected two sides",
+        "body '{}' isn't held: hold it",
+    ];
+    assert_eq!(found, expected);
 }
 
 /// The parts between dots of what the page quotes.
@@ -84,23 +109,38 @@ fn quoted() -> Vec<String> {
     quoted
 }
 
-/// The messages of a source: strings with words of their own in calls that take one.
-fn messages(source: &str) -> Vec<String> {
+/// The messages of a source, each once: strings with words of their own in calls that take one, or that name what was
+/// expected.
+fn messages(source: &str) -> BTreeSet<String> {
     let calls = CALLS.iter().flat_map(|call| source.match_indices(call));
-    let strings = calls.filter_map(|(at, call)| {
+    let in_calls = calls.filter_map(|(at, call)| {
         let rest = &source[at + call.len()..];
         let start = rest.find('"')?;
-        let is_here = !rest[..start].contains(';');
         let string = &rest[start + 1..];
-        is_here.then(|| string[..string.find('"').unwrap_or(0)].replace('\u{1}', "\""))
+        is_inside(&rest[..start]).then(|| &string[..string.find('"').unwrap_or(0)])
     });
+    // Within a line, as a quote that a comment leaves open would turn all that follows inside out.
+    let strings = (source.lines()).flat_map(|line| line.split('"').skip(1).step_by(2));
+    let expecting = strings.filter(|string| string.contains(EXPECTED));
     let has_words = |message: &String| {
         let fixed = message
             .split('{')
             .map(|part| part.split_once('}').map_or(part, |part| part.1));
         fixed.map(|part| part.trim().len()).max() >= Some(SHORTEST)
     };
-    strings.filter(has_words).collect()
+    let all = in_calls.chain(expecting);
+    all.map(|message| message.replace('\u{1}', "\""))
+        .filter(has_words)
+        .collect()
+}
+
+/// True if a text begins within a call and doesn't leave it.
+fn is_inside(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().all(|c| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        depth >= 0 && c != ';'
+    })
 }
 
 /// The sources in a folder, without their tests.
@@ -125,7 +165,8 @@ fn python_sources(folder: &str) -> impl Iterator<Item = String> {
         .map(|path| fs::read_to_string(path).unwrap())
 }
 
-/// A source without comments and continued strings; quotes within strings as U+0001.
+/// A source without comments and continued strings; quotes within strings as U+0001, other escapes and quotes that are
+/// characters as U+0002.
 fn joined(source: &str) -> String {
     let code = source
         .lines()
@@ -140,7 +181,8 @@ fn joined(source: &str) -> String {
             }
         }
     }
-    text.replace("\\\"", "\u{1}")
+    let plain = text.replace("\\\\", "\u{2}").replace("'\"'", "\u{2}");
+    plain.replace("\\\"", "\u{1}")
 }
 
 fn files_in(folder: &Path, files: &mut Vec<PathBuf>) {

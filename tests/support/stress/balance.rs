@@ -4,7 +4,7 @@
 //! rigid motions R of all bodies. Either they do, or a motion z exists that supports and contact
 //! allow, D R z = 0 and B R z ≤ 0, and that the load drives, fᵀ R z > 0; both are checked.
 //!
-//! With friction there are tangential forces, too: |λ_t| ≤ μ λ + b, with b > 0 for a given bound and for cohesion,
+//! With friction there are tangential forces, too: |λ_t| ≤ μ λ + b, with b > 0 for a Tresca bound and for cohesion,
 //! for which all is taken to be closed. In space discs are polygons: one inside for what holds, one around for what
 //! fails. What rigid bodies can't balance no elastic ones can; what they can, elastic ones may still not, as their
 //! normal forces aren't free to choose.

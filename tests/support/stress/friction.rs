@@ -10,7 +10,7 @@ use super::{Family, cracks, inclusions, matching, towers, uneven};
 /// The laws of a scene's contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Given bounds.
+    /// Tresca friction.
     Given,
     /// Coulomb's friction with coefficients of this size at most.
     Coulomb(f64),
@@ -22,7 +22,7 @@ pub struct Friction {
     pub law: Law,
     /// Size of the pressures (Pa).
     load: f64,
-    /// Orders of magnitude of given bounds, or of cohesion if any, below and above the load.
+    /// Orders of magnitude of Tresca bounds, or of cohesion if any, below and above the load.
     orders: Option<[f64; 2]>,
 }
 

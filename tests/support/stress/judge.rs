@@ -13,7 +13,7 @@ use super::super::solution::Solution;
 use super::answer::{Answer, dot};
 use super::rigid::Bodies;
 
-/// Limits of an answer that is right; the first three stand ten times above what is promised.
+/// Limits of an answer that is right; the first three stand ten times above their targets.
 const BACKWARD_ERROR: f64 = 1e-13;
 const PENETRATION: f64 = 1e-13;
 const TENSION: f64 = 1e-11;

@@ -9,7 +9,7 @@ use std::str::FromStr;
 use super::friction::Law;
 use super::trial::{Trial, Verdict};
 
-/// Coefficient of friction up to which more is promised.
+/// Coefficient of friction up to which the target is higher.
 const USUAL: f64 = 0.5;
 /// The columns of a line.
 const COLUMNS: [&str; 12] = [

@@ -28,7 +28,7 @@ use self::exact::Exact;
 use super::solution::Solution;
 use super::solver;
 
-/// The figure of the certificate that every answer has to keep, and what it is promised to be.
+/// The figure of the certificate that every answer has to keep, and its target.
 const BACKWARD_ERROR: &str = "backward error";
 const CERTIFIED: Gate = Gate::AtMost(BACKWARD_ERROR, 1e-14);
 

@@ -25,7 +25,7 @@ pub(in crate::deck) struct SceneCoupling {
     /// A point and the direction of the axis around which these turn.
     axis: Option<([f64; 3], [f64; 3])>,
     dim: usize,
-    /// By step.
+    /// Loads and supports of the reference node by step.
     acting: Vec<AtReference>,
 }
 
@@ -34,7 +34,8 @@ impl Couplings {
     /// none of `names`.
     ///
     /// # Errors
-    /// A reference node that is one of a body or turned by one of `systems`, nodes of no body, supports that come or go.
+    /// A reference node that is one of a body or turned by one of `systems`, nodes of no body, supports that begin or end
+    /// with a step.
     pub(in crate::deck) fn in_scene(
         &self,
         groups: &mut Groups,
@@ -199,7 +200,7 @@ impl Coupling {
             let held = |at: &AtReference| at.held.map(|value| value.is_some());
             if acting.first().is_some_and(|first| held(first) != held(&at)) {
                 let message = format!(
-                    "supports of the reference node {} come or go in this step, which isn't supported yet; expected the same \
+                    "supports of the reference node {} begin or end in this step, which isn't supported yet; expected the same \
                      degrees of freedom in every step",
                     groups.tag(self.node)
                 );

@@ -9,9 +9,9 @@ use crate::model::Model;
 pub(super) struct Owners {
     /// Number of subdomains.
     pub count: usize,
-    /// For every node its subdomains, ascending, with its local number.
+    /// Subdomains of every node, ascending, with its local number.
     pub of: Lists<(u32, u32)>,
-    /// For every node its number on Γ.
+    /// Number of every node on Γ.
     pub interface: Vec<Option<u32>>,
     /// Number of nodes of Γ.
     pub interface_nodes: usize,

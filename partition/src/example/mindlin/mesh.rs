@@ -25,7 +25,7 @@ const FOOT: f64 = 0.5;
 const COLUMNS: [usize; 5] = [1, 8, 20, 8, 1];
 const ROWS: usize = 12;
 
-/// From 0 to 1 so slowly at first that cells grow out of the smallest ones.
+/// A function from 0 to 1 that rises so slowly at first that cells grow out of the smallest ones.
 fn slow_start(s: f64) -> f64 {
     (4.0 * s).sinh() / 4.0_f64.sinh()
 }

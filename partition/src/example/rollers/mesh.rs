@@ -35,7 +35,7 @@ const ACROSS: usize = 14;
 /// Position of each roller, and of its axis (m).
 const ROLLERS: [(&str, f64); 3] = [("left", -APART), ("middle", 0.0), ("right", APART)];
 
-/// From 0 to 1, slowly at first.
+/// A function from 0 to 1 that rises slowly at first.
 fn slow_start(s: f64) -> f64 {
     (4.2 * s).sinh() / 4.2_f64.sinh()
 }

@@ -77,7 +77,7 @@ struct Open<'a> {
 
 enum Kind {
     Part,
-    /// Where it lies, and the name of its part in capitals.
+    /// Position of an instance, and the name of its part in capitals.
     Instance(Position, String),
 }
 
@@ -204,7 +204,7 @@ impl<'a> Assembly<'a> {
                 };
                 let mut own = None;
                 if !open.scope.is_empty() {
-                    // What the part's notes say is said with the part.
+                    // Notes of the part stand with the part.
                     let own = own.insert(part.clone());
                     own.notes = Notes::default();
                     open.scope.read(source, own)?;

@@ -42,7 +42,7 @@ pub(crate) struct Data {
 
 /// A keyword and its data.
 pub(crate) struct Block {
-    /// In capitals, with single blanks.
+    /// Keyword in capitals, with single blanks.
     pub(crate) keyword: String,
     /// Names in capitals, and values.
     parameters: Vec<(String, String)>,

@@ -1,4 +1,4 @@
-//! Nodes and elements of a part, or of a deck without parts, and what can be said of them.
+//! Nodes and elements of a part, or of a deck without parts, and their faults.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -200,10 +200,7 @@ impl Deck {
                         element.tag,
                         source.place(data.place)
                     );
-                    (self.notes).add(
-                        "what stands behind the nodes of an element is left out",
-                        item,
-                    );
+                    (self.notes).add("entries behind the nodes of an element are left out", item);
                     break;
                 }
                 let tag = source.tag(data.place, item, "the number of a node")?;

@@ -82,7 +82,7 @@ pub(super) fn has_no_volume(name: &str) -> bool {
     WITHOUT_VOLUME.iter().any(|known| name.starts_with(known))
 }
 
-/// The types of cells, to say what is expected.
+/// The types of cells that messages expect.
 pub(super) fn known() -> String {
     let names = TYPES[..OF_CELLS].iter().flat_map(|(names, _)| *names);
     names.copied().collect::<Vec<_>>().join(", ")

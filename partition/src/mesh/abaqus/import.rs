@@ -1,4 +1,4 @@
-//! From a deck to a mesh: cells, the nodes they use, and the groups.
+//! Import of a deck: cells, the nodes they use, and the groups.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

@@ -12,7 +12,7 @@ struct Tally {
     count: usize,
 }
 
-/// Kinds of what is left out, in words, and what is of each.
+/// Kinds of things that are left out, in words, and the things of each kind.
 #[derive(Clone, Default)]
 pub(crate) struct Notes(BTreeMap<String, Tally>);
 

@@ -1,4 +1,4 @@
-//! Where an instance of a part lies.
+//! Position of an instance of a part.
 
 use super::blocks::{Block, Source};
 use crate::element::geometry::{cross, difference, length};

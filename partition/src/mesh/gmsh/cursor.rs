@@ -6,9 +6,9 @@ use crate::{magnitude, name};
 /// Encoding of the numbers of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
-    /// As words between blanks.
+    /// Words between blanks.
     Ascii,
-    /// As they lie in memory.
+    /// Numbers as they lie in memory.
     Binary {
         /// Most significant byte first.
         big_endian: bool,
@@ -47,7 +47,7 @@ impl<'a> Cursor<'a> {
         self.encoding = encoding;
     }
 
-    /// An error at what was read last: the line of an ASCII file, section and byte of a binary one.
+    /// An error at the last value read: the line of an ASCII file, section and byte of a binary one.
     pub(super) fn error(&self, message: impl std::fmt::Display) -> InputError {
         self.error_at(self.last, message)
     }
@@ -192,7 +192,7 @@ impl<'a> Cursor<'a> {
         self.checked(what, count, values)
     }
 
-    /// Checks that `count` things of at least `values` numbers each fit into what is left.
+    /// Checks that `count` things of at least `values` numbers each fit into the rest of the file.
     pub(super) fn checked(
         &self,
         what: &str,

@@ -1,4 +1,4 @@
-//! From what a file holds to a mesh: cells, facets, groups, and only the nodes that cells use.
+//! Import of a file: cells, facets, groups, and only the nodes that cells use.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -142,7 +142,7 @@ fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
     Ok(Distinct { elements, groups })
 }
 
-/// For every element the first one that has the same nodes, in any order.
+/// First element that has the same nodes as each, in any order.
 fn first_of_same(listed: &[Listed]) -> Vec<u32> {
     let nodes = listed.iter().flat_map(|e| e.nodes).max();
     let nodes = nodes.map_or(0, |&n| n as usize + 1);

@@ -138,8 +138,8 @@ impl Contacts<'_> {
             }
             (are_both, _) => {
                 warnings.extend(are_both.then(|| format!(
-                    "{what}: supports hold facets of both sides along other directions; what they hold of side a isn't tied; \
-                     expected supports of one side"
+                    "{what}: supports hold facets of both sides along other directions; nodes of side a that they hold \
+                     aren't tied; expected supports of one side"
                 )));
                 of_sides(a, names)?.points
             }

@@ -1,4 +1,4 @@
-//! Warnings of contacts that are less than what is likely meant.
+//! Warnings of contacts that are hardly meant as they are.
 
 use std::collections::HashMap;
 

@@ -102,7 +102,7 @@ impl Diagnostics<'_> {
         self.contacts.iter().filter_map(of_contact).collect()
     }
 
-    /// Body forces, initial stresses and heat.
+    /// Body forces, initial stresses and thermal strains.
     fn of_bodies(&self) -> Vec<Estimate> {
         let mut first_cells = vec![None; self.scene.bodies.len()];
         for (cell, &body) in self.bodies.cell_body.iter().enumerate() {

@@ -14,8 +14,7 @@ pub(super) type Kind = (ElementKind, Option<usize>);
 /// The functions of the facets of a kind, as rows of coefficients of its shape functions. Those of a basis sum
 /// to 1, as their duals do.
 pub(super) struct Bases {
-    /// From one function for each node to one for each corner, which tells apart what a small part of the
-    /// facet can.
+    /// Bases from one function for each node to one for each corner, which a small part of the facet can tell apart.
     pub levels: Vec<DMatrix<f64>>,
     /// ∫ of the functions of the nodes over a whole facet, relative to its measure.
     pub shares: Vec<f64>,

@@ -70,7 +70,7 @@ pub(super) struct Cover {
 }
 
 impl Cover {
-    /// Nothing yet of a facet of so many nodes.
+    /// Empty cover of a facet of so many nodes.
     pub fn new(nodes: usize) -> Self {
         Self {
             measure: 0.0,

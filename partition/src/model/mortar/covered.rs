@@ -17,6 +17,6 @@ pub(super) struct Covered<'a> {
 pub(super) struct Part {
     /// Shape functions as rows of coefficients of those of the facet.
     pub functions: DMatrix<f64>,
-    /// Integrals over what is covered.
+    /// Integrals over the covered part.
     pub cover: Cover,
 }

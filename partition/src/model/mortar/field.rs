@@ -53,8 +53,8 @@ impl<'a> NormalField<'a> {
         sum.map(|c| c / size)
     }
 
-    /// In the plane n(ξ) × (x − x(ξ)) and its derivative by ξ: on which side of the line at ξ the point x lies,
-    /// zero on it (m).
+    /// Side of the line at ξ on which the point x lies, in the plane: n(ξ) × (x − x(ξ)) and its derivative by ξ, zero
+    /// on the line (m).
     pub fn aside(&self, xi: f64, x: [f64; 3]) -> [f64; 2] {
         let SurfaceFacet { kind, at, .. } = self.facet;
         let normal = kind.position(&self.normals, [xi, 0.0, 0.0]);

@@ -40,7 +40,7 @@ pub(super) enum Weight {
 }
 
 impl Weight {
-    /// ∫ ψ over what is covered (m, in space m²).
+    /// ∫ ψ over the covered part (m, in space m²).
     fn integral(&self, cover: &Cover) -> f64 {
         match self {
             Self::One => cover.measure,
@@ -48,7 +48,7 @@ impl Weight {
         }
     }
 
-    /// ∫ ψ N of a node of the facet over what is covered (m, in space m²).
+    /// ∫ ψ N of a node of the facet over the covered part (m, in space m²).
     fn at_node(&self, node: u32, on: &Covered) -> f64 {
         let Some(place) = on.facet.nodes.iter().position(|&own| own == node) else {
             return 0.0;
@@ -135,7 +135,7 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
 }
 
 impl Covered<'_> {
-    /// The integrals of the functions of what is covered.
+    /// The integrals of the functions over the covered part.
     fn integrals(&self, basis: &DMatrix<f64>) -> Vec<f64> {
         let cover = self.part.as_ref().map_or(&self.cover, |part| &part.cover);
         lift(basis, &cover.integrals)

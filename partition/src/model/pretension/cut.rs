@@ -185,8 +185,8 @@ fn is_of_points(group: &Group, mesh: &Mesh) -> bool {
     group.dim + 1 < mesh.dim
 }
 
-/// Of the cells `around` a cut those on the side of the second cell of the first of `pairs`, which the facets part. `None`
-/// where they don't part the cells into two.
+/// Cells `around` a cut on the side of the second cell of the first of `pairs`. `None` where the facets don't part the
+/// cells into two.
 fn behind(topology: &Topology, pairs: &[[u32; 2]], around: &[u32]) -> Option<BTreeSet<u32>> {
     let place: BTreeMap<u32, u32> = around.iter().copied().zip(0..).collect();
     let parted: BTreeSet<[u32; 2]> = pairs.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();

@@ -107,7 +107,7 @@ impl SurfaceFacet {
         self.kind.along().iter().map(|&i| self.nodes[i])
     }
 
-    /// ∫ of the shape function of a node over it, of quadratic faces the function that is [`positive`]; 0 of one that
+    /// Integral of the shape function of a node over it, of quadratic faces that of [`Blending::positive`]; 0 of a node that
     /// isn't its own.
     pub fn tributary_area(&self, node: u32) -> f64 {
         let Some(place) = self.nodes.iter().position(|&own| own == node) else {

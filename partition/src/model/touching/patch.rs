@@ -34,7 +34,7 @@ impl Patch {
     }
 }
 
-/// The pairs of facets beside a pair: one or both of its facets exchanged for a neighbour.
+/// The pairs of facets beside a pair: one or both of its facets replaced by a neighbour.
 pub(super) fn beside(
     neighbours: &[Vec<usize>],
     [a, b]: [usize; 2],

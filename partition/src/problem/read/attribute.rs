@@ -1,4 +1,4 @@
-//! An attribute that knows its name: reads one value and says what is wrong with it.
+//! An attribute with its name: reads one value, and names it in errors.
 
 use hdf5::types::TypeDescriptor;
 use toml::Value;

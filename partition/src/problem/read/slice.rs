@@ -56,7 +56,7 @@ impl<T> Slice<T> {
         InputError::new(format!("dataset {}, row {row}: {what}", self.name))
     }
 
-    /// Checks one value after the other; `law` says what was expected.
+    /// Checks one value after the other; an error of `law` is the expectation.
     fn check(&self, law: impl Fn(&T) -> Result<(), String>) -> Result<(), InputError> {
         let mut values = self.values.iter().enumerate();
         let wrong = values.find_map(|(at, value)| Some((at, law(value).err()?)));

@@ -18,12 +18,12 @@ impl Counts {
         counts
     }
 
-    /// The number behind a letter; 0 where nothing has said it.
+    /// The number behind a letter; 0 where no dataset has it.
     pub fn of(&self, letter: char) -> usize {
         self.0.get(&letter).copied().unwrap_or(0)
     }
 
-    /// Says what a letter counts.
+    /// Sets the count of a letter.
     pub fn set(&mut self, letter: char, count: usize) {
         self.0.insert(letter, count);
     }

@@ -212,7 +212,7 @@ fn couplings_that_arent_supported_are_refused_with_their_line() {
         ),
         (
             coupling("*KINEMATIC") + &step("") + &step("*BOUNDARY\n100, 1"),
-            "line 60: supports of the reference node 100 come or go in this step",
+            "line 60: supports of the reference node 100 begin or end in this step",
         ),
     ] {
         let end = if more.contains("*STEP") {

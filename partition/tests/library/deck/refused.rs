@@ -206,12 +206,12 @@ fn loads_that_arent_read_are_refused_with_their_line() {
     let two = [step(LOAD), step("*BOUNDARY\n100, 3, 3")].concat();
     refused(
         &format!("{CUBES}{MODEL}{loose}{two}"),
-        "line 59: supports of the node 100, which is of no body, come or go in this step",
+        "line 59: supports of the node 100, which is of no body, begin or end in this step",
     );
     let held = "*EQUATION\n1\n100, 3, 1.\n*BOUNDARY\n100, 3, 3, 0.5\n";
     refused(
         &format!("{CUBES}{MODEL}*NODE\n100, 0., 0., 0.\n{held}{}", step(LOAD)),
-        "line 52: what holds its nodes contradicts the equation by -5e-1; expected supports that agree with it",
+        "line 52: supports of its nodes contradict the equation by -5e-1; expected supports that agree with it",
     );
     let up_and_down = "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n";
     let load = step("*DLOAD, AMPLITUDE=A\nUpper, P2, 1.");

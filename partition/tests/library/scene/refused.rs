@@ -136,7 +136,7 @@ friction = 0.6 => friction = inf
 "2e5" => nan
     line 40: contact[2] 'table'.tresca: NaN isn't a finite number
 tresca = "2e5" => tresca = 2e5\nfriction = 0.5
-    contact[2] 'table': 'friction' (Coulomb's) and 'tresca' (a given bound) are both there
+    contact[2] 'table': 'friction' (Coulomb's) and 'tresca' (Tresca's) are both there
 tresca = "2e5" => cohesion = 0
     contact[2] 'table': 'cohesion' stands beside 'friction', which is missing
 normal = [0.0, 2.0] => normal = [0.0, 0]

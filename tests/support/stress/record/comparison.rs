@@ -9,7 +9,7 @@ use super::{Key, Record, Row};
 /// Times as many sweeps or linear solves as before that are more, if they are so many more at least.
 const TIMES_AS_MANY: f64 = 1.5;
 const MORE: u64 = 5;
-/// Backward error that is promised.
+/// Target of the backward error.
 const BACKWARD_ERROR: f64 = 1e-14;
 
 /// A scene that isn't what it was: which, and the words that say so.
