@@ -7,6 +7,7 @@ use contact_dd_partition::id::{GroupId, OnGroups};
 use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{FrictionProblem, Status};
+use crate::contact::law::PointStatus;
 use crate::contact::laws::{Iterate, LawResidual, Past, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, StepAccuracy, TotalResidual, newton,
@@ -21,6 +22,10 @@ const DAMPED_STEPS: usize = 15;
 const LAW: f64 = 1e-9;
 /// Round-off of the residual.
 const ROUND_OFF: f64 = 1e-15;
+/// Part of its bound that a point which slips may miss, and the part of a force's terms that is its round-off: beside the
+/// terms of a slip that nothing resists a whole bound is small.
+const OF_BOUND: f64 = 1e-3;
+const OF_TERMS: f64 = 1e-14;
 /// Force, relative to its terms, up to which a limit keeps its status.
 const STAYS: f64 = 1e-15;
 /// Viscosity of all jumps relative to stiffness and time: the first, the least and the largest.
@@ -48,18 +53,37 @@ impl FrictionCones<'_> {
         let start = self.start();
         let state = self.laws.begin(status, &start);
         let at_once = self.newton(&start, &state, STEPS);
-        if at_once.converged() {
+        let holds = at_once.converged();
+        if holds && !self.misses_a_bound(&at_once) {
             return (at_once, false, false);
         }
         let mut steps = at_once.steps;
         if let Some(found) = self.along_lemke_s_path(problem, &mut steps) {
             return (Found { steps, ..found }, true, false);
         }
+        if holds {
+            return (Found { steps, ..at_once }, false, false);
+        }
         match self.regularized(&start, &state, &mut steps) {
             Rest::Found(found) => (Found { steps, ..found }, true, false),
             Rest::Slides => (Found { steps, ..at_once }, true, true),
             Rest::Unknown => (Found { steps, ..at_once }, true, false),
         }
+    }
+
+    /// True if the force of a point that slips isn't at its bound, by more than round-off: a slip that nothing resists is of
+    /// any size, and so are the terms beside which the law's residual is small.
+    fn misses_a_bound(&self, found: &Found) -> bool {
+        let Found { place, state, .. } = found;
+        let missed = self.laws.missed(place, state);
+        let mut points = self.laws.points.iter().zip(&state.points);
+        points.any(|(point, status)| {
+            let bound = self.laws.point(point, place, &state.closed).bound;
+            let miss = point.limits().map(|i| missed[i].abs()).fold(0.0, f64::max);
+            matches!(status, PointStatus::Slips { .. })
+                && miss > OF_BOUND * bound
+                && miss > OF_TERMS * self.force_scale(point.first, place)
+        })
     }
 
     /// The solution at the end of Lemke's path.
