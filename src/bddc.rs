@@ -225,13 +225,27 @@ impl Bddc {
         if !changed.values().contains(&true) {
             return Ok(());
         }
+        self.factorize_coarse(context, parts, &changed, &made)
+    }
 
+    /// The factor of the coarse problem, made anew where clusters have `changed` or classes were `made`, by the `parts` of
+    /// these clusters. Collective.
+    ///
+    /// # Errors
+    /// A part of the scene can move.
+    fn factorize_coarse(
+        &mut self,
+        context: &Context<'_>,
+        parts: BTreeMap<MergeRootId, Part>,
+        changed: &Numbered<MergeRootId, bool>,
+        made: &[bool],
+    ) -> Result<(), Failure> {
         let is_remade =
             |c: MergeRootId| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
         let remade: Numbered<MergeRootId, bool> = changed.ids().map(is_remade).collect();
         let holds = self.level.holds();
         (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
-        self.coarse_dofs = comm.collect(&self.coarse.len()).into_iter().sum();
+        self.coarse_dofs = context.comm.collect(&self.coarse.len()).into_iter().sum();
         Ok(())
     }
 

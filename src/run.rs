@@ -24,7 +24,7 @@ use faer::Par;
 
 use self::files::{RunFiles, absent_rows};
 use self::handover::{Handover, reason_to_hand_over};
-use self::increment::{Increment, Increments};
+use self::increment::Increment;
 use self::operators::Operators;
 use self::restart::{Finished, finished_steps, keep};
 use self::stage::Stages;
@@ -261,15 +261,7 @@ impl Stages<'_> {
         for k in stage.steps.clone().skip(done.saturating_sub(first)) {
             stop_if_asked(&context, settings, k)?;
             log.step(context.catalog, k);
-            let increments = Increments {
-                context,
-                settings,
-                log,
-                operators: steps.operators,
-                is_relieved: robust.is_some(),
-                has_derivatives: true,
-                linear_solves: &progress.linear_solves,
-            };
+            let increments = steps.increments(settings, log, &progress.linear_solves);
             let (analysis, earlier) = (&analyses[k - first], &analyses[..k - first]);
             let earlier = (earlier.last()).map_or(steps.before, |last| &last.closing_motions);
             let set = progress.finished.working_set.as_ref();
@@ -278,12 +270,8 @@ impl Stages<'_> {
             let solved = increments.step(k, (earlier, analysis), state, &mut progress.seconds);
             let why = reason_to_hand_over(increments.ended(&solved));
             if let Some((start, why)) = start.as_ref().zip(why) {
-                let finished = &mut progress.finished;
-                finished.count = k;
-                return Ok(Some(match robust {
-                    Some(robust) => Handover::to_solver(context.plan, robust, start.clone(), &why),
-                    None => steps.with_set(WorkingSet::all(steps.whole), (k, start), finished),
-                }));
+                let handover = steps.to_more_robust((k, start), &why, &mut progress.finished);
+                return Ok(Some(handover));
             }
             let mut solved = solved.map_err(|failure| {
                 state::finished(context.in_step(failure, k), &context, settings, k)
@@ -293,9 +281,8 @@ impl Stages<'_> {
                 match set.after_step(&context, steps.whole, &solved.solution.displacement) {
                     Outside::Open(open) => rows.extend(open),
                     Outside::Overlaps(larger) => {
-                        let finished = &mut progress.finished;
-                        finished.count = k;
-                        return Ok(Some(steps.with_set(larger, (k, start), finished)));
+                        let handover = steps.with_set(larger, (k, start), &mut progress.finished);
+                        return Ok(Some(handover));
                     }
                 }
             }

@@ -9,6 +9,7 @@ pub mod condensed;
 mod dissection;
 pub mod factor;
 pub(crate) mod front;
+pub mod front_order;
 mod fronts;
 pub mod local;
 pub mod merge;

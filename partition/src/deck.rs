@@ -31,6 +31,7 @@ mod pretensions;
 pub mod prints;
 mod reference;
 mod scene;
+mod scene_tables;
 mod sections;
 mod springs;
 mod steps;

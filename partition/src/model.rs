@@ -8,6 +8,7 @@ mod adjust;
 mod blend;
 mod bodies;
 mod clip;
+mod constraints;
 mod contact;
 mod couplings;
 mod crack_tips;
@@ -18,6 +19,7 @@ mod facet_tree;
 mod groups;
 mod held_nodes;
 mod initial_stress;
+mod loaded_bodies;
 mod loads;
 mod mortar;
 mod node_pairs;
@@ -37,8 +39,12 @@ mod supports;
 mod surface;
 mod touching;
 
+use self::constraints::Constraints;
+use self::diagnostics::Diagnostics;
 pub use self::initial_stress::InitialStress;
+use self::loaded_bodies::LoadedBodies;
 pub use self::parts::{Contact, Formulation, Material, Support};
+use self::pretension::Pretensions;
 pub use self::springs::SpringBlock;
 pub use self::steps::ModelStep;
 use crate::crack_tip::CrackTip;
@@ -117,101 +123,53 @@ impl Model {
     pub fn new(scene: &Scene, mesh: Mesh) -> Result<Self, InputError> {
         let plane = plane_state(scene, &mesh)?;
         let mut warnings = mesh.warnings.clone();
-        let mut bodies = bodies::Bodies::new(scene, mesh, &mut warnings)?;
-        let cuts = pretension::cut(scene, &mut bodies)?;
-        let topology = Topology::new(&bodies.mesh);
-        (topology.check_sides(&bodies.mesh)).map_err(|error| error.in_file(&scene.mesh))?;
-        adjust::adjust(scene, &mut bodies, &topology, &mut warnings)?;
-        let materials = bodies.with_variants(bodies::materials(scene, plane));
-        let mut loads = steps::Loads::new(scene, &bodies, &topology, &materials)?;
-        let springs = springs::Springs::new(scene, &bodies, &topology, loads.names.len())?;
-        let declared = touching::contacts(scene, &mut bodies, &topology, &mut warnings)?;
-        let held = held_nodes::HeldNodes::new(&loads);
-        let sides = contact::Contacts::new(&bodies.mesh, &topology, held, scene);
-        let MadeContacts {
-            mut contacts,
-            tables,
-            found,
-        } = MadeContacts::new(&sides, &declared, &mut warnings)?;
-        activation::check(scene, &bodies, &contacts)?;
-        let on = (&bodies.mesh, &topology);
-        let (tips, coarse) = crack_tips::find(on, plane, &bodies.cell_material, &contacts);
-        let mut equations = equations::equations(scene, &bodies.mesh, contacts.len())?;
-        let count = contacts.len() + equations.len();
-        equations.extend(cyclic::cyclic(scene, &bodies, &mut contacts, count)?);
-        let goals = goals(
-            (scene, &bodies, &topology),
-            &materials,
-            (&loads, &springs),
-            (&contacts, &tips),
-        )?;
-        let count = contacts.len() + equations.len();
-        equations.extend(springs_between::springs_between(
-            scene,
-            &bodies.mesh,
-            count,
-        )?);
-        let count = contacts.len() + equations.len();
-        let couplings = couplings::couplings(scene, (&bodies.mesh, &topology), count)?;
-        let names = equations.iter().map(|of| &of.name[..]);
-        let tables: Vec<&str> = tables.into_iter().chain(names).collect();
-        let absent_contacts = activation::contacts(scene, &tables);
-        let diagnostics = diagnostics::Diagnostics {
-            scene,
-            bodies: &bodies,
-            topology: &topology,
-            materials: &materials,
-            loads: &loads,
-            contacts: &contacts,
-            declared: &declared,
-        };
-        let all: Vec<&str> = declared.iter().map(|of| &of.table[..]).collect();
-        diagnostics.check_repeated_contacts(&activation::contacts(scene, &all))?;
+        let mut on = LoadedBodies::new(scene, mesh, plane, &mut warnings)?;
+        let declared = touching::contacts(scene, &mut on.bodies, &on.topology, &mut warnings)?;
+        let mut constraints = Constraints::new(scene, &on, plane, &declared, &mut warnings)?;
+        let goals = goals(scene, &on, &constraints)?;
+        let mesh = &on.bodies.mesh;
+        let between = springs_between::springs_between(scene, mesh, constraints.count())?;
+        constraints.equations.extend(between);
+        let count = constraints.count();
+        let couplings = couplings::couplings(scene, (mesh, &on.topology), count)?;
+        let absent_contacts = constraints.absent(scene);
+        let contacts = &constraints.contacts;
+        let diagnostics = Diagnostics::new(scene, &on, contacts, &declared);
         warnings.extend(diagnostics.warnings()?);
-        let found = found
-            .into_iter()
-            .chain(crack_tips::remark(coarse))
-            .collect();
         let prescribed_subdomains = (scene.subdomains.as_ref())
-            .map(|names| bodies::prescribed_subdomains(&bodies.mesh, names))
+            .map(|names| bodies::prescribed_subdomains(&on.bodies.mesh, names))
             .transpose()?;
-        let on = (&bodies, &topology);
-        let first = count + couplings.len();
-        let bolts = pretension::Pretensions::new(scene, on, &cuts, &mut loads, first)?;
-        let own = std::mem::take(&mut loads.names);
-        let mut support_names: Vec<String> = own.into_iter().chain(springs.names).collect();
+        let (bodies, first) = (&on.bodies, count + couplings.len());
+        let cut = (bodies, &on.topology);
+        let bolts = Pretensions::new(scene, cut, &on.cuts, &mut on.loads, first)?;
+        let mut support_names = on.take_support_names();
+        let mesh = &mut on.bodies.mesh;
         let (coupled, reference_nodes) =
-            couplings::attach(couplings, &mut bodies.mesh, &mut loads, &mut support_names);
+            couplings::attach(couplings, mesh, &mut on.loads, &mut support_names);
         Ok(Self {
             title: scene.title.clone(),
             solver: scene.solver,
             units: scene.units,
             plane,
-            materials,
+            materials: on.materials,
             bodies: scene.bodies.keys().cloned().collect(),
-            cell_material: bodies.cell_material,
-            cell_body: bodies.cell_body,
-            mesh: bodies.mesh,
-            topology,
+            cell_material: on.bodies.cell_material,
+            cell_body: on.bodies.cell_body,
+            mesh: on.bodies.mesh,
+            topology: on.topology,
             support_names,
-            supports: loads.supports,
-            springs: springs.blocks,
-            forces: loads.forces,
-            initial_stress: loads.initial_stress,
-            steps: (loads.steps.into_iter().zip(absent_contacts))
-                .zip(bolts.absent)
-                .map(|((step, of_scene), of_bolts)| ModelStep {
-                    absent_contacts: [of_scene, of_bolts].concat(),
-                    ..step
-                })
+            supports: on.loads.supports,
+            springs: on.springs.blocks,
+            forces: on.loads.forces,
+            initial_stress: on.loads.initial_stress,
+            steps: steps::with_absent_contacts(on.loads.steps, absent_contacts, bolts.absent),
+            contacts: ([constraints.contacts, constraints.equations].into_iter())
+                .chain([coupled, bolts.contacts])
+                .flatten()
                 .collect(),
-            contacts: (contacts.into_iter().chain(equations))
-                .chain(coupled)
-                .chain(bolts.contacts)
-                .collect(),
-            tips,
+            tips: constraints.tips,
             goals,
-            found,
+            found: constraints.found,
             reference_nodes,
             prescribed_subdomains,
             // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.
@@ -224,15 +182,19 @@ impl Model {
 ///
 /// # Errors
 /// A name that isn't there, with those that are.
-fn goals(
-    (scene, bodies, topology): (&Scene, &bodies::Bodies, &Topology),
-    materials: &[Material],
-    (loads, springs): (&steps::Loads, &springs::Springs),
-    (contacts, tips): (&[Contact], &[(u32, CrackTip)]),
-) -> Result<Goals, InputError> {
+fn goals(scene: &Scene, on: &LoadedBodies, constraints: &Constraints) -> Result<Goals, InputError> {
     if scene.quantity.is_empty() {
         return Ok(Goals::default());
     }
+    let LoadedBodies {
+        bodies,
+        topology,
+        materials,
+        loads,
+        springs,
+        ..
+    } = on;
+    let contacts = &constraints.contacts;
     let initial: Vec<&InitialStress> = match loads.steps.is_empty() {
         true => vec![&loads.initial_stress],
         false => loads
@@ -247,7 +209,7 @@ fn goals(
         bodies,
         materials,
         contacts,
-        tips,
+        tips: &constraints.tips,
         supports: &supports,
         initial: &initial,
     };
@@ -263,40 +225,6 @@ fn goals(
         parameters,
         shares: NodalShares { weights, forces },
     })
-}
-
-/// The contacts that were declared or found and have points.
-#[derive(Default)]
-struct MadeContacts<'a> {
-    contacts: Vec<Contact>,
-    /// The table of each in the scene.
-    tables: Vec<&'a str>,
-    /// The contacts that were found, in words.
-    found: Vec<String>,
-}
-
-impl<'a> MadeContacts<'a> {
-    /// Makes them between their `sides`.
-    ///
-    /// # Errors
-    /// Sides that don't match, or that supports press into each other.
-    fn new(
-        sides: &contact::Contacts,
-        declared: &'a [touching::Declared],
-        warnings: &mut Vec<String>,
-    ) -> Result<Self, InputError> {
-        let mut all = Self::default();
-        for of in declared {
-            let made = sides.declared(all.contacts.len() as u32, &of.contact, warnings)?;
-            // Where all nodes are held no bodies touch each other that could part.
-            if of.words.is_none() || !made.points.is_empty() {
-                all.contacts.push(made);
-                all.tables.push(&of.table[..]);
-                all.found.extend(of.words.clone());
-            }
-        }
-        Ok(all)
-    }
 }
 
 /// The plane state of a scene whose mesh lies in the plane.

@@ -21,8 +21,39 @@ impl Bddc {
         before: &Classes,
         changed: &Numbered<MergeRootId, bool>,
         made: &[bool],
-        mut sides: OnMergeRoots<Vec<Option<Side>>>,
+        sides: OnMergeRoots<Vec<Option<Side>>>,
     ) -> Result<OnMergeRoots<Vec<Basis>>, Failure> {
+        let mut new = self.new_bases(context, made, sides)?;
+        let mut bases = BTreeMap::new();
+        for (c, owner) in self.owners.each() {
+            let classes = &self.classes.of_clusters[c];
+            let is_new = changed[c] || classes.iter().any(|&k| made[k]);
+            if *owner != context.comm.rank() || !is_new {
+                continue;
+            }
+            let of_classes = classes.iter().map(|&k| {
+                let class = &self.classes.list[k];
+                let kept = || {
+                    let at = before.of_clusters.get(c)?;
+                    let at = at.binary_search(&before.place_of(class)?).ok()?;
+                    Some(self.locals.get(&c)?.bases()[at].clone())
+                };
+                let made = new.remove(&(k, c)).or_else(kept);
+                made.unwrap_or_else(|| Basis::coarse(class.size(), class.clusters[0] == c))
+            });
+            bases.insert(c, of_classes.collect());
+        }
+        Ok(bases)
+    }
+
+    /// The bases of the classes that are `made` of what they are to the clusters, each for every cluster of this rank that
+    /// has it. Collective.
+    fn new_bases(
+        &self,
+        context: &Context<'_>,
+        made: &[bool],
+        mut sides: OnMergeRoots<Vec<Option<Side>>>,
+    ) -> Result<BTreeMap<(usize, MergeRootId), Basis>, Failure> {
         let comm = context.comm;
         let ends: Vec<(usize, MergeRootId)> = (0..self.classes.list.len())
             .filter(|&k| made[k])
@@ -58,25 +89,6 @@ impl Bddc {
             |i| results.remove(&ends[i]),
             |i, basis| of_ends.extend(basis.map(|basis| (ends[i], basis))),
         );
-        let mut bases = BTreeMap::new();
-        for (c, owner) in self.owners.each() {
-            let classes = &self.classes.of_clusters[c];
-            let is_new = changed[c] || classes.iter().any(|&k| made[k]);
-            if *owner != comm.rank() || !is_new {
-                continue;
-            }
-            let of_classes = classes.iter().map(|&k| {
-                let class = &self.classes.list[k];
-                let kept = || {
-                    let at = before.of_clusters.get(c)?;
-                    let at = at.binary_search(&before.place_of(class)?).ok()?;
-                    Some(self.locals.get(&c)?.bases()[at].clone())
-                };
-                let made = of_ends.remove(&(k, c)).or_else(kept);
-                made.unwrap_or_else(|| Basis::coarse(class.size(), class.clusters[0] == c))
-            });
-            bases.insert(c, of_classes.collect());
-        }
-        Ok(bases)
+        Ok(of_ends)
     }
 }

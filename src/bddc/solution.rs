@@ -79,15 +79,13 @@ impl Bddc {
             own.for_each(|&(_, place, force)| load[place] += force);
             load
         };
-        let constants_of = |c: MergeRootId| -> Vec<f64> {
-            let dofs = self.dofs[c].iter();
-            dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
-                .collect()
-        };
         let (mut own, mut b) = (Vectors::new(), Vectors::new());
         for (&c, local) in &self.locals {
             let mut load = load_of(c);
-            let held = local.forces(&clusters[&plan.merge_roots[c]].s, &constants_of(c));
+            let held = local.forces(
+                &clusters[&plan.merge_roots[c]].s,
+                &self.constants_of(c, &constants),
+            );
             load.iter_mut()
                 .zip(held)
                 .for_each(|(load, held)| *load -= held);
@@ -96,14 +94,7 @@ impl Bddc {
             b.insert(c, of_shared);
         }
         let (x, iterations, is_solved) = self.iterate(context, clusters, b, accuracy);
-        let mut solved = Vectors::new();
-        for (&c, local) in &self.locals {
-            let mut all = local.recover(&own[&c], &x[&c]);
-            all.iter_mut()
-                .zip(constants_of(c))
-                .for_each(|(x, constant)| *x += constant);
-            solved.insert(c, all);
-        }
+        let solved = self.recovered(&own, &x, &constants);
         let unbalanced = solved.iter().map(|(&c, x)| {
             let mut r = load_of(c);
             let s_x = self.locals[&c].forces(&clusters[&plan.merge_roots[c]].s, x);
@@ -124,6 +115,31 @@ impl Bddc {
             iterations,
             is_solved,
         }
+    }
+
+    /// The `constants` on the unknowns of a cluster.
+    fn constants_of(&self, c: MergeRootId, constants: &BTreeMap<InterfaceDof, f64>) -> Vec<f64> {
+        let dofs = self.dofs[c].iter();
+        dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
+            .collect()
+    }
+
+    /// All unknowns of the clusters of this rank, of their condensed loads, the shared unknowns and the `constants`.
+    fn recovered(
+        &self,
+        own: &Vectors,
+        x: &Vectors,
+        constants: &BTreeMap<InterfaceDof, f64>,
+    ) -> Vectors {
+        let mut solved = Vectors::new();
+        for (&c, local) in &self.locals {
+            let mut all = local.recover(&own[&c], &x[&c]);
+            all.iter_mut()
+                .zip(self.constants_of(c, constants))
+                .for_each(|(x, constant)| *x += constant);
+            solved.insert(c, all);
+        }
+        solved
     }
 
     /// The shared unknowns for the clusters' parts of a load, the number of iterations and whether they sufficed.

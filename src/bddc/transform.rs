@@ -37,14 +37,7 @@ pub fn transformed(
         let diagonal = column[0] + springs.get(j).unwrap_or(&0.0);
         match of_many[j] {
             Some(d) => s_many[(d, d)] = 0.5 * diagonal,
-            None => {
-                for (at, &(b, d)) in terms[j].iter().enumerate() {
-                    new[(b, b)] += d * d * diagonal;
-                    for &(a, c) in &terms[j][at + 1..] {
-                        add(&mut new, a, b, c * d * diagonal);
-                    }
-                }
-            }
+            None => add_diagonal(&mut new, &terms[j], diagonal),
         }
         for (i, &s) in (j + 1..terms.len()).zip(&column[1..]) {
             if let (Some(a), Some(b)) = (places[i], places[j]) {
@@ -72,6 +65,16 @@ pub fn transformed(
         add_many(&mut new, terms, &of_many, s_many, product);
     }
     new
+}
+
+/// The part of Tᵀ S T that an entry on the diagonal of S makes with the `terms` of its row, added.
+fn add_diagonal(new: &mut Mat<f64>, terms: &[(usize, f64)], diagonal: f64) {
+    for (at, &(b, d)) in terms.iter().enumerate() {
+        new[(b, b)] += d * d * diagonal;
+        for &(a, c) in &terms[at + 1..] {
+            add(new, a, b, c * d * diagonal);
+        }
+    }
 }
 
 /// The numbers of the rows with many terms among those, and how many there are.

@@ -87,36 +87,7 @@ impl Limits {
             prescribed_slips: Vec::new(),
             tied: tied(of, gaps),
         };
-        let is_tangential = |j: usize| {
-            let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
-            found.is_ok()
-        };
-        for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
-            match of {
-                // A tangential jump is no bound for others, nor they for it.
-                &JumpOf::Unknown { number, factor }
-                    if (is_tangential(j) || is_tangential(limits.defining[number]))
-                        && limits.defining[number] != j =>
-                {
-                    limits.rows.push(vec![(number, factor)]);
-                    limits.bounds.push(*gap);
-                    limits.tightest.push((j, 1.0));
-                }
-                &JumpOf::Unknown { number, factor } => {
-                    let bound = gap / factor;
-                    if bound < limits.bounds[number] {
-                        limits.bounds[number] = bound;
-                        limits.tightest[number] = (j, factor);
-                    }
-                }
-                JumpOf::Combination(terms) => {
-                    limits.rows.push(terms.clone());
-                    limits.bounds.push(*gap);
-                    limits.tightest.push((j, 1.0));
-                }
-                JumpOf::Prescribed | JumpOf::Tied(_) => {}
-            }
-        }
+        limits.add_bounds(of, gaps, friction);
         let prescribed = |j: usize| {
             let slip = -gaps[j];
             let slips = slip.abs() > ROUND_OFF * scale;
@@ -136,6 +107,40 @@ impl Limits {
             }
         }
         limits
+    }
+
+    /// The bounds of conditions with these `gaps`: of a normal jump the tightest, of each dependent one its own.
+    fn add_bounds(&mut self, of: &[JumpOf], gaps: &[f64], friction: &[TangentialCondition]) {
+        let is_tangential = |j: usize| {
+            let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
+            found.is_ok()
+        };
+        for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
+            match of {
+                // A tangential jump is no bound for others, nor they for it.
+                &JumpOf::Unknown { number, factor }
+                    if (is_tangential(j) || is_tangential(self.defining[number]))
+                        && self.defining[number] != j =>
+                {
+                    self.rows.push(vec![(number, factor)]);
+                    self.bounds.push(*gap);
+                    self.tightest.push((j, 1.0));
+                }
+                &JumpOf::Unknown { number, factor } => {
+                    let bound = gap / factor;
+                    if bound < self.bounds[number] {
+                        self.bounds[number] = bound;
+                        self.tightest[number] = (j, factor);
+                    }
+                }
+                JumpOf::Combination(terms) => {
+                    self.rows.push(terms.clone());
+                    self.bounds.push(*gap);
+                    self.tightest.push((j, 1.0));
+                }
+                JumpOf::Prescribed | JumpOf::Tied(_) => {}
+            }
+        }
     }
 
     /// The limits of these tangential conditions, of which some slips are `prescribed`.

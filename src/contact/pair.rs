@@ -140,23 +140,13 @@ impl ContactPair {
         u: &[f64],
         expected: Option<(Vec<Status>, Vec<f64>)>,
     ) -> PairResponse {
-        let m = self.condensed.jumps;
         let expected = expected.unwrap_or_else(|| (self.state.status.clone(), Vec::new()));
         let (before, changes) = expected;
         let mut center = self.state.contact.jumps.clone();
         if !self.limits.tangents.is_empty() {
             (center.iter_mut().zip(changes)).for_each(|(t, change)| *t += change);
         }
-        let mut c = self.load[..m].to_vec();
-        let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
-        for (j, &u_j) in u.iter().enumerate() {
-            let column = self.condensed.s.col_as_slice(m + j);
-            for ((c, scale), s) in c.iter_mut().zip(&mut c_scale).zip(column) {
-                let term = s * u_j;
-                *c -= term;
-                *scale += term.abs();
-            }
-        }
+        let (c, c_scale) = self.driving_force(u);
         let mut status = before.clone();
         let problem = ContactProblem {
             h: self.condensed.s_tt(),
@@ -200,6 +190,22 @@ impl ContactPair {
         response.status = status;
         (response.reaction, response.scale) = self.reaction(u);
         response
+    }
+
+    /// c = f_t − S_tΓ U, the force on every normal jump at t = 0, and the scale of its terms.
+    fn driving_force(&self, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let m = self.condensed.jumps;
+        let mut c = self.load[..m].to_vec();
+        let mut c_scale: Vec<f64> = c.iter().map(|f| f.abs()).collect();
+        for (j, &u_j) in u.iter().enumerate() {
+            let column = self.condensed.s.col_as_slice(m + j);
+            for ((c, scale), s) in c.iter_mut().zip(&mut c_scale).zip(column) {
+                let term = s * u_j;
+                *c -= term;
+                *scale += term.abs();
+            }
+        }
+        (c, c_scale)
     }
 
     /// S_ΓΓ U + S_Γt t − f_Γ and the scale of its terms.

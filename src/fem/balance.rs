@@ -51,7 +51,20 @@ impl Balance {
                 scale[row] += force.abs();
             }
         }
-        let mut residual = external.clone();
+        let mut balance = Self {
+            residual: external.clone(),
+            scale,
+            external,
+            springs,
+            largest_load,
+        };
+        balance.subtract_elements(block, materials, u);
+        balance
+    }
+
+    /// The forces K_e u of every element, taken from the residual.
+    fn subtract_elements(&mut self, block: &Block, materials: &[Material], u: &[f64]) {
+        let dim = block.dim;
         let mut points = Vec::with_capacity(MAX_NODES);
         let mut u_e = Vec::with_capacity(dim * MAX_NODES);
         let mut k = ElementMatrix::default();
@@ -73,17 +86,10 @@ impl Balance {
                         absolute += term.abs();
                     }
                     let row = dim * node as usize + component;
-                    residual[row] -= sum;
-                    scale[row] += absolute;
+                    self.residual[row] -= sum;
+                    self.scale[row] += absolute;
                 }
             }
-        }
-        Self {
-            residual,
-            scale,
-            external,
-            springs,
-            largest_load,
         }
     }
 }

@@ -30,6 +30,28 @@ pub struct Dofs {
 
 const NOT_DIRECT: u32 = u32::MAX;
 
+/// The components of nodes that are interior unknowns, and those that are unknowns on Γ, along the axes of their `frames`.
+fn free_components(block: &Block, frames: &BTreeMap<u32, Frame>) -> [Vec<bool>; 2] {
+    let dim = block.dim;
+    let raw_of = |node: u32| node as usize * dim..(node as usize + 1) * dim;
+    let mut is_interior = vec![true; block.nodes() * dim];
+    for (&node, frame) in frames {
+        for (raw, prescribed) in raw_of(node).zip(&frame.prescribed) {
+            is_interior[raw] = prescribed.is_none();
+        }
+    }
+    let mut is_on_interface = vec![false; block.nodes() * dim];
+    for &(node, _) in &block.interface {
+        let is_held = |frame: &Frame| frame.prescribed.iter().any(Option::is_some);
+        let slides = block.slides.contains_key(&node) && !frames.get(&node).is_some_and(is_held);
+        let on_interface = if slides { 1 } else { dim };
+        for raw in raw_of(node).take(on_interface) {
+            is_on_interface[raw] = std::mem::take(&mut is_interior[raw]);
+        }
+    }
+    [is_interior, is_on_interface]
+}
+
 impl Dofs {
     /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the interface dofs on Γ.
     /// Of `loads` the directions of supports count, not their values.
@@ -43,22 +65,7 @@ impl Dofs {
         }
         let frames = node_frames(block, &loads.supports);
         let raw_of = |node: u32| node as usize * dim..(node as usize + 1) * dim;
-        let mut is_interior = vec![true; block.nodes() * dim];
-        for (&node, frame) in &frames {
-            for (raw, prescribed) in raw_of(node).zip(&frame.prescribed) {
-                is_interior[raw] = prescribed.is_none();
-            }
-        }
-        let mut is_on_interface = vec![false; block.nodes() * dim];
-        for &(node, _) in &block.interface {
-            let is_held = |frame: &Frame| frame.prescribed.iter().any(Option::is_some);
-            let slides =
-                block.slides.contains_key(&node) && !frames.get(&node).is_some_and(is_held);
-            let on_interface = if slides { 1 } else { dim };
-            for raw in raw_of(node).take(on_interface) {
-                is_on_interface[raw] = std::mem::take(&mut is_interior[raw]);
-            }
-        }
+        let [is_interior, is_on_interface] = free_components(block, &frames);
 
         let mut number = vec![u32::MAX; block.nodes() * dim];
         let mut sites = Sites::new(block.nodes());

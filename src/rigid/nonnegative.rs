@@ -122,6 +122,23 @@ pub struct InSpan {
     pub drive: DVector<f64>,
 }
 
+/// The part of the way of some columns from λ to `trial` at which the first of them reaches a bound; infinite where none
+/// does.
+fn way_to_bound(numbers: &[usize], trial: &[f64], lambda: &[f64], largest: &[f64]) -> f64 {
+    let reached = |(&j, t): (&usize, &f64)| {
+        if *t <= 0.0 {
+            Some(lambda[j] / (lambda[j] - t))
+        } else if *t >= largest[j] {
+            Some((largest[j] - lambda[j]) / (t - lambda[j]))
+        } else {
+            None
+        }
+    };
+    (numbers.iter().zip(trial))
+        .filter_map(reached)
+        .fold(f64::INFINITY, f64::min)
+}
+
 /// A λ within its bounds whose entries between these, those of the passive columns, come nearest to b.
 #[derive(Clone)]
 struct Iterate {
@@ -163,18 +180,7 @@ impl Iterate {
         } = &mut point;
         loop {
             let trial = passive.solve(b);
-            let reached = |(&j, t): (&usize, &f64)| {
-                if *t <= 0.0 {
-                    Some(lambda[j] / (lambda[j] - t))
-                } else if *t >= largest[j] {
-                    Some((largest[j] - lambda[j]) / (t - lambda[j]))
-                } else {
-                    None
-                }
-            };
-            let blocking = (passive.numbers.iter().zip(&trial))
-                .filter_map(reached)
-                .fold(f64::INFINITY, f64::min);
+            let blocking = way_to_bound(&passive.numbers, &trial, lambda, largest);
             if blocking.is_infinite() {
                 for (&j, t) in passive.numbers.iter().zip(&trial) {
                     lambda[j] = *t;

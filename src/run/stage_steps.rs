@@ -1,5 +1,6 @@
 //! The load steps of a stage, and what the last of them passes on.
 
+use std::cell::Cell;
 use std::ops::Range;
 
 use contact_dd_partition::problem::Catalog;
@@ -8,11 +9,13 @@ use contact_dd_partition::problem::stage::Stage;
 use crate::context::Context;
 use crate::fem::contact_state::ContactRow;
 use crate::plan::choice::Choice;
+use crate::report::log::RunLog;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::run::handover::Handover;
-use crate::run::increment::Increment;
+use crate::run::increment::{Increment, Increments};
 use crate::run::operators::Operators;
 use crate::run::restart::Finished;
+use crate::settings::Settings;
 use crate::step::state::StepState;
 use crate::step::transfer::StageEnd;
 use crate::step::working_set::WorkingSet;
@@ -40,6 +43,24 @@ pub struct StageSteps<'a> {
 }
 
 impl StageSteps<'_> {
+    /// The increments of a load step, which count their `linear_solves`.
+    pub fn increments<'a>(
+        &'a self,
+        settings: &'a Settings,
+        log: &'a RunLog<'a>,
+        linear_solves: &'a Cell<usize>,
+    ) -> Increments<'a> {
+        Increments {
+            context: self.context,
+            settings,
+            log,
+            operators: self.operators,
+            is_relieved: self.robust.is_some(),
+            has_derivatives: true,
+            linear_solves,
+        }
+    }
+
     /// Passes what the last load step of the stage leaves on to the `next` stage. Collective.
     pub fn pass_on(
         &self,
@@ -56,13 +77,32 @@ impl StageSteps<'_> {
         finished.transfer = transfer.after(&self.context, self.stage, end, self.whole, next);
     }
 
-    /// The handover of load step k, before which the state is `start`, to another working set. Collective.
+    /// The handover of load step k, before which the state is `start` and what is `finished` ends, to the more robust
+    /// solver, or to all contact points where there is none. Collective.
+    pub fn to_more_robust(
+        &self,
+        (k, start): (usize, &StepState),
+        why: &str,
+        finished: &mut Finished,
+    ) -> Handover {
+        match self.robust {
+            Some(robust) => {
+                finished.count = k;
+                Handover::to_solver(self.context.plan, robust, start.clone(), why)
+            }
+            None => self.with_set(WorkingSet::all(self.whole), (k, start), finished),
+        }
+    }
+
+    /// The handover of a load step, before which the state is given and what is `finished` ends, to another working set.
+    /// Collective.
     pub fn with_set(
         &self,
         set: WorkingSet,
         from: (usize, &StepState),
         finished: &mut Finished,
     ) -> Handover {
+        finished.count = from.0;
         let before = finished.working_set.replace(set);
         let outside = before.map(|before| before.outside).unwrap_or_default();
         Handover::to_points(&self.context, (self.stage, self.whole), from, &outside)

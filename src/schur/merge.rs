@@ -8,8 +8,6 @@
 //!
 //! are dense: the multifrontal method of Duff and Reid, with the blocks as its leaves.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
@@ -18,6 +16,7 @@ use faer::{Accum, Mat, MatMut, Par};
 
 use super::condensed::Condensed;
 use super::front::partial_cholesky;
+use super::front_order::{FrontOrder, OwnJumps};
 use super::local::{CondensedLoad, TiedLoad, multiply_add};
 use super::substitution::{Front, Replaced, Substitution};
 use crate::schur::condensed::InterfaceDof;
@@ -85,29 +84,6 @@ struct Run {
     len: usize,
 }
 
-/// The normal jumps of a front's own contact points.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct OwnJumps<'a> {
-    /// The displacements that jumps replace.
-    pub replaced: &'a [Replaced],
-    /// Jumps that are open and eliminated like a displacement; the others are kept. None of them where it is
-    /// empty.
-    pub open: &'a [bool],
-    /// A spring on every open one, relative to the diagonal, that holds what its contact has let go.
-    pub spring: f64,
-}
-
-impl OwnJumps<'_> {
-    /// Number of jumps that aren't those of ties.
-    fn unknowns(&self) -> usize {
-        self.replaced.iter().filter(|r| !r.is_tied).count()
-    }
-
-    fn is_open(&self, jump: usize) -> bool {
-        self.open.get(jump).copied().unwrap_or(false)
-    }
-}
-
 impl Merge {
     /// Merges `children`, in their order, puts normal jumps in the place of what they `replaced`, and eliminates
     /// the other unknowns at the nodes of Γ that are `eliminated`, ascending; `spare` matrices lend their memory,
@@ -149,29 +125,13 @@ impl Merge {
         spare: &mut Spare,
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
-        let (mut gone, mut interface_dofs) = union_of_interface_dofs(children, eliminated);
-        let count = own.unknowns();
-        let numbers = 0..count;
-        let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
-        let replaced: BTreeSet<InterfaceDof> = own.replaced.iter().map(|r| r.dof).collect();
-        gone.retain(|dof| !replaced.contains(dof));
-        interface_dofs.retain(|dof| !replaced.contains(dof));
-        let e = gone.len() + open.len();
-        let of_children: usize = children.iter().map(|c| c.jumps).sum();
-        let jumps = of_children + closed.len();
-        let places_of_own =
-            (open.iter().zip(gone.len()..)).chain(closed.iter().zip(e + of_children..));
-        let pivots = places_of_own.map(|(&j, place)| (own.replaced[j].dof, place));
-        let k = jumps + interface_dofs.len();
-        let tied = own.replaced[count..].iter().zip(e + k..);
-        let tied = tied.map(|(replaced, place)| (replaced.dof, place));
-        let pivots: BTreeMap<InterfaceDof, usize> = pivots.chain(tied).collect();
-        let n = e + k + own.replaced.len() - count;
+        let order = FrontOrder::new(children, eliminated, own);
+        let (e, k, n) = order.sizes();
         let mut columns = Mat::<f64>::zeros(n, e);
         let mut s = spare.zeros(n - e);
         let mut diagonal = vec![0.0; n];
         let (mut places, mut first_jump) = (Vec::with_capacity(children.len()), e);
-        let place = |dof: &InterfaceDof| place_of(dof, &gone, &pivots, &interface_dofs, e + jumps);
+        let place = |dof: &InterfaceDof| order.place(dof);
         for child in children {
             let place = child.places(first_jump, place);
             first_jump += child.jumps;
@@ -188,7 +148,7 @@ impl Merge {
         });
         substitution.transform_diagonal(&mut diagonal);
         let tied = known_columns(&mut columns, &mut s, e + k);
-        for j in gone.len()..e {
+        for j in order.gone.len()..e {
             columns[(j, j)] += own.spring * diagonal[j];
         }
         let mut merge = Self {
@@ -198,18 +158,14 @@ impl Merge {
             substitution,
             tied,
         };
-        let dof_of = |j: usize| match gone.get(j) {
-            Some(dof) => *dof,
-            None => own.replaced[open[j - gone.len()]].dof,
-        };
         partial_cholesky(merge.columns.as_mut(), s.as_mut(), par)
-            .map_err(|j| FreeInterfaceDof(dof_of(j)))?;
+            .map_err(|j| FreeInterfaceDof(order.dof(j, own)))?;
         let pivots = diagonal[..e].iter().enumerate();
         let pivots = pivots.map(|(j, d)| merge.columns[(j, j)].powi(2) / d);
         let below = children.iter().map(|child| child.smallest_pivot);
         let condensed = Condensed {
-            jumps,
-            interface_dofs,
+            jumps: order.jumps,
+            interface_dofs: order.kept,
             s,
             diagonal: diagonal[e..e + k].to_vec(),
             smallest_pivot: below.chain(pivots).fold(f64::INFINITY, f64::min),
@@ -311,41 +267,6 @@ fn known_columns(columns: &mut Mat<f64>, s: &mut Mat<f64>, first: usize) -> Mat<
 fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
     let rows = x.len();
     MatMut::from_column_major_slice_mut(x, rows, 1)
-}
-
-/// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
-fn union_of_interface_dofs(
-    children: &[&Condensed],
-    eliminated: &[u32],
-) -> (Vec<InterfaceDof>, Vec<InterfaceDof>) {
-    let mut all: Vec<InterfaceDof> = children
-        .iter()
-        .flat_map(|c| c.interface_dofs.iter().copied())
-        .collect();
-    all.sort_unstable();
-    all.dedup();
-    let mut next = eliminated.iter().peekable();
-    all.into_iter().partition(|dof| {
-        while next.next_if(|&&node| node < dof.node).is_some() {}
-        next.peek().is_some_and(|&&node| node == dof.node)
-    })
-}
-
-/// Place of an unknown on Γ in a front: among those that are `gone`, which come first, where one of the `pivots` that
-/// normal jumps replace is, or among those that are `kept`, from `first_kept` on.
-fn place_of(
-    dof: &InterfaceDof,
-    gone: &[InterfaceDof],
-    pivots: &BTreeMap<InterfaceDof, usize>,
-    kept: &[InterfaceDof],
-    first_kept: usize,
-) -> usize {
-    // An unknown is in one of the three lists.
-    match (gone.binary_search(dof), kept.binary_search(dof)) {
-        (Ok(place), _) => place,
-        (_, Ok(place)) => first_kept + place,
-        _ => pivots.get(dof).copied().unwrap_or_default(),
-    }
 }
 
 /// Maximal runs of `place`, none of which reaches across the first `e` indices.

@@ -86,16 +86,7 @@ impl Content {
     pub(super) fn read(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         match block.keyword.as_str() {
-            "HEADING" => {
-                let line = block
-                    .data
-                    .first()
-                    .map(|data| source.items(data).collect::<Vec<_>>().join(", "));
-                self.title = self
-                    .title
-                    .take()
-                    .or(line.map(|line| name::in_a_line(&line)));
-            }
+            "HEADING" => self.heading(source, block),
             "PART" | "INSTANCE" | "END PART" | "END INSTANCE" => places.enter(block),
             "MATERIAL" => {
                 let material = Material::new(source, block)?;
@@ -144,6 +135,18 @@ impl Content {
             _ => self.change_or_print(places, block)?,
         }
         Ok(())
+    }
+
+    /// The title, which is the first line of the first heading.
+    fn heading(&mut self, source: &Source, block: &Block) {
+        let line = block
+            .data
+            .first()
+            .map(|data| source.items(data).collect::<Vec<_>>().join(", "));
+        self.title = self
+            .title
+            .take()
+            .or(line.map(|line| name::in_a_line(&line)));
     }
 
     /// A block of contacts, of model changes, or of tables, which depends on the step that it stands in.

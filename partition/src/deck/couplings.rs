@@ -4,6 +4,7 @@ mod scene_coupling;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+pub(super) use self::scene_coupling::SceneCoupling;
 use super::loads::item;
 use super::place::Places;
 use super::reference::{FREEDOMS, Reference};

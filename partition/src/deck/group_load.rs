@@ -50,6 +50,28 @@ impl OnGroups<'_, '_, '_> {
     pub(super) fn all(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
         let steps = &self.steps.done;
         let mut all = self.supports(source)?;
+        self.add_pressures(&mut all);
+        self.add_tractions(&mut all);
+        let (dim, thickness) = (self.dim, self.thickness);
+        let force = |force: &[f64; 3]| {
+            let is_there = force.iter().any(|&component| component != 0.0);
+            is_there.then(|| vector(&force.map(|component| component / thickness), dim))
+        };
+        for (nodes, course) in together(steps.iter().map(|step| &step.forces), force) {
+            if let Some(on) = self.groups.of_nodes(&nodes, "force") {
+                all.push(OnGroup {
+                    list: "force",
+                    on,
+                    values: of_key(course, "each"),
+                });
+            }
+        }
+        Ok(all)
+    }
+
+    /// The pressures, on faces of elements and then on surfaces, behind what `all` has.
+    fn add_pressures(&mut self, all: &mut Vec<OnGroup>) {
+        let steps = &self.steps.done;
         for (faces, course) in
             together(steps.iter().map(|step| &step.faces), |&value| number(value))
         {
@@ -73,6 +95,11 @@ impl OnGroups<'_, '_, '_> {
                 values: of_key(course.collect(), "value"),
             });
         }
+    }
+
+    /// The tractions on surfaces, behind what `all` has.
+    fn add_tractions(&mut self, all: &mut Vec<OnGroup>) {
+        let steps = &self.steps.done;
         let tractions: BTreeSet<&(String, usize)> = steps
             .iter()
             .flat_map(|step| step.tractions.keys())
@@ -98,21 +125,6 @@ impl OnGroups<'_, '_, '_> {
                 values: course,
             });
         }
-        let (dim, thickness) = (self.dim, self.thickness);
-        let force = |force: &[f64; 3]| {
-            let is_there = force.iter().any(|&component| component != 0.0);
-            is_there.then(|| vector(&force.map(|component| component / thickness), dim))
-        };
-        for (nodes, course) in together(steps.iter().map(|step| &step.forces), force) {
-            if let Some(on) = self.groups.of_nodes(&nodes, "force") {
-                all.push(OnGroup {
-                    list: "force",
-                    on,
-                    values: of_key(course, "each"),
-                });
-            }
-        }
-        Ok(all)
     }
 
     /// Prescribed displacements.

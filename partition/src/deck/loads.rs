@@ -88,27 +88,7 @@ impl Loads {
             }
             return Ok(());
         }
-        let kind = match label.as_str() {
-            "BX" | "BY" | "BZ" => BodyKind::Along(usize::from(label.as_bytes()[1] - b'X')),
-            "GRAV" => BodyKind::Gravity(vector(source, data, 3, "a direction")?),
-            "CENTRIF" => BodyKind::Centrifugal(
-                vector(source, data, 3, "a point on the axis")?,
-                vector(source, data, 6, "the direction of the axis")?,
-            ),
-            _ => {
-                let message = format!(
-                    "a load {} of *DLOAD isn't read; expected P1 to P6, GRAV, CENTRIF, BX, BY or BZ",
-                    name::shown(&label)
-                );
-                return Err(source.error(data.place, message));
-            }
-        };
-        let kind = kind.normalized().ok_or_else(|| {
-            source.error(
-                data.place,
-                format!("{label} has no direction; expected one that isn't zero"),
-            )
-        })?;
+        let kind = BodyKind::read(source, data, &label)?;
         let load = BodyLoad {
             target: target.to_uppercase(),
             label,
@@ -195,6 +175,31 @@ impl Loads {
 }
 
 impl BodyKind {
+    /// The kind of a load on elements, by its label.
+    fn read(source: &Source, data: &Data, label: &str) -> Result<Self, InputError> {
+        let kind = match label {
+            "BX" | "BY" | "BZ" => Self::Along(usize::from(label.as_bytes()[1] - b'X')),
+            "GRAV" => Self::Gravity(vector(source, data, 3, "a direction")?),
+            "CENTRIF" => Self::Centrifugal(
+                vector(source, data, 3, "a point on the axis")?,
+                vector(source, data, 6, "the direction of the axis")?,
+            ),
+            _ => {
+                let message = format!(
+                    "a load {} of *DLOAD isn't read; expected P1 to P6, GRAV, CENTRIF, BX, BY or BZ",
+                    name::shown(label)
+                );
+                return Err(source.error(data.place, message));
+            }
+        };
+        kind.normalized().ok_or_else(|| {
+            source.error(
+                data.place,
+                format!("{label} has no direction; expected one that isn't zero"),
+            )
+        })
+    }
+
     /// The load with directions of length 1; `None` where one has none.
     fn normalized(self) -> Option<Self> {
         Some(match self {

@@ -13,7 +13,7 @@ impl Content {
     pub(super) fn contact(
         &self,
         places: &Places,
-        (sides, names, ties): (&[[String; 2]], &[String], Vec<SceneTie>),
+        (sides, names, ties): (&[[String; 2]], &[String], &[SceneTie]),
         taken: &mut Names,
         (document, warnings): (&mut Document, &mut Vec<String>),
     ) -> Result<Vec<Presence>, InputError> {
@@ -55,7 +55,7 @@ impl Content {
                 }
             }
         }
-        for tie in &ties {
+        for tie in ties {
             tie.write(&taken.unique(&tie.name), document);
         }
         for tie in &tied {

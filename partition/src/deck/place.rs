@@ -77,8 +77,7 @@ impl<'a> Places<'a> {
                 self.source,
                 at,
                 of,
-                instance.as_deref(),
-                item,
+                (instance.as_deref(), item),
                 item,
             )?);
         }

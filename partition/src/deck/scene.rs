@@ -2,18 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::conditions;
 use super::content::Content;
-use super::document::{Document, Linear, Names, quoted};
+use super::document::{Document, Linear, quoted};
 use super::elastic::Elastic;
-use super::group_load::{OnGroup, OnGroups};
-use super::groups::Groups;
 use super::initial;
 use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
 use super::place::Places;
 use super::presence::{self, Presence};
-use super::pretensions;
+use super::scene_tables::SceneTables;
 use super::sections::{self, Body, Section};
 use super::steps::LoadStep;
 use crate::error::InputError;
@@ -43,47 +40,8 @@ pub(super) fn text(
         }
         _ => 1.0,
     };
-    let mut loads = OnGroups {
-        steps: &content.steps,
-        dim: places.dim(),
-        thickness,
-        groups: Groups::new(places),
-    };
-    let names: Vec<String> = (bodies.iter())
-        .map(|body| {
-            loads
-                .groups
-                .of_cells(&body.cells, &content.sections[body.section].set)
-        })
-        .collect();
-    let on_groups = loads.all(source)?;
-    let sides: Vec<[String; 2]> = (content.contacts.pairs.iter())
-        .map(|pair| [&pair.slave, &pair.master].map(|side| loads.groups.of_surface(side)))
-        .collect();
-    let ties = content.ties.in_scene(&mut loads.groups);
-    let mut taken = Names::default();
-    let pairs: Vec<String> = (sides.iter())
-        .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
-        .collect();
-    let equations = conditions::in_scene(&content.conditions, &mut loads.groups, &mut taken);
-    let springs = content.springs.in_scene(
-        &mut loads.groups,
-        thickness,
-        &content.steps.systems,
-        &mut taken,
-    )?;
-    let couplings = content.couplings.in_scene(
-        &mut loads.groups,
-        (&content.steps.done, thickness),
-        (&content.steps.systems, content.orientations()),
-        &mut taken,
-    )?;
-    let sectors = content.sectors.in_scene(&mut loads.groups, &mut taken)?;
-    let bolts =
-        content
-            .pretensions
-            .in_scene(&mut loads.groups, &content.steps, thickness, &mut taken)?;
-    let dim = loads.dim;
+    let mut tables = SceneTables::new(places, content, bodies, thickness)?;
+    let dim = places.dim();
     let mut document = Document::default();
     if let Some(title) = &content.title {
         document.key("title", quoted(title));
@@ -92,57 +50,26 @@ pub(super) fn text(
     if let Some(plane) = plane {
         document.key("plane", quoted(plane.name()));
     }
-    let materials = content.materials(source, &bodies, &mut document, plane)?;
-    for ((body, name), material) in bodies.iter().zip(&names).zip(&materials) {
+    let materials = content.materials(source, &tables.bodies, &mut document, plane)?;
+    let bodies = tables.bodies.iter().zip(&tables.names);
+    for ((body, name), material) in bodies.zip(&materials) {
         content.body(source, body, (name, material), (dim, plane), &mut document)?;
     }
-    for load in &on_groups {
+    for load in &tables.loads {
         load.write(0, "", &mut document);
     }
     let mut passing = content.contact(
         places,
-        (&sides, &pairs, ties),
-        &mut taken,
+        (&tables.sides, &tables.pairs, &tables.ties),
+        &mut tables.taken,
         (&mut document, warnings),
     )?;
-    passing.extend(
-        equations
-            .iter()
-            .filter_map(conditions::SceneEquation::presence),
-    );
-    passing.extend(
-        bodies
-            .iter()
-            .zip(&names)
-            .filter_map(|(body, name)| body.presence(name)),
-    );
-    couplings
-        .iter()
-        .for_each(|coupling| coupling.write(&mut document));
-    sectors
-        .iter()
-        .for_each(|sector| sector.write(&mut document));
-    bolts.iter().for_each(|bolt| bolt.write(&mut document));
-    springs
-        .iter()
-        .for_each(|spring| spring.write(&mut document));
-    for equation in &equations {
-        equation.write(&mut document);
-    }
+    passing.extend(tables.presences());
+    tables.write_conditions(&mut document);
     if content.steps.done.len() > 1 || !passing.is_empty() {
         for number in 0..content.steps.done.len() {
-            content.step(
-                source,
-                number,
-                (&bodies, &names, &on_groups, &passing),
-                dim,
-                &mut document,
-            )?;
-            conditions::write_step(&equations, number, &mut document);
-            for coupling in &couplings {
-                coupling.write_step(number, &mut document);
-            }
-            pretensions::write_step(&bolts, number, &mut document);
+            content.step(source, number, (&tables, &passing), dim, &mut document)?;
+            tables.write_step(number, &mut document);
         }
     }
     Ok((document.text(), thickness))
@@ -316,11 +243,12 @@ impl Content {
         &self,
         source: &Source,
         number: usize,
-        (bodies, names, on_groups, passing): (&[Body], &[String], &[OnGroup], &[Presence]),
+        (tables, passing): (&SceneTables, &[Presence]),
         dim: usize,
         document: &mut Document,
     ) -> Result<(), InputError> {
         let step = &self.steps.done[number];
+        let loads = &tables.loads;
         document.table("[[step]]");
         if let Some(name) = &step.name {
             document.key("name", quoted(name));
@@ -328,8 +256,8 @@ impl Content {
         document.key("time", format!("{:?}", step.time));
         presence::write(passing, number, document);
         for list in ["displacement", "pressure", "traction", "force"] {
-            let mut of_list = on_groups.iter().filter(|load| load.list == list).peekable();
-            let acts = on_groups
+            let mut of_list = loads.iter().filter(|load| load.list == list).peekable();
+            let acts = loads
                 .iter()
                 .any(|load| load.list == list && load.values[number].is_some());
             if of_list.peek().is_some() && !acts {
@@ -337,6 +265,23 @@ impl Content {
                 document.key(list, "[]");
             }
         }
+        self.step_of_bodies(source, number, tables, dim, document)?;
+        for load in loads {
+            load.write(number, "step.", document);
+        }
+        Ok(())
+    }
+
+    /// The forces and temperatures of bodies in a load step, written into it.
+    fn step_of_bodies(
+        &self,
+        source: &Source,
+        number: usize,
+        SceneTables { bodies, names, .. }: &SceneTables,
+        dim: usize,
+        document: &mut Document,
+    ) -> Result<(), InputError> {
+        let step = &self.steps.done[number];
         let loaded: Vec<_> = bodies
             .iter()
             .zip(names)
@@ -362,9 +307,6 @@ impl Content {
         }
         for (body, name) in warmed {
             document.key(&quoted(name), format!("{:?}", body.warmth[number]));
-        }
-        for load in on_groups {
-            load.write(number, "step.", document);
         }
         Ok(())
     }

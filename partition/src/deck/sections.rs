@@ -99,6 +99,27 @@ impl Classes {
         }
     }
 
+    /// The `loads` that act on each element in any of the steps, by which elements of a class are told apart.
+    fn refine_by_loads(
+        &mut self,
+        loads: &Loads,
+        steps: &[LoadStep],
+    ) -> HashMap<u32, BTreeSet<usize>> {
+        let numbers: BTreeSet<usize> = (steps.iter())
+            .flat_map(|step| step.bodies.keys().copied())
+            .collect();
+        let mut acting: HashMap<u32, BTreeSet<usize>> = HashMap::new();
+        for number in numbers {
+            let members = loads.of_bodies[number].elements.iter().copied();
+            let members: BTreeSet<u32> = members.collect();
+            self.refine(|element| members.contains(&element).into());
+            for element in members {
+                acting.entry(element).or_default().insert(number);
+            }
+        }
+        acting
+    }
+
     /// The elements of every class.
     fn members(&self) -> BTreeMap<u32, Vec<u32>> {
         let mut members: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -133,18 +154,7 @@ pub(super) fn bodies(
     let course = |element| changes.of_element(element, steps.len());
     let changing = (0..steps.len()).filter(|_| changes.have_elements());
     changing.for_each(|step| classes.refine(|element| course(element)[step].into()));
-    let numbers: BTreeSet<usize> = (steps.iter())
-        .flat_map(|step| step.bodies.keys().copied())
-        .collect();
-    let mut acting: HashMap<u32, BTreeSet<usize>> = HashMap::new();
-    for number in numbers {
-        let members = loads.of_bodies[number].elements.iter().copied();
-        let members: BTreeSet<u32> = members.collect();
-        classes.refine(|element| members.contains(&element).into());
-        for element in members {
-            acting.entry(element).or_default().insert(number);
-        }
-    }
+    let mut acting = classes.refine_by_loads(loads, steps);
     let mut warmth: HashMap<u32, Vec<f64>> = HashMap::new();
     for step in steps {
         let mut of_step = vec![0.0; section_of.len()];

@@ -1,10 +1,12 @@
 //! Aggregates of cells, which are dissected in their place: cuts run between aggregates, and are made shorter among the
 //! cells near them, so that most cells aren't looked at again at every cut.
 
+mod near;
+
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::bisect::{Aim, band, best};
-use super::flow::{Region, cheapest_cuts};
+use super::bisect::Aim;
+use super::flow::Region;
 use super::graph::{Edge, Graph};
 use crate::lists::Lists;
 
@@ -28,17 +30,6 @@ pub(super) struct Aggregates<'a> {
     pub graph: Graph,
     /// The cells of every aggregate.
     pub cells: Lists<u32>,
-}
-
-/// The aggregates near a cut, and on which side of it their cells are.
-struct Near {
-    /// Side of every aggregate; those between the sides have cells on both.
-    places: Vec<Region>,
-    /// The number of the first cell of every aggregate between the sides.
-    first: Vec<u32>,
-    /// The cells between the sides, and a vertex for each side.
-    graph: Graph,
-    left: Vec<bool>,
 }
 
 impl Cells {
@@ -125,14 +116,9 @@ impl<'a> Aggregates<'a> {
             }
         }
         let graphs = [0, 1].map(|side| {
-            let vertex_at = |(aggregate, place): (usize, usize)| match near.places[aggregate] {
-                Region::Between => {
-                    let cell = near.first[aggregate] as usize + place;
-                    (near.left[cell] == (side == 0)).then(|| vertex_of_cell[cell])
-                }
-                place => {
-                    ((place == Region::Left) == (side == 0)).then(|| vertex_of_aggregate[aggregate])
-                }
+            let vertex_at = |at| {
+                let (is_left, vertex) = near.vertex_at(at, &vertex_of_aggregate, &vertex_of_cell);
+                (is_left == (side == 0)).then_some(vertex)
             };
             self.half(&near.places, &aggregates[side], &cells[side], vertex_at)
         });
@@ -151,14 +137,7 @@ impl<'a> Aggregates<'a> {
     ) -> Graph {
         let fine = &self.all.graph;
         let count = aggregates.len();
-        let mut half = Graph {
-            dim: fine.dim,
-            ids: (0..count as u32).collect(),
-            dofs: Vec::with_capacity(count),
-            centres: Vec::with_capacity(count),
-            outside: Vec::with_capacity(count),
-            edges: Lists::with_capacity(count, 6 * count),
-        };
+        let mut half = Graph::with_capacity(fine.dim, count);
         let is_between = |aggregate: usize| places[aggregate] == Region::Between;
         let mut list: Vec<Edge> = Vec::new();
         for (vertex, &aggregate) in aggregates.iter().enumerate() {
@@ -202,85 +181,6 @@ impl<'a> Aggregates<'a> {
             half.edges.push(list.drain(..));
         }
         half
-    }
-
-    /// The aggregates near a cut, and where the cheapest cut runs through them.
-    fn near(&self, left: &[bool], aim: Aim) -> Near {
-        let places = band(&self.graph, left, aim);
-        let fine = &self.all.graph;
-        let mut first = vec![NONE; places.len()];
-        let mut count = 0;
-        for (aggregate, first) in first.iter_mut().enumerate() {
-            if places[aggregate] == Region::Between {
-                *first = count;
-                count += self.cells.of(aggregate).len() as u32;
-            }
-        }
-        let mut graph = Graph {
-            dim: fine.dim,
-            ids: (0..count + 2).collect(),
-            dofs: Vec::with_capacity(count as usize + 2),
-            centres: Vec::new(),
-            outside: Vec::with_capacity(count as usize + 2),
-            edges: Lists::with_capacity(count as usize + 2, 5 * count as usize),
-        };
-        let mut was_left = Vec::with_capacity(count as usize + 2);
-        let mut of_left = Vec::new();
-        let mut list = Vec::new();
-        let between = (0..places.len()).filter(|&aggregate| places[aggregate] == Region::Between);
-        for (aggregate, &cell) in between.flat_map(|aggregate| {
-            let members = self.cells.of(aggregate).iter();
-            members.map(move |cell| (aggregate, cell))
-        }) {
-            let mut outside = 0;
-            for edge in fine.edges(cell as usize) {
-                let Some((aggregate, place)) = self.find(edge.to) else {
-                    outside += edge.weight();
-                    continue;
-                };
-                list.push(edge.towards(match places[aggregate] {
-                    Region::Left => {
-                        of_left.push(edge.towards(graph.dofs.len() as u32));
-                        count
-                    }
-                    Region::Right => count + 1,
-                    Region::Between => first[aggregate] + place as u32,
-                }));
-            }
-            list.sort_unstable();
-            graph.edges.push(list.drain(..));
-            graph.dofs.push(fine.dofs[cell as usize]);
-            graph.outside.push(outside);
-            was_left.push(left[aggregate]);
-        }
-        graph.edges.push(of_left.into_iter());
-        graph.edges.push(std::iter::empty());
-        self.add_sides(&places, &mut graph, &mut was_left);
-        let mut place_of = vec![Region::Between; count as usize];
-        place_of.extend([Region::Left, Region::Right]);
-        let mut candidates = Vec::from(cheapest_cuts(&graph, &place_of));
-        candidates.push(was_left.clone());
-        Near {
-            left: best(&graph, candidates, aim).unwrap_or(was_left),
-            places,
-            first,
-            graph,
-        }
-    }
-
-    /// Adds what lies beyond the aggregates near a cut to their graph, a vertex for each side.
-    fn add_sides(&self, places: &[Region], graph: &mut Graph, was_left: &mut Vec<bool>) {
-        for side in [Region::Left, Region::Right] {
-            let whole = || (0..places.len()).filter(|&aggregate| places[aggregate] == side);
-            let dofs: f64 = whole()
-                .map(|aggregate| f64::from(self.graph.dofs[aggregate]))
-                .sum();
-            graph.dofs.push(dofs as f32);
-            graph
-                .outside
-                .push(whole().map(|aggregate| self.graph.outside[aggregate]).sum());
-            was_left.push(side == Region::Left);
-        }
     }
 }
 

@@ -47,16 +47,7 @@ impl Problem {
             materials: model.materials.clone(),
             bodies: bodies.names.iter().cloned().map(Body::new).collect(),
             contacts: model.contacts.iter().map(summary).collect(),
-            steps: (model.steps.iter())
-                .map(|step| LoadStep {
-                    name: step.name.clone(),
-                    time: step.time,
-                    absent: Absent {
-                        bodies: bodies.among(model, &step.absent_bodies),
-                        contacts: step.absent_contacts.clone(),
-                    },
-                })
-                .collect(),
+            steps: load_steps(model, &bodies),
             subdomains: subdomains
                 .iter()
                 .map(|s| SubdomainSummary {
@@ -94,6 +85,20 @@ impl Problem {
         problem.catalog.choose_clusters(None);
         Ok(problem)
     }
+}
+
+/// The load steps, with what isn't there in each.
+fn load_steps(model: &Model, bodies: &Bodies) -> Vec<LoadStep> {
+    (model.steps.iter())
+        .map(|step| LoadStep {
+            name: step.name.clone(),
+            time: step.time,
+            absent: Absent {
+                bodies: bodies.among(model, &step.absent_bodies),
+                contacts: step.absent_contacts.clone(),
+            },
+        })
+        .collect()
 }
 
 fn summary(contact: &model::Contact) -> ContactSummary {

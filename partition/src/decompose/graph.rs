@@ -64,6 +64,18 @@ pub(super) struct Graph {
 }
 
 impl Graph {
+    /// A graph with room for as many vertices, of which it has only the numbers yet.
+    pub fn with_capacity(dim: usize, count: usize) -> Self {
+        Self {
+            dim,
+            ids: (0..count as u32).collect(),
+            dofs: Vec::with_capacity(count),
+            centres: Vec::with_capacity(count),
+            outside: Vec::with_capacity(count),
+            edges: Lists::with_capacity(count, 6 * count),
+        }
+    }
+
     /// The graph of the cells of a model.
     pub fn new(model: &Model) -> Self {
         let mesh = &model.mesh;

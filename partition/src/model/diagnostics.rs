@@ -6,9 +6,10 @@ mod undeclared;
 use std::collections::{BTreeMap, HashMap};
 
 use super::bodies::Bodies;
+use super::loaded_bodies::LoadedBodies;
 use super::steps::Loads;
 use super::touching::Declared;
-use super::{Contact, Material, groups};
+use super::{Contact, Material, activation, groups};
 use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::bounding_box::BoundingBox;
@@ -21,22 +22,42 @@ type Common = [[bool; 2]; 2];
 
 /// The parts of a model, each of them right by itself.
 pub(super) struct Diagnostics<'a> {
-    pub scene: &'a Scene,
-    pub bodies: &'a Bodies,
-    pub topology: &'a Topology,
-    pub materials: &'a [Material],
-    pub loads: &'a Loads,
-    pub contacts: &'a [Contact],
+    scene: &'a Scene,
+    bodies: &'a Bodies,
+    topology: &'a Topology,
+    materials: &'a [Material],
+    loads: &'a Loads,
+    contacts: &'a [Contact],
     /// The declarations of the contacts.
-    pub declared: &'a [Declared],
+    declared: &'a [Declared],
 }
 
-impl Diagnostics<'_> {
+impl<'a> Diagnostics<'a> {
+    /// The diagnostics of a scene on its bodies, with the contacts that were made as they are `declared`.
+    pub fn new(
+        scene: &'a Scene,
+        on: &'a LoadedBodies,
+        contacts: &'a [Contact],
+        declared: &'a [Declared],
+    ) -> Self {
+        Self {
+            scene,
+            bodies: &on.bodies,
+            topology: &on.topology,
+            materials: &on.materials,
+            loads: &on.loads,
+            contacts,
+            declared,
+        }
+    }
+
     /// A warning for each.
     ///
     /// # Errors
     /// One that is too large to be anything else.
     pub fn warnings(&self) -> Result<Vec<String>, InputError> {
+        let tables: Vec<&str> = self.declared.iter().map(|of| &of.table[..]).collect();
+        self.check_repeated_contacts(&activation::contacts(self.scene, &tables))?;
         let mut warnings = self.strains()?;
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
@@ -72,7 +93,7 @@ impl Diagnostics<'_> {
     ///
     /// # Errors
     /// Two that are there in the same load step: what they carry would follow from their order.
-    pub(super) fn check_repeated_contacts(&self, absent: &[Vec<u32>]) -> Result<(), InputError> {
+    fn check_repeated_contacts(&self, absent: &[Vec<u32>]) -> Result<(), InputError> {
         let contacts: Vec<_> = self.declared.iter().map(|of| &of.contact).collect();
         let mesh = &self.bodies.mesh;
         let mut of_facet: HashMap<u32, Vec<(usize, usize)>> = HashMap::new();

@@ -31,6 +31,35 @@ pub(super) enum Hit {
     },
 }
 
+impl Hit {
+    /// The nearest of the `nodes` on a line, each with the way to it and how far from the line it may be, or the facet
+    /// that it crossed before them, with the way to that.
+    fn nearest(
+        nodes: &[(u32, f64, f64)],
+        crossed: Option<(usize, f64)>,
+        back_facing: bool,
+    ) -> Self {
+        let nearest = nodes
+            .iter()
+            .copied()
+            .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        match (nearest, crossed) {
+            (Some((_, ahead, slack)), crossed)
+                if crossed.is_none_or(|(_, other)| ahead.abs() <= other.abs() + slack) =>
+            {
+                let mut together: Vec<u32> = (nodes.iter())
+                    .filter(|node| (node.1 - ahead).abs() <= slack)
+                    .map(|node| node.0)
+                    .collect();
+                together.sort_unstable();
+                Hit::Nodes(together)
+            }
+            (_, Some((facet, _))) => Hit::Facet(facet),
+            _ => Hit::Nothing { back_facing },
+        }
+    }
+}
+
 impl<'a> Target<'a> {
     /// Makes a surface ready to be searched: O(n log n) for n facets.
     pub fn new(surface: &'a Surface) -> Self {
@@ -93,23 +122,6 @@ impl<'a> Target<'a> {
                 crossed = Some((number, ahead));
             }
         }
-        let nearest = nodes
-            .iter()
-            .copied()
-            .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        match (nearest, crossed) {
-            (Some((_, ahead, slack)), crossed)
-                if crossed.is_none_or(|(_, other)| ahead.abs() <= other.abs() + slack) =>
-            {
-                let mut together: Vec<u32> = (nodes.iter())
-                    .filter(|node| (node.1 - ahead).abs() <= slack)
-                    .map(|node| node.0)
-                    .collect();
-                together.sort_unstable();
-                Hit::Nodes(together)
-            }
-            (_, Some((facet, _))) => Hit::Facet(facet),
-            _ => Hit::Nothing { back_facing },
-        }
+        Hit::nearest(&nodes, crossed, back_facing)
     }
 }

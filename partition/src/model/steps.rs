@@ -82,23 +82,8 @@ impl Loads {
         let loaded: Vec<u32> = (0..bodies.mesh.points.len() as u32)
             .filter(is_loaded)
             .collect();
-        let at_loaded = |forces: &[[f64; 3]]| -> Vec<[f64; 3]> {
-            loaded.iter().map(|&node| forces[node as usize]).collect()
-        };
-        let steps = scene.step.iter().zip(&all).zip(absent).enumerate();
-        let steps = steps.map(
-            |(k, ((step, (supports, forces, initial)), absent))| ModelStep {
-                name: step.name_or_number(k),
-                time: step.time.unwrap_or((k + 1) as f64),
-                supports: supports.iter().map(|support| support.value).collect(),
-                forces: at_loaded(forces),
-                initial_stress: initial.clone(),
-                absent_bodies: absent,
-                absent_contacts: Vec::new(),
-            },
-        );
-        let steps = steps.collect();
-        let forces = (loaded.iter().copied().zip(at_loaded(&all[0].1))).collect();
+        let steps = model_steps(scene, &all, &loaded, absent);
+        let forces = (loaded.iter().copied().zip(at(&loaded, &all[0].1))).collect();
         let (supports, _, initial_stress) = all.swap_remove(0);
         Ok(Self {
             names,
@@ -117,6 +102,49 @@ impl Loads {
             false => self.steps.iter().map(|step| step.supports[i]).collect(),
         }
     }
+}
+
+/// The load steps of a scene: of each loading its supports, its forces at the nodes that are `loaded`, its initial stress
+/// and the bodies that are `absent`.
+fn model_steps(
+    scene: &Scene,
+    loadings: &[(Vec<Support>, Vec<[f64; 3]>, InitialStress)],
+    loaded: &[u32],
+    absent: Vec<Vec<u32>>,
+) -> Vec<ModelStep> {
+    let steps = scene.step.iter().zip(loadings).zip(absent).enumerate();
+    let steps = steps.map(
+        |(k, ((step, (supports, forces, initial)), absent))| ModelStep {
+            name: step.name_or_number(k),
+            time: step.time.unwrap_or((k + 1) as f64),
+            supports: supports.iter().map(|support| support.value).collect(),
+            forces: at(loaded, forces),
+            initial_stress: initial.clone(),
+            absent_bodies: absent,
+            absent_contacts: Vec::new(),
+        },
+    );
+    steps.collect()
+}
+
+/// The forces at some nodes, of those at all.
+fn at(nodes: &[u32], forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    nodes.iter().map(|&node| forces[node as usize]).collect()
+}
+
+/// The steps with the contacts that aren't there in each, those of the scene and those of bolts.
+pub(super) fn with_absent_contacts(
+    steps: Vec<ModelStep>,
+    of_scene: Vec<Vec<u32>>,
+    of_bolts: Vec<Vec<u32>>,
+) -> Vec<ModelStep> {
+    (steps.into_iter().zip(of_scene))
+        .zip(of_bolts)
+        .map(|((step, of_scene), of_bolts)| ModelStep {
+            absent_contacts: [of_scene, of_bolts].concat(),
+            ..step
+        })
+        .collect()
 }
 
 /// Checks that step k prescribes displacements where the first step does, in the same directions: the

@@ -112,20 +112,16 @@ pub(super) fn contacts(
     Ok(contacts)
 }
 
-/// Finds the patches of every search.
-fn search(
+/// The pairs of facets that face each other within every search, but for those that an `explicit` contact has.
+fn facing_sides(
     searches: &mut [Search],
-    scene: &Scene,
     skin: &Skin,
-    topology: &Topology,
-    ties: &Ties,
-    warnings: &mut Vec<String>,
-) -> Result<(), InputError> {
-    let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
+    names: &[&str],
+    explicit: &Explicit,
+) -> Vec<Vec<Facing>> {
     let within = searches.iter().filter_map(|search| search.between.within);
     let farthest = within.fold(0.0, f64::max);
     let facing = skin.facing(|size| farthest.max(NEAR * size));
-    let explicit = Explicit::new(scene, skin.mesh, topology);
     let mut of_search: Vec<Vec<Facing>> = vec![Vec::new(); searches.len()];
     for pair in facing {
         let [a, b] = pair.facets.map(|facet| &skin.facets[facet]);
@@ -141,6 +137,25 @@ fn search(
             false => of_search[index].push(pair),
         }
     }
+    of_search
+}
+
+/// Finds the patches of every search.
+fn search(
+    searches: &mut [Search],
+    scene: &Scene,
+    skin: &Skin,
+    topology: &Topology,
+    ties: &Ties,
+    warnings: &mut Vec<String>,
+) -> Result<(), InputError> {
+    let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
+    let of_search = facing_sides(
+        searches,
+        skin,
+        &names,
+        &Explicit::new(scene, skin.mesh, topology),
+    );
     let neighbours = skin.neighbours();
     let unit = scene.units.length();
     for (search, pairs) in searches.iter_mut().zip(of_search) {
@@ -244,12 +259,7 @@ impl Sides<'_> {
         groups: &mut Vec<(String, Vec<CellFacet>)>,
     ) -> Result<Vec<Vec<Declared>>, InputError> {
         let names: Vec<&str> = self.scene.bodies.keys().map(String::as_str).collect();
-        let explicit = self.scene.contact.iter().filter_map(Declaration::contact);
-        let mut taken: HashSet<String> = (explicit.map(|contact| &contact.name))
-            .chain(self.scene.tie.iter().map(|tie| &tie.name))
-            .chain(self.scene.equation.iter().map(|equation| &equation.name))
-            .cloned()
-            .collect();
+        let mut taken = self.taken_names();
         let mut taken_groups: HashSet<String> = self.skin.mesh.groups.keys().cloned().collect();
         let mut all = Vec::new();
         for search in searches {
@@ -300,6 +310,16 @@ impl Sides<'_> {
             all.push(of_search);
         }
         Ok(all)
+    }
+
+    /// The names that the scene gives to contacts, ties and equations.
+    fn taken_names(&self) -> HashSet<String> {
+        let explicit = self.scene.contact.iter().filter_map(Declaration::contact);
+        (explicit.map(|contact| &contact.name))
+            .chain(self.scene.tie.iter().map(|tie| &tie.name))
+            .chain(self.scene.equation.iter().map(|equation| &equation.name))
+            .cloned()
+            .collect()
     }
 
     /// The two sides of a contact.

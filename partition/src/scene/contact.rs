@@ -296,25 +296,7 @@ impl TryFrom<Keys> for Declaration {
             }
             (None, Some(sides)) => sides,
         };
-        let count = sides.len();
-        let mut sides = sides.into_iter();
-        let (side_a, partner) = match (sides.next(), sides.next(), sides.next(), keys.obstacle) {
-            (Some(a), Some(b), None, None) => {
-                if let Some(name) = a.iter().find(|name| b.iter().any(|other| other == *name)) {
-                    return Err(format!("'{name}' is on both 'sides'"));
-                }
-                (a, Partner::Side(b))
-            }
-            (Some(_), None, None, Some(_)) if keys.pairing.is_some() => {
-                return Err("'pairing' is of two sides; expected none beside an 'obstacle'".into());
-            }
-            (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
-            _ => {
-                return Err(format!(
-                    "the number of 'sides' is {count}; expected 2, or 1 beside an 'obstacle'"
-                ));
-            }
-        };
+        let (side_a, partner) = side_and_partner(sides, keys.obstacle, keys.pairing)?;
         Ok(Self::Contact(Contact {
             name: keys.name,
             side_a,
@@ -330,6 +312,33 @@ impl TryFrom<Keys> for Declaration {
             tie: None,
         }))
     }
+}
+
+/// The first of the `sides`, and what it is in contact with: the second one or an `obstacle`.
+fn side_and_partner(
+    sides: Vec<Names>,
+    obstacle: Option<Obstacle>,
+    pairing: Option<Pairing>,
+) -> Result<(Names, Partner), String> {
+    let count = sides.len();
+    let mut sides = sides.into_iter();
+    Ok(match (sides.next(), sides.next(), sides.next(), obstacle) {
+        (Some(a), Some(b), None, None) => {
+            if let Some(name) = a.iter().find(|name| b.iter().any(|other| other == *name)) {
+                return Err(format!("'{name}' is on both 'sides'"));
+            }
+            (a, Partner::Side(b))
+        }
+        (Some(_), None, None, Some(_)) if pairing.is_some() => {
+            return Err("'pairing' is of two sides; expected none beside an 'obstacle'".into());
+        }
+        (Some(a), None, None, Some(obstacle)) => (a, Partner::Obstacle(obstacle)),
+        _ => {
+            return Err(format!(
+                "the number of 'sides' is {count}; expected 2, or 1 beside an 'obstacle'"
+            ));
+        }
+    })
 }
 
 pub(super) fn contact_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {

@@ -156,16 +156,7 @@ impl Scene {
             found.extend(fault.map(|message| (path, message)));
         };
         self.wrong_materials(&mut check);
-        for (name, body) in &self.bodies {
-            let fault = body.body_force.as_ref().and_then(|force| force.fault(dim));
-            check(at(["bodies", name, "body_force"]), fault);
-            let initial = body.initial_stress.as_ref();
-            let fault = initial.and_then(|stress| stress.fault(dim, self.plane));
-            check(at(["bodies", name, "initial_stress"]), fault);
-            let thermal = body.thermal.as_ref();
-            let fault = thermal.and_then(|thermal| thermal.temperature.fault(dim));
-            check(at(["bodies", name, "thermal", "temperature"]), fault);
-        }
+        self.wrong_bodies(dim, &mut check);
         let of_scene = OnGroups {
             displacement: &self.displacement,
             traction: &self.traction,
@@ -211,6 +202,20 @@ impl Scene {
         self.wrong_contacts(dim, &mut check);
         self.motions_of_wrong_dimension(dim, &mut check);
         found.into_iter().next()
+    }
+
+    /// Loads of bodies that are of the wrong dimension.
+    fn wrong_bodies(&self, dim: usize, check: &mut impl FnMut(Vec<Step>, Option<String>)) {
+        for (name, body) in &self.bodies {
+            let fault = body.body_force.as_ref().and_then(|force| force.fault(dim));
+            check(at(["bodies", name, "body_force"]), fault);
+            let initial = body.initial_stress.as_ref();
+            let fault = initial.and_then(|stress| stress.fault(dim, self.plane));
+            check(at(["bodies", name, "initial_stress"]), fault);
+            let thermal = body.thermal.as_ref();
+            let fault = thermal.and_then(|thermal| thermal.temperature.fault(dim));
+            check(at(["bodies", name, "thermal", "temperature"]), fault);
+        }
     }
 
     /// Stiffnesses of the wrong size.

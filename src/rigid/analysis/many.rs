@@ -47,13 +47,7 @@ impl Scene {
         let (bodies, names) = (&self.bodies, &self.names);
         let rows = self.both_ways();
         let (touched, alone) = kinematics.touched(&rows);
-        let mut driven = DVector::zeros(kinematics.len);
-        for motion in &alone {
-            let own = motion.bodies.iter();
-            let along: f64 = own.map(|(b, z)| dot(z, &bodies[*b].load)).sum();
-            let own = kinematics.sparse_motion(motion);
-            own.iter().for_each(|&(i, z)| driven[i] += along * z);
-        }
+        let driven = self.driven_alone(kinematics, &alone);
         let touched = Touched {
             sparse: rows.iter().map(|r| touched.sparse_row(r)).collect(),
             load: touched.load(bodies),
@@ -104,6 +98,18 @@ impl Scene {
                 }))
             }
         }
+    }
+
+    /// The motion that the bodies' own loads drive, along free motions of bodies `alone`.
+    fn driven_alone(&self, kinematics: &Kinematics, alone: &[FreeMotion]) -> DVector<f64> {
+        let mut driven = DVector::zeros(kinematics.len);
+        for motion in alone {
+            let own = motion.bodies.iter();
+            let along: f64 = own.map(|(b, z)| dot(z, &self.bodies[*b].load)).sum();
+            let own = kinematics.sparse_motion(motion);
+            own.iter().for_each(|&(i, z)| driven[i] += along * z);
+        }
+        driven
     }
 
     /// The load that normal forces can't balance, if it is more than round-off.

@@ -45,32 +45,17 @@ pub fn write_solution(
         }
     };
     let parcels = Parcel::cut(comm, &slabs, plan);
-    let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
-    for parcel in parcels.iter().filter(|_| beside.is_none()) {
-        match (parcel.owner, comm.is_root()) {
-            // Rows of the root need no message.
-            (ROOT, true) => parcel.append_to(&mut slab, context, solution),
-            (owner, true) => slab.append(comm.receive(owner)),
-            (owner, false) if owner == comm.rank() => {
-                sent.restart(parcel.subdomains.start);
-                parcel.append_to(&mut sent, context, solution);
-                comm.send(ROOT, &sent);
-            }
-            _ => {}
+    match beside {
+        None => stream(context, solution, &parcels, &mut write),
+        Some(beside) => {
+            let written = write_own(beside, &parcels, context, solution);
+            let digests = comm.agree(written.map_err(Failure::from))?;
+            let digests = comm.collect(&digests);
+            write(&mut |file| {
+                file.take_as_written(&digests);
+                Ok(())
+            });
         }
-        if parcel.ends_slab && comm.is_root() {
-            write(&mut |file| file.write_subdomains(&slab));
-            slab.restart(parcel.subdomains.end);
-        }
-    }
-    if let Some(beside) = beside {
-        let written = write_own(beside, &parcels, context, solution, &mut slab);
-        let digests = comm.agree(written.map_err(Failure::from))?;
-        let digests = comm.collect(&digests);
-        write(&mut |file| {
-            file.take_as_written(&digests);
-            Ok(())
-        });
     }
     comm.gather(
         &plan.group_owners(),
@@ -93,6 +78,34 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
+/// The parcels of all ranks on their way to the root, which writes a slab of them as soon as it is complete. Collective.
+fn stream(
+    context: &Context<'_>,
+    solution: &Solution,
+    parcels: &[Parcel],
+    write: &mut impl FnMut(&mut dyn FnMut(&mut ResultFile) -> Result<(), OutputError>),
+) {
+    let comm = context.comm;
+    let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
+    for parcel in parcels {
+        match (parcel.owner, comm.is_root()) {
+            // Rows of the root need no message.
+            (ROOT, true) => parcel.append_to(&mut slab, context, solution),
+            (owner, true) => slab.append(comm.receive(owner)),
+            (owner, false) if owner == comm.rank() => {
+                sent.restart(parcel.subdomains.start);
+                parcel.append_to(&mut sent, context, solution);
+                comm.send(ROOT, &sent);
+            }
+            _ => {}
+        }
+        if parcel.ends_slab && comm.is_root() {
+            write(&mut |file| file.write_subdomains(&slab));
+            slab.restart(parcel.subdomains.end);
+        }
+    }
+}
+
 /// Writes the parcels of this rank beside those of others; returns the digests of what it wrote.
 ///
 /// # Errors
@@ -102,15 +115,15 @@ fn write_own(
     parcels: &[Parcel],
     context: &Context<'_>,
     solution: &Solution,
-    slab: &mut SubdomainResults,
 ) -> Result<Vec<u64>, OutputError> {
     let own = parcels
         .iter()
         .filter(|parcel| parcel.owner == context.comm.rank());
+    let mut slab = SubdomainResults::default();
     for parcel in own {
         slab.restart(parcel.subdomains.start);
-        parcel.append_to(slab, context, solution);
-        beside.write(slab)?;
+        parcel.append_to(&mut slab, context, solution);
+        beside.write(&slab)?;
     }
     beside.finish_step(context.comm.hosts())
 }

@@ -8,7 +8,8 @@ use super::{ActiveSetFront, ActiveSetFronts};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::schur::condensed::Condensed;
-use crate::schur::merge::{Merge, OwnJumps};
+use crate::schur::front_order::OwnJumps;
+use crate::schur::merge::Merge;
 use crate::tree::front_jumps::FrontJumps;
 
 impl ActiveSetFronts {

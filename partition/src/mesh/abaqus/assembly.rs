@@ -294,6 +294,14 @@ impl Deck {
             let formulation = (part.has_modes[element], part.is_reduced[element]);
             self.push_tag(tag, part.is_side[element], formulation);
         }
+        self.place_sets(part, instance, (first_node, first_element));
+        let all = first_element..self.elements.len() as u32;
+        self.element_sets.extend(instance, false, all);
+        Ok(())
+    }
+
+    /// The sets and surfaces of a part as those of an instance, whose first node and element these are.
+    fn place_sets(&mut self, part: &Self, instance: &str, (first_node, first_element): (u32, u32)) {
         let name = |set: &str| format!("{instance}.{set}");
         for set in part.node_sets.iter() {
             let members = set.members.list().iter().map(|&node| node + first_node);
@@ -322,8 +330,5 @@ impl Deck {
             self.surfaces
                 .extend(&name(&surface.name), surface.internal, members);
         }
-        let all = first_element..self.elements.len() as u32;
-        self.element_sets.extend(instance, false, all);
-        Ok(())
     }
 }

@@ -196,21 +196,7 @@ impl Grouping<'_> {
                 .extend(facets);
         }
         for surface in shown(&deck.node_surfaces) {
-            let nodes = self.own_nodes(surface);
-            let (side, covered) = self.boundary.between(self.mesh, &nodes);
-            let name = plain(&surface.name);
-            if side.is_empty() {
-                groups.insert((name, 0), nodes.into_iter().collect());
-                continue;
-            }
-            for &node in nodes.difference(&covered) {
-                let tag = self.mesh.node_tags[node as usize];
-                let item = format!("{tag} of '{}'", name::shown(&name));
-                let what = "nodes of surfaces belong to no facet whose nodes all are in these, and are left out";
-                self.notes.add(what, item);
-            }
-            let facets = self.placed(side);
-            groups.entry((name, dim - 1)).or_default().extend(facets);
+            self.add_side(surface, plain(&surface.name), &mut groups);
         }
         for set in shown(&deck.node_sets) {
             let nodes = self.own_nodes(set);
@@ -232,6 +218,27 @@ impl Grouping<'_> {
             };
         }
         (groups, self.facets, self.notes)
+    }
+
+    /// The facets whose nodes all are in a surface of nodes, as a group of its name; its nodes where there are none.
+    fn add_side(&mut self, surface: &Set<u32>, name: String, groups: &mut Named) {
+        let nodes = self.own_nodes(surface);
+        let (side, covered) = self.boundary.between(self.mesh, &nodes);
+        if side.is_empty() {
+            groups.insert((name, 0), nodes.into_iter().collect());
+            return;
+        }
+        for &node in nodes.difference(&covered) {
+            let tag = self.mesh.node_tags[node as usize];
+            let item = format!("{tag} of '{}'", name::shown(&name));
+            let what = "nodes of surfaces belong to no facet whose nodes all are in these, and are left out";
+            self.notes.add(what, item);
+        }
+        let facets = self.placed(side);
+        groups
+            .entry((name, self.mesh.dim - 1))
+            .or_default()
+            .extend(facets);
     }
 
     /// The nodes of a set that cells have.

@@ -65,8 +65,13 @@ impl Deck {
         let instance = block.parameter("INSTANCE");
         let mut members = Members::default();
         if let (Of::Nodes, Some(elements)) = (of, block.parameter("ELSET")) {
-            let elements =
-                self.members(source, block.place, Of::Elements, instance, elements, name)?;
+            let elements = self.members(
+                source,
+                block.place,
+                Of::Elements,
+                (instance, elements),
+                name,
+            )?;
             let nodes = |&element: &u32| self.elements.nodes_of(element as usize);
             members.extend(elements.iter().flat_map(nodes).copied());
         }
@@ -79,7 +84,7 @@ impl Deck {
             }
             for item in source.items(data).filter(|item| !item.is_empty()) {
                 if item.parse::<i64>().is_ok() || named.insert(item) {
-                    members.extend(self.members(source, data.place, of, instance, item, name)?);
+                    members.extend(self.members(source, data.place, of, (instance, item), name)?);
                 }
             }
         }
@@ -174,14 +179,13 @@ impl Deck {
         }
     }
 
-    /// The nodes or elements that an item of the set `set` means; what isn't there is left out.
+    /// The nodes or elements that an item of the set `set` means, in an instance or the whole; what isn't there is left out.
     pub(crate) fn members(
         &mut self,
         source: &Source,
         at: LinePlace,
         of: Of,
-        instance: Option<&str>,
-        item: &str,
+        (instance, item): (Option<&str>, &str),
         set: &str,
     ) -> Result<Vec<u32>, InputError> {
         let what = of.word();
@@ -238,12 +242,12 @@ impl Deck {
             let item = items.next().unwrap_or_default();
             let second = items.next().unwrap_or_default();
             if kind == "NODE" {
-                let members = self.members(source, data.place, Of::Nodes, None, item, name)?;
+                let members = self.members(source, data.place, Of::Nodes, (None, item), name)?;
                 self.node_surfaces.extend(name, internal, members);
                 continue;
             }
             let mut faces = Vec::new();
-            for element in self.members(source, data.place, Of::Elements, None, item, name)? {
+            for element in self.members(source, data.place, Of::Elements, (None, item), name)? {
                 faces.push(self.face(source, data.place, element, second)?);
             }
             self.surfaces.extend(name, internal, faces);

@@ -9,6 +9,7 @@ use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::scene::condition::Names;
+use crate::scene::initial::Thermal;
 use crate::scene::loading::Loading;
 
 /// Strain that hardly anybody means: by then small strains are no approximation.
@@ -166,20 +167,30 @@ impl Diagnostics<'_> {
             estimates.push(against(what, most / stiffness));
         }
         if let Some(thermal) = &body.thermal {
-            let temperature = loading.temperature[index].unwrap_or(&thermal.temperature);
-            let scale = loading.scale.thermal * thermal.expansion.0;
-            let size = |x| Ok(scale * temperature.at(x)?);
-            let strain = self.largest((index, first), temperature.is_constant(), size);
-            estimates.push(Estimate {
-                strain,
-                words: format!(
-                    "body '{name}': heat makes strains of about {}, where small ones are meant; is the expansion \
-                     that of one degree?",
-                    short(strain)
-                ),
-            });
+            estimates.push(self.of_heat(loading, (index, first), (name, thermal)));
         }
         estimates
+    }
+
+    /// The strain of heat, as the material of that body expands.
+    fn of_heat(
+        &self,
+        loading: &Loading,
+        (index, first): (usize, usize),
+        (name, thermal): (&str, &Thermal),
+    ) -> Estimate {
+        let temperature = loading.temperature[index].unwrap_or(&thermal.temperature);
+        let scale = loading.scale.thermal * thermal.expansion.0;
+        let size = |x| Ok(scale * temperature.at(x)?);
+        let strain = self.largest((index, first), temperature.is_constant(), size);
+        Estimate {
+            strain,
+            words: format!(
+                "body '{name}': heat makes strains of about {}, where small ones are meant; is the expansion \
+                 that of one degree?",
+                short(strain)
+            ),
+        }
     }
 
     /// The largest `size` at the nodes of a body, by its index and first cell.

@@ -9,6 +9,10 @@ use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::facets::Facets;
 
 impl ProblemFile {
+    /// The cells of the subdomain with this index, on its `points`, the last of which are those of reference nodes.
+    ///
+    /// # Errors
+    /// A cell that is degenerate, overlaps another one or lacks nodes, or a point that no cell has.
     pub(super) fn take_cells(
         &self,
         slices: &Slices,
@@ -56,7 +60,29 @@ impl ProblemFile {
             let what = format!("offset {start}; expected {}", nodes.len());
             return Err(slices.offsets.error(first + rows.len(), &what));
         }
-        let of_cells = points.len() - reference_nodes;
+        self.check_used(slices, index, &used, reference_nodes)?;
+        if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
+            let [one, other] = cells.map(|cell| cell as usize);
+            let [one, other] = [one.min(other), one.max(other)];
+            let row = entries.start + elements.offsets()[other];
+            let [one, other] = [one, other].map(|cell| rows.start + cell);
+            return Err(connectivity.error(row, &format!("the cells {one} and {other} {what}")));
+        }
+        Ok(elements)
+    }
+
+    /// The check that all points are `used` by cells, but for those of reference nodes, which are the last.
+    ///
+    /// # Errors
+    /// A point that no cell has, or one of a reference node that a cell has.
+    fn check_used(
+        &self,
+        slices: &Slices,
+        index: usize,
+        used: &[bool],
+        reference_nodes: usize,
+    ) -> Result<(), InputError> {
+        let of_cells = used.len() - reference_nodes;
         if let Some(node) = used[of_cells..].iter().position(|used| *used) {
             let row = self.contents.rows('P', index).start + of_cells + node;
             let what = "the point belongs to a cell; expected one of a reference point";
@@ -66,14 +92,7 @@ impl ProblemFile {
             let row = self.contents.rows('P', index).start + node;
             return Err(slices.points.error(row, "the point belongs to no cell"));
         }
-        if let Some((cells, what)) = fault_between_cells(&elements, points.len()) {
-            let [one, other] = cells.map(|cell| cell as usize);
-            let [one, other] = [one.min(other), one.max(other)];
-            let row = entries.start + elements.offsets()[other];
-            let [one, other] = [one, other].map(|cell| rows.start + cell);
-            return Err(connectivity.error(row, &format!("the cells {one} and {other} {what}")));
-        }
-        Ok(elements)
+        Ok(())
     }
 }
 

@@ -85,6 +85,39 @@ fn spread(i: usize, attempt: usize) -> f64 {
     0.5 + ((i + 1) as f64 * GOLDEN + attempt as f64 * 0.37).fract()
 }
 
+/// The jumps of all limits, then their forces, for a unit of the way of each independent jump and of the force of each
+/// dependent row, and both where all these are 0; in the scale of energies.
+fn system_of_ways(
+    problem: &FrictionProblem<'_>,
+    scale: &[f64],
+    bounds: &[f64],
+) -> (Mat<f64>, Vec<f64>) {
+    let contact = &problem.contact;
+    let (m, count) = (contact.c.len(), bounds.len());
+    let mut start = Mat::zeros(2 * count, count);
+    let mut at_start = vec![0.0; 2 * count];
+    at_start[..m].copy_from_slice(&bounds[..m]);
+    for i in 0..m {
+        let stiffness = |j: usize| contact.h[(i, j)] / (scale[i] * scale[j]);
+        let held: f64 = (0..m).map(|j| stiffness(j) * bounds[j]).sum();
+        at_start[count + i] = contact.c[i] / scale[i] - held;
+        (0..m).for_each(|j| start[(count + i, j)] = stiffness(j));
+        start[(count + i, i)] += SPRING;
+        start[(i, i)] = -1.0;
+    }
+    for (k, row) in (m..).zip(contact.rows.iter()) {
+        for &(i, c) in row {
+            let c = c * scale[k] / scale[i];
+            at_start[k] += c * bounds[i];
+            start[(k, i)] -= c;
+            start[(count + i, k)] -= c;
+        }
+        start[(k, k)] = -YIELD;
+        start[(count + k, k)] = 1.0;
+    }
+    (start, at_start)
+}
+
 impl Path {
     /// Beginning of the path, where all is closed.
     pub(super) fn new(problem: &FrictionProblem<'_>, polygons: &Polygons) -> Self {
@@ -94,28 +127,8 @@ impl Path {
         let bounds: Vec<f64> = (contact.bounds.iter().zip(&scale))
             .map(|(bound, scale)| bound * scale)
             .collect();
-        let mut start = Mat::zeros(2 * count, count);
-        let mut at_start = vec![0.0; 2 * count];
-        at_start[..m].copy_from_slice(&bounds[..m]);
-        for i in 0..m {
-            let stiffness = |j: usize| contact.h[(i, j)] / (scale[i] * scale[j]);
-            let held: f64 = (0..m).map(|j| stiffness(j) * bounds[j]).sum();
-            at_start[count + i] = contact.c[i] / scale[i] - held;
-            (0..m).for_each(|j| start[(count + i, j)] = stiffness(j));
-            start[(count + i, i)] += SPRING;
-            start[(i, i)] = -1.0;
-        }
+        let (start, at_start) = system_of_ways(problem, &scale, &bounds);
         let unit = largest(&at_start[count..]).max(f64::MIN_POSITIVE);
-        for (k, row) in (m..).zip(contact.rows.iter()) {
-            for &(i, c) in row {
-                let c = c * scale[k] / scale[i];
-                at_start[k] += c * bounds[i];
-                start[(k, i)] -= c;
-                start[(count + i, k)] -= c;
-            }
-            start[(k, k)] = -YIELD;
-            start[(count + k, k)] = 1.0;
-        }
         let mut path = Self {
             responses: Responses::new(Mat::new()),
             value: [Vec::new(), Vec::new()],
@@ -144,22 +157,28 @@ impl Path {
         for (i, added) in path.added.iter_mut().enumerate() {
             *added = if is_tangential[i] { 0.0 } else { *added };
         }
-        for point in 0..path.points.len() {
-            let polygon = path.points[point].clone();
+        path.place_free_points();
+        path.refresh();
+        path
+    }
+
+    /// The bounds of points that are free in the place of their ways, and the points whose friction vanishes with a
+    /// normal limit.
+    fn place_free_points(&mut self) {
+        for point in 0..self.points.len() {
+            let polygon = self.points[point].clone();
             if polygon.is_free {
                 for (side, limit) in polygon.limits().enumerate() {
-                    path.zero[limit] = Quantity::Bound {
+                    self.zero[limit] = Quantity::Bound {
                         point,
                         side,
                         steep: false,
                     };
                 }
             } else if let (Some(n), true) = (polygon.normal, polygon.only_closed) {
-                path.of_normal[n].push(point);
+                self.of_normal[n].push(point);
             }
         }
-        path.refresh();
-        path
     }
 
     /// A quantity as a sum of jumps and forces, and the rest of it.

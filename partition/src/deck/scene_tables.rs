@@ -1,0 +1,131 @@
+//! The tables of a deck's scene: what it has on groups of the mesh, under names of their own, before it is written.
+
+use super::conditions::{self, SceneEquation};
+use super::content::Content;
+use super::couplings::SceneCoupling;
+use super::cyclic::SceneCyclic;
+use super::document::{Document, Names};
+use super::group_load::{OnGroup, OnGroups};
+use super::groups::Groups;
+use super::place::Places;
+use super::presence::Presence;
+use super::pretensions::{self, ScenePretension};
+use super::sections::Body;
+use super::springs::SceneSpring;
+use super::ties::SceneTie;
+use crate::error::InputError;
+
+/// The tables of a scene, but for its materials.
+pub(super) struct SceneTables {
+    pub(super) bodies: Vec<Body>,
+    /// The name of each body, which is that of its group.
+    pub(super) names: Vec<String>,
+    pub(super) loads: Vec<OnGroup>,
+    /// The sides of each pair of surfaces.
+    pub(super) sides: Vec<[String; 2]>,
+    /// The name of each pair of surfaces.
+    pub(super) pairs: Vec<String>,
+    pub(super) ties: Vec<SceneTie>,
+    equations: Vec<SceneEquation>,
+    springs: Vec<SceneSpring>,
+    couplings: Vec<SceneCoupling>,
+    sectors: Vec<SceneCyclic>,
+    bolts: Vec<ScenePretension>,
+    /// The names of conditions that are taken.
+    pub(super) taken: Names,
+}
+
+impl SceneTables {
+    /// The tables of what a deck holds, of plane scenes with forces per `thickness`; sets that they need are added to the
+    /// deck.
+    ///
+    /// # Errors
+    /// Conditions that a scene can't say.
+    pub(super) fn new(
+        places: &mut Places,
+        content: &Content,
+        bodies: Vec<Body>,
+        thickness: f64,
+    ) -> Result<Self, InputError> {
+        let source = places.source;
+        let mut on_groups = OnGroups {
+            steps: &content.steps,
+            dim: places.dim(),
+            thickness,
+            groups: Groups::new(places),
+        };
+        let names: Vec<String> = (bodies.iter())
+            .map(|body| {
+                on_groups
+                    .groups
+                    .of_cells(&body.cells, &content.sections[body.section].set)
+            })
+            .collect();
+        let loads = on_groups.all(source)?;
+        let mut groups = on_groups.groups;
+        let sides: Vec<[String; 2]> = (content.contacts.pairs.iter())
+            .map(|pair| [&pair.slave, &pair.master].map(|side| groups.of_surface(side)))
+            .collect();
+        let ties = content.ties.in_scene(&mut groups);
+        let mut taken = Names::default();
+        let pairs: Vec<String> = (sides.iter())
+            .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
+            .collect();
+        let (steps, systems) = (&content.steps, &content.steps.systems);
+        Ok(Self {
+            // Fields are made in this order, on which names depend.
+            equations: conditions::in_scene(&content.conditions, &mut groups, &mut taken),
+            springs: (content.springs).in_scene(&mut groups, thickness, systems, &mut taken)?,
+            couplings: content.couplings.in_scene(
+                &mut groups,
+                (&steps.done, thickness),
+                (systems, content.orientations()),
+                &mut taken,
+            )?,
+            sectors: content.sectors.in_scene(&mut groups, &mut taken)?,
+            bolts: (content.pretensions).in_scene(&mut groups, steps, thickness, &mut taken)?,
+            bodies,
+            names,
+            loads,
+            sides,
+            pairs,
+            ties,
+            taken,
+        })
+    }
+
+    /// The steps of equations and bodies that aren't there in all.
+    pub(super) fn presences(&self) -> impl Iterator<Item = Presence> {
+        let equations = self.equations.iter().filter_map(SceneEquation::presence);
+        let bodies = self.bodies.iter().zip(&self.names);
+        equations.chain(bodies.filter_map(|(body, name)| body.presence(name)))
+    }
+
+    /// The conditions between groups, but for contacts and ties, written behind what is there.
+    pub(super) fn write_conditions(&self, document: &mut Document) {
+        for coupling in &self.couplings {
+            coupling.write(document);
+        }
+        for sector in &self.sectors {
+            sector.write(document);
+        }
+        for bolt in &self.bolts {
+            bolt.write(document);
+        }
+        for spring in &self.springs {
+            spring.write(document);
+        }
+        for equation in &self.equations {
+            equation.write(document);
+        }
+    }
+
+    /// The values of these conditions in a step, written behind it.
+    pub(super) fn write_step(&self, number: usize, document: &mut Document) {
+        conditions::write_step(&self.equations, number, document);
+        for coupling in &self.couplings {
+            coupling.write_step(number, document);
+        }
+        pretensions::write_step(&self.bolts, number, document);
+    }
+}

@@ -1,0 +1,99 @@
+//! The constraints of a model: contacts, and equations between displacements behind them.
+
+use super::activation;
+use super::contact::Contacts;
+use super::crack_tips;
+use super::cyclic;
+use super::equations;
+use super::held_nodes::HeldNodes;
+use super::loaded_bodies::LoadedBodies;
+use super::parts::Contact;
+use super::touching::Declared;
+use crate::crack_tip::CrackTip;
+use crate::error::InputError;
+use crate::scene::Scene;
+use crate::scene::material::PlaneState;
+
+/// Contacts and equations between bodies, and the crack tips that contacts end at.
+#[derive(Default)]
+pub(super) struct Constraints<'a> {
+    /// The contacts that were declared or found and have points.
+    pub contacts: Vec<Contact>,
+    /// The table of each contact in the scene.
+    tables: Vec<&'a str>,
+    /// Equations, in the form of contacts.
+    pub equations: Vec<Contact>,
+    /// Crack tips of the plane, each with a cell that has it.
+    pub tips: Vec<(u32, CrackTip)>,
+    /// The contacts that were found and the crack tips that are passed by, in words.
+    pub found: Vec<String>,
+}
+
+impl<'a> Constraints<'a> {
+    /// The contacts that are `declared`, and the equations of the scene and of its sectors.
+    ///
+    /// # Errors
+    /// Sides that don't match, supports that press into each other, contacts with bodies that come later, or equations of
+    /// nodes that aren't there.
+    pub fn new(
+        scene: &Scene,
+        on: &LoadedBodies,
+        plane: Option<PlaneState>,
+        declared: &'a [Declared],
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, InputError> {
+        let (bodies, topology) = (&on.bodies, &on.topology);
+        let held = HeldNodes::new(&on.loads);
+        let sides = Contacts::new(&bodies.mesh, topology, held, scene);
+        let mut all = Self::default();
+        all.make(&sides, declared, warnings)?;
+        activation::check(scene, bodies, &all.contacts)?;
+        let (tips, coarse) = crack_tips::find(
+            (&bodies.mesh, topology),
+            plane,
+            &bodies.cell_material,
+            &all.contacts,
+        );
+        all.tips = tips;
+        all.found.extend(crack_tips::remark(coarse));
+        all.equations = equations::equations(scene, &bodies.mesh, all.contacts.len())?;
+        let count = all.count();
+        let of_sectors = cyclic::cyclic(scene, bodies, &mut all.contacts, count)?;
+        all.equations.extend(of_sectors);
+        Ok(all)
+    }
+
+    /// The contacts between their `sides`, behind those that were made before.
+    ///
+    /// # Errors
+    /// Sides that don't match, or that supports press into each other.
+    fn make(
+        &mut self,
+        sides: &Contacts,
+        declared: &'a [Declared],
+        warnings: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        for of in declared {
+            let made = sides.declared(self.contacts.len() as u32, &of.contact, warnings)?;
+            // Where all nodes are held no bodies touch each other that could part.
+            if of.words.is_none() || !made.points.is_empty() {
+                self.contacts.push(made);
+                self.tables.push(&of.table[..]);
+                self.found.extend(of.words.clone());
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of contacts and equations.
+    pub fn count(&self) -> usize {
+        self.contacts.len() + self.equations.len()
+    }
+
+    /// The contacts and equations that aren't there in each step.
+    pub fn absent(&self, scene: &Scene) -> Vec<Vec<u32>> {
+        let names = self.equations.iter().map(|of| &of.name[..]);
+        let tables: Vec<&str> = self.tables.iter().copied().chain(names).collect();
+        activation::contacts(scene, &tables)
+    }
+}

@@ -1,0 +1,120 @@
+//! The order of the unknowns of a front: [E | K | known jumps], E what is eliminated, K what is kept.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::condensed::{Condensed, InterfaceDof};
+use super::substitution::Replaced;
+
+/// The normal jumps of a front's own contact points.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OwnJumps<'a> {
+    /// The displacements that jumps replace.
+    pub replaced: &'a [Replaced],
+    /// Jumps that are open and eliminated like a displacement; the others are kept. None of them where it is
+    /// empty.
+    pub open: &'a [bool],
+    /// A spring on every open one, relative to the diagonal, that holds what its contact has let go.
+    pub spring: f64,
+}
+
+impl OwnJumps<'_> {
+    /// Number of jumps that aren't those of ties.
+    fn unknowns(&self) -> usize {
+        self.replaced.iter().filter(|r| !r.is_tied).count()
+    }
+
+    fn is_open(&self, jump: usize) -> bool {
+        self.open.get(jump).copied().unwrap_or(false)
+    }
+}
+
+/// The unknowns of a front in their order.
+pub(super) struct FrontOrder {
+    /// The displacements that are eliminated, ascending: they come first.
+    pub gone: Vec<InterfaceDof>,
+    /// The own jumps that are open, by number: they are eliminated, too.
+    open: Vec<usize>,
+    /// Number of jumps that are kept: those of the children, then the own ones that aren't open.
+    pub jumps: usize,
+    /// The displacements that are kept, ascending.
+    pub kept: Vec<InterfaceDof>,
+    /// The place of the jump that replaces a displacement.
+    pivots: BTreeMap<InterfaceDof, usize>,
+    /// Number of jumps of ties, which come last.
+    known: usize,
+}
+
+impl FrontOrder {
+    /// The order of the front of `children` with jumps of its `own`, where what these don't replace goes at the nodes of Γ
+    /// that are `eliminated`, ascending.
+    pub fn new(children: &[&Condensed], eliminated: &[u32], own: OwnJumps<'_>) -> Self {
+        let (mut gone, mut kept) = union_of_interface_dofs(children, eliminated);
+        let count = own.unknowns();
+        let numbers = 0..count;
+        let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
+        let replaced: BTreeSet<InterfaceDof> = own.replaced.iter().map(|r| r.dof).collect();
+        gone.retain(|dof| !replaced.contains(dof));
+        kept.retain(|dof| !replaced.contains(dof));
+        let e = gone.len() + open.len();
+        let of_children: usize = children.iter().map(|c| c.jumps).sum();
+        let jumps = of_children + closed.len();
+        let places_of_own =
+            (open.iter().zip(gone.len()..)).chain(closed.iter().zip(e + of_children..));
+        let pivots = places_of_own.map(|(&j, place)| (own.replaced[j].dof, place));
+        let k = jumps + kept.len();
+        let tied = own.replaced[count..].iter().zip(e + k..);
+        let tied = tied.map(|(replaced, place)| (replaced.dof, place));
+        Self {
+            pivots: pivots.chain(tied).collect(),
+            known: own.replaced.len() - count,
+            gone,
+            open,
+            jumps,
+            kept,
+        }
+    }
+
+    /// Number of unknowns that are eliminated and that are kept, and of all with the jumps that are known.
+    pub fn sizes(&self) -> (usize, usize, usize) {
+        let e = self.gone.len() + self.open.len();
+        let k = self.jumps + self.kept.len();
+        (e, k, e + k + self.known)
+    }
+
+    /// Place of an unknown on Γ: among those that are gone, where the jump that replaces it is, or among those that are
+    /// kept.
+    pub fn place(&self, dof: &InterfaceDof) -> usize {
+        // An unknown is in one of the three lists.
+        match (self.gone.binary_search(dof), self.kept.binary_search(dof)) {
+            (Ok(place), _) => place,
+            (_, Ok(place)) => self.gone.len() + self.open.len() + self.jumps + place,
+            _ => self.pivots.get(dof).copied().unwrap_or_default(),
+        }
+    }
+
+    /// The unknown on Γ that is eliminated at a place, or that the jump there replaces.
+    pub fn dof(&self, place: usize, own: OwnJumps<'_>) -> InterfaceDof {
+        match self.gone.get(place) {
+            Some(dof) => *dof,
+            None => own.replaced[self.open[place - self.gone.len()]].dof,
+        }
+    }
+}
+
+/// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
+fn union_of_interface_dofs(
+    children: &[&Condensed],
+    eliminated: &[u32],
+) -> (Vec<InterfaceDof>, Vec<InterfaceDof>) {
+    let mut all: Vec<InterfaceDof> = children
+        .iter()
+        .flat_map(|c| c.interface_dofs.iter().copied())
+        .collect();
+    all.sort_unstable();
+    all.dedup();
+    let mut next = eliminated.iter().peekable();
+    all.into_iter().partition(|dof| {
+        while next.next_if(|&&node| node < dof.node).is_some() {}
+        next.peek().is_some_and(|&&node| node == dof.node)
+    })
+}
