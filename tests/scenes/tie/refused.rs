@@ -91,7 +91,7 @@ y = 1e-3
     );
     let message = refused(&text, mesh.clone());
     assert!(message.contains("tie 'weld': at node"), "{message}");
-    assert!(message.contains("contradicts it, by 1.000e-3"), "{message}");
+    assert!(message.contains("contradict it, by 1.000e-3"), "{message}");
     // In the same place nothing is wrong.
     let case = Case::of(&model(&text.replace("1e-3", "0.0"), mesh), 4);
     assert_eq!(case.run(&[]).code(), 0);
