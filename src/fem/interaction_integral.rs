@@ -12,36 +12,31 @@
 //! elasticity*, J. Appl. Mech. 47 (1980); J. R. Walters, G. H. Paulino, R. H. Dodds, *Interaction integral procedures for
 //! 3-D curved cracks including surface tractions*, Eng. Fract. Mech. 72 (2005).
 
+mod cell;
 mod faces;
 mod weights;
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::crack_tip::CrackTip;
-use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::model::Material;
 use contact_dd_partition::problem::InitialStress;
 use contact_dd_partition::stiffness::Stiffness;
 use nalgebra::{Matrix3, Vector3};
 
+use self::cell::{DEGREE, LocalCell, LocalNode, LocalPoint, OfCell};
 use super::block::{Block, BlockCell};
 use super::elasticity::amplitudes;
-use super::gradients::{MAX_PLANE_NODES, PointGradients, has_modes, stiffness_points};
+use super::gradients::{has_modes, stiffness_points};
 use super::near_field::{Gradient, NearField, strain, turned};
 
 /// The radii of the discs that are evaluated, over that of the tip: the integral doesn't depend on it.
 pub const RADII: [f64; 3] = [1.0, 0.75, 0.5];
 /// Radius within which q = 1, over that of the disc.
 const INNER: f64 = 0.5;
-/// Degree of the quadrature of near fields.
-const DEGREE: usize = 6;
-
 /// M (Pa √m · m) for every radius of a disc and both modes.
 pub type Integrals = [[f64; 2]; RADII.len()];
-
-/// q or the components of W at the nodes of a cell, for every radius.
-type OfRadii<T> = [Vec<T>; RADII.len()];
 
 /// W of both modes.
 type Work = [[f64; 2]; 2];
@@ -55,25 +50,6 @@ pub struct TipDisc<'a> {
     material: Material,
     /// W at the nodes of the faces, by their tags.
     on_faces: BTreeMap<i64, [Work; RADII.len()]>,
-}
-
-/// A cell in the frame of the tip.
-struct LocalCell {
-    kind: ElementKind,
-    /// True if it has incompatible modes.
-    has_modes: bool,
-    nodes: Vec<usize>,
-    points: Vec<[f64; 3]>,
-    /// Initial stress at its nodes (Pa); empty where there is none.
-    initial: Vec<Vector3<f64>>,
-    q: OfRadii<f64>,
-    work: OfRadii<Work>,
-}
-
-/// M of a cell: what is linear in u, by nodes and then by incompatible modes, in the frame of the tip, and the rest.
-struct OfCell {
-    slopes: Vec<[f64; 2]>,
-    constant: f64,
 }
 
 impl<'a> TipDisc<'a> {
@@ -117,16 +93,31 @@ impl<'a> TipDisc<'a> {
         ((1.0 - distance / outer) / (1.0 - INNER)).clamp(0.0, 1.0)
     }
 
-    /// q a,₁ of both modes at a place in the frame of the tip.
-    fn work(&self, q: f64, x: [f64; 2]) -> Work {
-        let distance = x[0].hypot(x[1]);
-        if q == 0.0 || distance == 0.0 {
-            return Work::default();
+    /// The nodes of a block in the frame of the tip; `None` where all lie outside the disc.
+    fn nodes(&self, block: &Block) -> Option<Vec<LocalNode>> {
+        let places = block.points().iter().map(|x| self.place(x));
+        let nodes = places.zip(&block.subdomain.node_tags);
+        let nodes: Vec<LocalNode> = nodes.map(|(place, tag)| self.node(place, *tag)).collect();
+        nodes.iter().any(LocalNode::is_near).then_some(nodes)
+    }
+
+    /// A node at a place in the frame of the tip, by its tag.
+    fn node(&self, place @ [x, y]: [f64; 2], tag: i64) -> LocalNode {
+        let distance = x.hypot(y);
+        let q: [f64; RADII.len()] = std::array::from_fn(|radius| self.weight(radius, distance));
+        let works = || {
+            let fields = match q[0] > 0.0 && distance > 0.0 {
+                true => self.field.gradients(distance, y.atan2(x)),
+                false => Default::default(),
+            };
+            q.map(|q| fields.map(|of_mode| of_mode.map(|of| q * of[0])))
+        };
+        let on_face = self.on_faces.get(&tag).copied();
+        LocalNode {
+            place,
+            q,
+            work: on_face.unwrap_or_else(works),
         }
-        [0, 1].map(|mode| {
-            let gradient = self.field.gradient(mode, distance, x[1].atan2(x[0]));
-            gradient.map(|of_component| q * of_component[0])
-        })
     }
 
     /// The integrals over the cells of a block, for displacements `u`, node by node; `None` where no cell lies in the disc.
@@ -139,7 +130,7 @@ impl<'a> TipDisc<'a> {
         let mut sum = None;
         self.each_cell(block, initial, RADII.len(), |cell, found| {
             let of_nodes = cell
-                .nodes
+                .numbers
                 .iter()
                 .map(|&n| self.turn([u[2 * n], u[2 * n + 1]]));
             let mut u: Vec<[f64; 2]> = of_nodes.collect();
@@ -162,70 +153,58 @@ impl<'a> TipDisc<'a> {
         block: &Block,
         initial: &InitialStress,
         radii: usize,
-        mut take: impl FnMut(&LocalCell, &[[OfCell; 2]]),
+        mut take: impl FnMut(&LocalCell<'_>, &[[OfCell; 2]]),
     ) {
-        let mut rules: BTreeMap<u8, Vec<TabulatedPoint>> = BTreeMap::new();
-        let place = |x| self.place(x);
-        let distances = (block.points().iter().map(place)).map(|[x, y]| x.hypot(y));
-        let is_near: Vec<bool> = distances.map(|s| s < self.tip.radius).collect();
+        let mut rules: BTreeMap<(u8, usize), Vec<TabulatedPoint>> = BTreeMap::new();
         // Most blocks of a scene lie elsewhere.
-        if !is_near.contains(&true) {
+        let Some(nodes) = self.nodes(block) else {
             return;
-        }
-        let near = |cell: &BlockCell<'_>| cell.nodes().any(|node| is_near[node as usize]);
-        for cell in block.cells().filter(near) {
-            let local = self.cell(block, &cell, initial);
+        };
+        let is_near = |cell: &BlockCell<'_>| cell.nodes().any(|n| nodes[n as usize].is_near());
+        let mut found: Vec<[OfCell; 2]> = (0..radii).map(|_| Default::default()).collect();
+        for cell in block.cells().filter(is_near) {
+            let local = self.cell(&cell, &nodes, initial);
             let places = local.nodes.len() + if local.has_modes { 2 } else { 0 };
-            let none = || OfCell {
-                slopes: vec![[0.0; 2]; places],
-                constant: 0.0,
-            };
-            let mut found: Vec<[OfCell; 2]> = (0..radii).map(|_| [none(), none()]).collect();
+            for of_cell in found.as_flattened_mut() {
+                of_cell.clear(places);
+            }
             for point in stiffness_points(&cell.kind, &self.material) {
                 self.add_forces(&local, point, &mut found);
             }
-            let rule = (rules.entry(cell.kind.vtk())).or_insert_with(|| cell.kind.tabulate(DEGREE));
-            for point in rule {
-                self.add_fields(&local, point, &mut found);
+            if !local.is_flat(radii) {
+                let degree = local.degree();
+                let rule = (rules.entry((cell.kind.vtk(), degree)))
+                    .or_insert_with(|| cell.kind.tabulate(degree));
+                for point in rule {
+                    self.add_fields(&local, point, &mut found);
+                }
             }
             take(&local, &found);
         }
     }
 
-    fn cell(&self, block: &Block, cell: &BlockCell<'_>, initial: &InitialStress) -> LocalCell {
-        let nodes: Vec<usize> = cell.nodes().map(|node| node as usize).collect();
-        let places: Vec<[f64; 2]> = (nodes.iter())
-            .map(|&node| self.place(&block.points()[node]))
-            .collect();
-        let q = std::array::from_fn(|radius| {
-            let distances = places.iter().map(|[x, y]| x.hypot(*y));
-            distances
-                .map(|distance| self.weight(radius, distance))
-                .collect()
-        });
-        let work = std::array::from_fn(|radius| {
-            let q: &Vec<f64> = &q[radius];
-            let of_nodes = nodes.iter().zip(&places).zip(q);
-            let work = of_nodes.map(|((&node, &place), &q)| {
-                let on_face = self.on_faces.get(&block.subdomain.node_tags[node]);
-                on_face.map_or_else(|| self.work(q, place), |of_radii| of_radii[radius])
-            });
-            work.collect()
-        });
+    fn cell<'n>(
+        &self,
+        cell: &BlockCell<'_>,
+        all: &'n [LocalNode],
+        initial: &InitialStress,
+    ) -> LocalCell<'n> {
+        let numbers: Vec<usize> = cell.nodes().map(|node| node as usize).collect();
+        let nodes: Vec<&LocalNode> = numbers.iter().map(|&node| &all[node]).collect();
         let stress = |&node: &usize| initial.nodes.get(node).map(|stress| self.turned(stress));
+        let points = nodes.iter().map(|of| [of.place[0], of.place[1], 0.0]);
         LocalCell {
             kind: cell.kind,
             has_modes: has_modes(&cell.kind, &self.material),
-            points: places.iter().map(|&[x, y]| [x, y, 0.0]).collect(),
-            initial: nodes.iter().filter_map(stress).collect(),
+            points: points.collect(),
+            initial: numbers.iter().filter_map(stress).collect(),
+            numbers,
             nodes,
-            q,
-            work,
         }
     }
 
     /// Appends the amplitudes of incompatible modes to the displacements of a cell that has some.
-    fn append_modes(&self, cell: &LocalCell, u: &mut Vec<[f64; 2]>) {
+    fn append_modes(&self, cell: &LocalCell<'_>, u: &mut Vec<[f64; 2]>) {
         if cell.has_modes {
             let of_nodes = u.concat();
             let modes = amplitudes(&cell.kind, &cell.points, &self.material, &of_nodes);
@@ -245,13 +224,18 @@ impl<'a> TipDisc<'a> {
     }
 
     /// Subtracts Σ f_j · W_j at a point, which is ∫ σ : ∇W.
-    fn add_forces(&self, cell: &LocalCell, reference: &TabulatedPoint, found: &mut [[OfCell; 2]]) {
+    fn add_forces(
+        &self,
+        cell: &LocalCell<'_>,
+        reference: &TabulatedPoint,
+        found: &mut [[OfCell; 2]],
+    ) {
         let point = LocalPoint::new(cell, reference);
-        for (found, work) in found.iter_mut().zip(&cell.work) {
+        for (radius, found) in found.iter_mut().enumerate() {
             for (mode, found) in found.iter_mut().enumerate() {
                 let mut slope = Gradient::default();
-                for (g, work) in point.at.gradients.iter().zip(work) {
-                    for (slope, work) in slope.iter_mut().zip(work[mode]) {
+                for (g, node) in point.at.gradients.iter().zip(&cell.nodes) {
+                    for (slope, work) in slope.iter_mut().zip(node.work[radius][mode]) {
                         *slope = [slope[0] + work * g[0], slope[1] + work * g[1]];
                     }
                 }
@@ -263,23 +247,25 @@ impl<'a> TipDisc<'a> {
     }
 
     /// Adds ∫ (σ_ij a_i,1 + s_ij u_i,1 − σ:e δ_1j) q,_j − ∫ e:σ⁰,₁ q at a point.
-    fn add_fields(&self, cell: &LocalCell, reference: &TabulatedPoint, found: &mut [[OfCell; 2]]) {
-        let is_flat = |q: &Vec<f64>| q.iter().all(|x| *x == q[0]);
-        if cell.initial.is_empty() && cell.q[..found.len()].iter().all(is_flat) {
-            return;
-        }
+    fn add_fields(
+        &self,
+        cell: &LocalCell<'_>,
+        reference: &TabulatedPoint,
+        found: &mut [[OfCell; 2]],
+    ) {
         let point = LocalPoint::new(cell, reference);
         let shape = || reference.shape.iter();
         let [x, y] =
             [0, 1].map(|d| -> f64 { shape().zip(&cell.points).map(|(n, x)| n * x[d]).sum() });
-        for mode in 0..2 {
-            let near = self.field.gradient(mode, x.hypot(y), y.atan2(x));
+        let fields = self.field.gradients(x.hypot(y), y.atan2(x));
+        for (mode, near) in fields.into_iter().enumerate() {
             let (stress, near_strain) = (self.field.stress(&near), strain(&near));
             let s = tensor(&stress);
-            for (found, of_nodes) in found.iter_mut().zip(&cell.q) {
+            for (radius, found) in found.iter_mut().enumerate() {
                 let found = &mut found[mode];
                 let mut q = [0.0; 2];
-                for (g, of_node) in point.at.gradients.iter().zip(of_nodes) {
+                for (g, node) in point.at.gradients.iter().zip(&cell.nodes) {
+                    let of_node = node.q[radius];
                     q = [q[0] + of_node * g[0], q[1] + of_node * g[1]];
                 }
                 // The displacement gradient whose work with σ is σ_ij a_i,1 q,_j.
@@ -293,48 +279,13 @@ impl<'a> TipDisc<'a> {
                     ]
                 });
                 point.add(1.0, &factor, found);
-                let q_here: f64 = shape().zip(of_nodes).map(|(n, q)| n * q).sum();
+                let q_here: f64 = shape()
+                    .zip(&cell.nodes)
+                    .map(|(n, node)| n * node.q[radius])
+                    .sum();
                 let of_initial = point.initial.dot(&(strain(&grown) - q[0] * near_strain));
                 let of_slope = q_here * near_strain.dot(&point.initial_slope);
                 found.constant += point.at.weight * (of_initial - of_slope);
-            }
-        }
-    }
-}
-
-/// A point of a cell.
-struct LocalPoint {
-    at: PointGradients<2, 3, MAX_PLANE_NODES>,
-    /// σ⁰ (Pa), (xx, yy, xy).
-    initial: Vector3<f64>,
-    /// σ⁰,₁ (Pa/m).
-    initial_slope: Vector3<f64>,
-}
-
-impl LocalPoint {
-    fn new(cell: &LocalCell, reference: &TabulatedPoint) -> Self {
-        let mut at = PointGradients::new(reference, &cell.points);
-        if cell.has_modes {
-            at = at.with_modes(reference, &cell.points);
-        }
-        let (mut initial, mut initial_slope) = (Vector3::zeros(), Vector3::zeros());
-        for ((stress, n), g) in cell.initial.iter().zip(&reference.shape).zip(&at.gradients) {
-            initial += *n * stress;
-            initial_slope += g[0] * stress;
-        }
-        Self {
-            at,
-            initial,
-            initial_slope,
-        }
-    }
-
-    /// Adds a multiple of what is linear in u, Σ factor_ij u_i,j, at the point.
-    fn add(&self, multiple: f64, factor: &Gradient, found: &mut OfCell) {
-        let weight = multiple * self.at.weight;
-        for (slope, g) in found.slopes.iter_mut().zip(&self.at.gradients) {
-            for (slope, row) in slope.iter_mut().zip(factor) {
-                *slope += weight * (row[0] * g[0] + row[1] * g[1]);
             }
         }
     }

@@ -77,30 +77,32 @@ impl NearField {
         }
     }
 
-    /// f_i and f_i' at an angle θ of the field of K_I (0) or K_II (1) (1/Pa).
-    fn shape(&self, mode: usize, angle: f64) -> [[f64; 2]; 2] {
+    /// f_i and f_i' at an angle θ of the fields of K_I and K_II (1/Pa).
+    fn shapes(&self, angle: f64) -> [[[f64; 2]; 2]; 2] {
         let (sin, cos) = angle.sin_cos();
         match &self.roots {
             Roots::Isotropic { shear, kolosov } => {
                 let scale = 1.0 / (2.0 * shear * (2.0 * PI).sqrt());
                 let (half_sin, half_cos) = (0.5 * angle).sin_cos();
-                let fields = match mode {
-                    0 => {
-                        let g = kolosov - cos;
+                let opening = kolosov - cos;
+                let (g, h) = (kolosov + 2.0 + cos, kolosov - 2.0 + cos);
+                let fields = [
+                    [
                         [
-                            [half_cos * g, half_cos * sin - 0.5 * half_sin * g],
-                            [half_sin * g, half_sin * sin + 0.5 * half_cos * g],
-                        ]
-                    }
-                    _ => {
-                        let (g, h) = (kolosov + 2.0 + cos, kolosov - 2.0 + cos);
+                            half_cos * opening,
+                            half_cos * sin - 0.5 * half_sin * opening,
+                        ],
                         [
-                            [half_sin * g, 0.5 * half_cos * g - half_sin * sin],
-                            [-half_cos * h, 0.5 * half_sin * h + half_cos * sin],
-                        ]
-                    }
-                };
-                fields.map(|of_field| of_field.map(|x| scale * x))
+                            half_sin * opening,
+                            half_sin * sin + 0.5 * half_cos * opening,
+                        ],
+                    ],
+                    [
+                        [half_sin * g, 0.5 * half_cos * g - half_sin * sin],
+                        [-half_cos * h, 0.5 * half_sin * h + half_cos * sin],
+                    ],
+                ];
+                fields.map(|of_mode| of_mode.map(|of_field| of_field.map(|x| scale * x)))
             }
             Roots::Anisotropic(roots) => {
                 let scale = (2.0 / PI).sqrt();
@@ -109,17 +111,16 @@ impl NearField {
                     [value, (mu * cos - sin) / (2.0 * value)]
                 });
                 let [[a, pa, qa], [b, pb, qb]] = *roots;
-                let [first, second] = match mode {
-                    0 => [b, a],
-                    _ => [Complex::from(1.0); 2],
-                };
-                let field = |of: [Complex<f64>; 2]| {
-                    [0, 1].map(|k| {
-                        let sum = second * of[1] * of_root[1][k] - first * of[0] * of_root[0][k];
-                        scale * (sum / (a - b)).re
-                    })
-                };
-                [field([pa, pb]), field([qa, qb])]
+                [[b, a], [Complex::from(1.0); 2]].map(|[first, second]| {
+                    let field = |of: [Complex<f64>; 2]| {
+                        [0, 1].map(|k| {
+                            let sum =
+                                second * of[1] * of_root[1][k] - first * of[0] * of_root[0][k];
+                            scale * (sum / (a - b)).re
+                        })
+                    };
+                    [field([pa, pb]), field([qa, qb])]
+                })
             }
         }
     }
@@ -127,20 +128,21 @@ impl NearField {
     /// The displacement at a point of the frame of the tip of the field of K_I (0) or K_II (1) (√m).
     #[cfg(test)]
     pub(super) fn displacement(&self, mode: usize, distance: f64, angle: f64) -> [f64; 2] {
-        let shape = self.shape(mode, angle);
+        let shape = self.shapes(angle)[mode];
         shape.map(|[f, _]| distance.sqrt() * f)
     }
 
-    /// ∂a_i/∂x_j at a point of the frame of the tip of the field a of K_I (0) or K_II (1) (1/√m).
-    pub fn gradient(&self, mode: usize, distance: f64, angle: f64) -> Gradient {
+    /// ∂a_i/∂x_j at a point of the frame of the tip of the fields a of K_I and K_II (1/√m).
+    pub fn gradients(&self, distance: f64, angle: f64) -> [Gradient; 2] {
         let (sin, cos) = angle.sin_cos();
         let scale = 1.0 / distance.sqrt();
-        self.shape(mode, angle).map(|[f, slope]| {
+        let gradient = |[f, slope]: [f64; 2]| {
             [
                 scale * (0.5 * cos * f - sin * slope),
                 scale * (0.5 * sin * f + cos * slope),
             ]
-        })
+        };
+        self.shapes(angle).map(|of_mode| of_mode.map(gradient))
     }
 
     /// The stress of a gradient, (xx, yy, xy).
@@ -222,7 +224,7 @@ mod tests {
     }
 
     fn gradient(field: &NearField, mode: usize, x: [f64; 2]) -> Gradient {
-        field.gradient(mode, x[0].hypot(x[1]), x[1].atan2(x[0]))
+        field.gradients(x[0].hypot(x[1]), x[1].atan2(x[0]))[mode]
     }
 
     fn both(test: impl Fn(&NearField, usize)) {
@@ -271,7 +273,7 @@ mod tests {
                 assert!((by_x[2] + by_y[1]).abs() < 1e-8);
             }
             for angle in [PI, -PI] {
-                let on_face = field.stress(&field.gradient(mode, 0.5, angle));
+                let on_face = field.stress(&field.gradients(0.5, angle)[mode]);
                 assert!(on_face[1].abs() < 1e-12 && on_face[2].abs() < 1e-12);
             }
         });
@@ -280,12 +282,13 @@ mod tests {
     #[test]
     fn factors_are_those_of_the_stress_ahead_and_release_the_energy_of_closing() {
         both(|field, mode| {
-            let ahead = field.stress(&field.gradient(mode, 0.5, 0.0));
+            let ahead = field.stress(&field.gradients(0.5, 0.0)[mode]);
             let expected = 1.0 / PI.sqrt();
             assert!((ahead[1 + mode] - expected).abs() < 1e-12);
             assert!(ahead[2 - mode].abs() < 1e-12);
             // Irwin's integral over the length d: ½ ∫ σ(r) Δu(d − r) dr / d = K Δf √(π/2) / 8 · 2, with ∫ √((d − r)/r) = π d/2.
-            let opening = |i: usize| field.shape(mode, PI)[i][0] - field.shape(mode, -PI)[i][0];
+            let [above, below] = [PI, -PI].map(|angle| field.shapes(angle)[mode]);
+            let opening = |i: usize| above[i][0] - below[i][0];
             let released = 0.5 * (PI / 2.0) * opening(1 - mode) / (2.0 * PI).sqrt();
             let h = field.compliance()[(mode, mode)];
             assert!((released - h).abs() < 1e-9 * h, "{released} {h}");
@@ -299,7 +302,7 @@ mod tests {
         let [near, exact] = [stiffness, isotropic()].map(|c| NearField::new(c).unwrap());
         for mode in 0..2 {
             for angle in [-PI, -1.0, 0.0, 2.0, PI] {
-                let fields = [&near, &exact].map(|f| f.gradient(mode, 0.3, angle));
+                let fields = [&near, &exact].map(|f| f.gradients(0.3, angle)[mode]);
                 let [near, exact] = fields.map(|of| of.concat());
                 for (a, b) in near.iter().zip(exact) {
                     assert!((a - b).abs() < 1e-3);

@@ -17,7 +17,7 @@ impl TipDisc<'_> {
             let next = *facet.nodes().last().unwrap_or(&self.tip.tag);
             for point in FacePoint::of(facet) {
                 let angle = if facet.is_upper { PI } else { -PI };
-                let fields = [0, 1].map(|mode| self.field.gradient(mode, point.distance, angle));
+                let fields = self.field.gradients(point.distance, angle);
                 let nodes = facet.nodes().iter().zip(&facet.distances);
                 for ((&tag, &distance), &n) in nodes.zip(&point.shape) {
                     let owner = match tag == self.tip.tag {

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use contact_dd_partition::crack_tip::FaceFacet;
-use contact_dd_partition::element::Elements;
+use contact_dd_partition::element::{ElementKind, Elements};
 use contact_dd_partition::model::Formulation;
 use contact_dd_partition::problem::Subdomain;
 use contact_dd_partition::quantity::NodalShares;
@@ -189,6 +189,63 @@ fn weights_times_displacements_are_the_integral() {
                 off.abs() < 1e-11 * expected.abs(),
                 "{off:e} of {expected:e}"
             );
+        }
+    }
+}
+
+#[test]
+fn lower_degrees_integrate_near_fields_as_well_far_from_the_tip() {
+    let field = NearField::new(Matrix3::from_row_slice(isotropic().stiffness.values())).unwrap();
+    for kind in [ElementKind::Triangle3, ElementKind::Triangle6] {
+        for size in [0.01, 0.039, 0.119] {
+            for turn in 0..12 {
+                let angle = 0.1 + PI * f64::from(turn) / 6.0;
+                let (sin, cos) = angle.sin_cos();
+                let corner = |[x, y]: [f64; 2]| LocalNode {
+                    place: [cos + size * x, sin + size * y],
+                    q: [0.0; RADII.len()],
+                    work: Default::default(),
+                };
+                let far = [0.5 * cos.signum(), 0.8 * sin.signum()];
+                let corners = [[0.0, 0.0], [far[0], 0.0], far];
+                let middles = [[0, 1], [1, 2], [2, 0]].map(|[a, b]: [usize; 2]| {
+                    [0, 1].map(|k| 0.5 * (corners[a][k] + corners[b][k]))
+                });
+                let all = corners.iter().chain(&middles).take(kind.nodes());
+                let nodes: Vec<LocalNode> = all.map(|&x| corner(x)).collect();
+                let points: Vec<[f64; 3]> = (nodes.iter())
+                    .map(|of| [of.place[0], of.place[1], 0.0])
+                    .collect();
+                let cell = LocalCell {
+                    kind,
+                    has_modes: false,
+                    numbers: (0..nodes.len()).collect(),
+                    nodes: nodes.iter().collect(),
+                    points: points.clone(),
+                    initial: Vec::new(),
+                };
+                assert!(cell.degree() < DEGREE, "{size}");
+                let mean = |degree: usize| {
+                    let mut sum = [0.0; 8];
+                    for point in kind.tabulate(degree) {
+                        let at = |k: usize| -> f64 {
+                            point.shape.iter().zip(&points).map(|(n, x)| n * x[k]).sum()
+                        };
+                        let [x, y] = [at(0), at(1)];
+                        let both = field.gradients(x.hypot(y), y.atan2(x));
+                        let values = both.as_flattened().as_flattened();
+                        for (sum, value) in sum.iter_mut().zip(values) {
+                            *sum += 2.0 * point.weight * value;
+                        }
+                    }
+                    sum
+                };
+                let (exact, lower) = (mean(10), mean(cell.degree()));
+                let size = exact.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                for (exact, lower) in exact.iter().zip(lower) {
+                    assert!((exact - lower).abs() < 2e-6 * size, "{kind:?}");
+                }
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ impl TipDisc<'_> {
             for (mode, found) in found[0].iter().enumerate() {
                 sum.constants[mode] += found.constant;
                 let of_nodes = self.without_modes(cell, found);
-                for (&node, of_node) in cell.nodes.iter().zip(of_nodes.as_chunks().0) {
+                for (&node, of_node) in cell.numbers.iter().zip(of_nodes.as_chunks().0) {
                     let back = self.turn_back(*of_node);
                     sum.of_nodes[mode][2 * node] += back[0];
                     sum.of_nodes[mode][2 * node + 1] += back[1];
@@ -42,7 +42,7 @@ impl TipDisc<'_> {
 
     /// The terms that are linear in the displacements of a cell's nodes, from which the amplitudes of its modes follow, in the
     /// frame of the tip.
-    fn without_modes(&self, cell: &LocalCell, found: &OfCell) -> Vec<f64> {
+    fn without_modes(&self, cell: &LocalCell<'_>, found: &OfCell) -> Vec<f64> {
         let (nodes, modes) = found.slopes.split_at(cell.nodes.len());
         let (mut of_nodes, modes) = (nodes.concat(), modes.concat());
         if modes.is_empty() {
