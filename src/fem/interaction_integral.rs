@@ -25,21 +25,17 @@ use contact_dd_partition::problem::InitialStress;
 use contact_dd_partition::stiffness::Stiffness;
 use nalgebra::{Matrix3, Vector3};
 
-use self::cell::{DEGREE, LocalCell, LocalNode, LocalPoint, OfCell};
+use self::cell::{DEGREE, LocalCell, LocalNode, LocalPoint, OfCell, RADII, Work};
 use super::block::{Block, BlockCell};
 use super::elasticity::amplitudes;
 use super::gradients::{has_modes, stiffness_points};
 use super::near_field::{Gradient, NearField, strain, turned};
 
-/// The radii of the discs that are evaluated, over that of the tip: the integral doesn't depend on it.
-pub const RADII: [f64; 3] = [1.0, 0.75, 0.5];
 /// Radius within which q = 1, over that of the disc.
 const INNER: f64 = 0.5;
+
 /// M (Pa √m · m) for every radius of a disc and both modes.
 pub type Integrals = [[f64; 2]; RADII.len()];
-
-/// W of both modes.
-type Work = [[f64; 2]; 2];
 
 /// The disc around a crack tip.
 pub struct TipDisc<'a> {

@@ -4,15 +4,19 @@ use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
 use nalgebra::Vector3;
 
-use super::{RADII, Work};
 use crate::fem::gradients::{MAX_PLANE_NODES, PointGradients};
 use crate::fem::near_field::Gradient;
 
+/// The radii of the discs that are evaluated, over that of the tip: the integral doesn't depend on it.
+pub(super) const RADII: [f64; 3] = [1.0, 0.75, 0.5];
 /// Degree of the quadrature of near fields.
 pub(super) const DEGREE: usize = 6;
 /// Size of a cell over its distance from the tip up to which a lower degree integrates near fields to 1e-6, and that degree
 /// where displacements are linear and where they aren't.
 const FAR: [(f64, [usize; 2]); 2] = [(0.04, [2, 4]), (0.12, [4, 5])];
+
+/// W of both modes.
+pub(super) type Work = [[f64; 2]; 2];
 
 /// A node in the frame of the tip: its place (m), and q and W for every radius.
 pub(super) struct LocalNode {
