@@ -104,11 +104,14 @@ impl Loads {
     }
 }
 
+/// The supports, the forces at all nodes and the initial stress of a load step.
+type Loading = (Vec<Support>, Vec<[f64; 3]>, InitialStress);
+
 /// The load steps of a scene: of each loading its supports, its forces at the nodes that are `loaded`, its initial stress
 /// and the bodies that are `absent`.
 fn model_steps(
     scene: &Scene,
-    loadings: &[(Vec<Support>, Vec<[f64; 3]>, InitialStress)],
+    loadings: &[Loading],
     loaded: &[u32],
     absent: Vec<Vec<u32>>,
 ) -> Vec<ModelStep> {
