@@ -11,7 +11,7 @@ use crate::fem::near_field::Gradient;
 pub(super) const RADII: [f64; 3] = [1.0, 0.75, 0.5];
 /// Degree of the quadrature of near fields.
 pub(super) const DEGREE: usize = 6;
-/// Size of a cell over its distance from the tip up to which a lower degree integrates near fields to 1e-6, and that degree
+/// Size of a cell over its distance from the tip up to which a lower degree integrates near fields to 2e-6, and that degree
 /// where displacements are linear and where they aren't.
 const FAR: [(f64, [usize; 2]); 2] = [(0.04, [2, 4]), (0.12, [4, 5])];
 

@@ -90,6 +90,16 @@ fn slight_friction_holds_blocks_where_they_are() {
     }
 }
 
+/// Where all points may slip at once a slip is of any size, and its terms hide that forces miss their bounds: Lemke's path
+/// leads to where they don't.
+#[test]
+fn forces_keep_to_bounds_far_below_the_terms_of_a_slip() {
+    let mut drawn = draw_frictional(8_100_009, 12);
+    drawn.ranks = 2;
+    let trial = Trial::of(&drawn, built(), LIMIT, None);
+    assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
+}
+
 /// Friction far below the forces of an interference fit holds to its own bound, between clusters, too.
 #[test]
 fn given_friction_below_an_interference_fit_keeps_to_its_bound_between_clusters() {

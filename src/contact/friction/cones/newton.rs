@@ -24,8 +24,8 @@ const LAW: f64 = 1e-9;
 const ROUND_OFF: f64 = 1e-15;
 /// Part of its bound that a point which slips may miss, and the part of a force's terms that is its round-off: beside the
 /// terms of a slip that nothing resists a whole bound is small.
-const OF_BOUND: f64 = 1e-3;
-const OF_TERMS: f64 = 1e-14;
+const MISSED_OF_BOUND: f64 = 1e-3;
+const MISSED_OF_TERMS: f64 = 1e-14;
 /// Force, relative to its terms, up to which a limit keeps its status.
 const STAYS: f64 = 1e-15;
 /// Viscosity of all jumps relative to stiffness and time: the first, the least and the largest.
@@ -81,8 +81,8 @@ impl FrictionCones<'_> {
             let bound = self.laws.point(point, place, &state.closed).bound;
             let miss = point.limits().map(|i| missed[i].abs()).fold(0.0, f64::max);
             matches!(status, PointStatus::Slips { .. })
-                && miss > OF_BOUND * bound
-                && miss > OF_TERMS * self.force_scale(point.first, place)
+                && miss > MISSED_OF_BOUND * bound
+                && miss > MISSED_OF_TERMS * self.force_scale(point.first, place)
         })
     }
 
