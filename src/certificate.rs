@@ -126,16 +126,8 @@ pub fn certificate(
     plane: Option<PlaneState>,
 ) -> Certificate {
     let mut most = elsewhere;
-    let mut external = External::default();
-    for check in checks {
-        most.include(check.most);
-        external.include(check.external);
-    }
-    if plane == Some(PlaneState::Axisymmetric) {
-        // Around the axis all others cancel.
-        external.force = [0.0, external.force[1], 0.0];
-        external.moment = [0.0; 3];
-    }
+    checks.iter().for_each(|check| most.include(check.most));
+    let external = external(checks, plane);
     let scales = Scales::of(&most);
     before.replace_nothing(&mut most);
     if most.scale < NO_LOAD * most.rest && most.load < f64::EPSILON * most.rest {
@@ -143,22 +135,16 @@ pub fn certificate(
         most.scale = most.rest;
     }
     let force_scale = larger(most.scale, most.contact_force);
-    // Without load what is left of forces is round-off of the terms that they are sums of.
-    let loaded = external.force_scale >= NO_LOAD * most.scale;
-    let to_load = if loaded {
-        1.0
-    } else {
-        external.force_scale / most.scale
-    };
-    // Where supports carry at each of their nodes what acts there, moments are of round-off alone.
-    let moment_scale = larger(
-        external.moment_scale,
-        SMALL_MOMENT * external.force_scale * external.reach,
-    );
+    let [force_balance, moment_balance] = balances(&external, most.scale);
     let of_friction = (most.bound.max(SMALL_BOUND * most.contact_force))
         .max(BOUND_OF_TERMS * most.scale)
         .min(most.contact_force);
     let drift = ratio(most.astray, most.displacement);
+    let friction = [
+        ratio(most.beyond_bound, of_friction),
+        drift,
+        ratio(most.aside, of_friction * most.displacement),
+    ];
     Certificate {
         equilibrium: ratio(most.residual, most.scale),
         equilibrium_of_load: ratio(most.residual, most.external),
@@ -167,24 +153,49 @@ pub fn certificate(
         penetration: ratio(most.penetration, most.displacement),
         tension: ratio(most.tension, force_scale),
         complementarity: ratio(most.complementarity, most.contact_force * most.displacement),
-        friction: [
-            ratio(most.beyond_bound, of_friction),
-            drift,
-            ratio(most.aside, of_friction * most.displacement),
-        ]
-        .into_iter()
-        .fold(0.0, larger),
+        friction: friction.into_iter().fold(0.0, larger),
         drift,
         of_slips: SlipScales {
             force: of_friction,
             displacement: most.displacement,
         },
-        force_balance: to_load * ratio(largest(&external.force), external.force_scale),
-        moment_balance: to_load * ratio(largest(&external.moment), moment_scale),
+        force_balance,
+        moment_balance,
         interface_jump: ratio(most.jump, most.displacement),
         is_driven: false,
         scales,
     }
+}
+
+/// The sum of the external forces on blocks; around an axis only that along it, as all others cancel.
+fn external(checks: &[BlockCheck], plane: Option<PlaneState>) -> External {
+    let mut external = External::default();
+    checks
+        .iter()
+        .for_each(|check| external.include(check.external));
+    if plane == Some(PlaneState::Axisymmetric) {
+        external.force = [0.0, external.force[1], 0.0];
+        external.moment = [0.0; 3];
+    }
+    external
+}
+
+/// The sums of external forces and of their moments over their scales, where forces at nodes are of this `scale` (N/m).
+fn balances(external: &External, scale: f64) -> [f64; 2] {
+    // Without load what is left of forces is round-off of the terms that they are sums of.
+    let to_load = match external.force_scale >= NO_LOAD * scale {
+        true => 1.0,
+        false => external.force_scale / scale,
+    };
+    // Where supports carry at each of their nodes what acts there, moments are of round-off alone.
+    let moment_scale = larger(
+        external.moment_scale,
+        SMALL_MOMENT * external.force_scale * external.reach,
+    );
+    [
+        to_load * ratio(largest(&external.force), external.force_scale),
+        to_load * ratio(largest(&external.moment), moment_scale),
+    ]
 }
 
 fn ratio(a: f64, b: f64) -> f64 {

@@ -15,6 +15,7 @@ pub mod penetration;
 mod reactions;
 pub mod refine;
 pub mod solution;
+mod solution_check;
 pub mod stress_intensity;
 pub mod stresses;
 

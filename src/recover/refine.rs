@@ -1,23 +1,18 @@
 //! Iterative refinement with the factors at hand: the full discrete problem's residual is solved
 //! for with the active set fixed, wherever the certificate falls short.
 
-use std::collections::BTreeMap;
-
 use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
 
-use crate::certificate::check::{BlockCheck, not_opposed};
-use crate::certificate::most::Most;
-use crate::certificate::shared::at_shared_nodes;
-use crate::certificate::{Certificate, certificate};
+use crate::certificate::Certificate;
 use crate::contact::jumps::JumpOf;
 use crate::context::Context;
 use crate::context::hierarchy::jumps;
+use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::fixed_conditions::{change_forces, conditions};
 use crate::recover::motions::Field;
-use crate::recover::{DiscreteSolution, GroupSolution};
+use crate::recover::solution_check::check;
 use crate::sweep::AGAINST_FRICTION;
-use crate::vector::larger;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
@@ -220,71 +215,6 @@ fn decide(fixed: &FixedActiveSet<'_>, decision: bool) -> bool {
         .root
         .is_some_and(|root| root.is_refined && root.can_solve());
     fixed.context.comm.decide(able && decision)
-}
-
-/// The certificate, on the root. Collective.
-fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certificate {
-    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
-    let of_block = |b: BlockId| {
-        let (block, of_block) = (fixed.context.blocks.get(&b)?, solution.blocks.get(&b)?);
-        let balance = fixed.balance(b, of_block)?;
-        let loads = fixed.step.loads.blocks.get(&b)?;
-        let (mut check, shared) = BlockCheck::new(block, loads, &balance, &of_block.u);
-        let stiffness = fixed.condensed.blocks.get(&b)?.diagonal.iter().copied();
-        check.most.rest = fixed.closing_motions * stiffness.fold(0.0, f64::max);
-        check.most.driven = check.most.driven.max(fixed.closing_motions);
-        Some((check, shared))
-    };
-    let mut own: OnBlocks<BlockCheck> = BTreeMap::new();
-    let mut parts = vec![Vec::new(); comm.size()];
-    for &b in fixed.context.blocks.keys() {
-        let (check, shared) = of_block(b).unwrap_or_default();
-        own.insert(b, check);
-        for (part, to) in shared.parts(comm.size()).into_iter().zip(&mut parts) {
-            to.push((b, part));
-        }
-    }
-    // Nodes are checked by ranks in turn, in the order of blocks.
-    let mut shared = comm.exchange(parts).concat();
-    shared.sort_by_key(|&(b, _)| b);
-    let mut elsewhere = at_shared_nodes(shared.iter().map(|(_, check)| check));
-    for &g in fixed.context.groups.keys() {
-        let (group, of_group) = (&fixed.context.groups[&g], &solution.groups[&g]);
-        let (gaps, forces) = (&of_group.gaps, &of_group.forces);
-        elsewhere.include(Most::at_points(group, gaps, forces, &of_group.closed));
-        let before = fixed.step.loads.groups[&g].gaps.iter().copied();
-        elsewhere.driven = (before.filter(|gap| gap.is_finite())).fold(elsewhere.driven, larger);
-    }
-    let mut checks = Vec::new();
-    comm.gather(
-        &plan.owners(),
-        |b| own.remove(&b).unwrap_or_default(),
-        |_, check| checks.push(check),
-    );
-    for of_rank in comm.collect(&elsewhere) {
-        elsewhere.include(of_rank);
-    }
-    let mut certificate = match fixed.root {
-        Some(_) => certificate(
-            &checks,
-            elsewhere,
-            fixed.step.earlier,
-            fixed.context.catalog.plane,
-        ),
-        None => Certificate::default(),
-    };
-    if fixed.context.catalog.has_friction() {
-        let mut scales = certificate.of_slips;
-        comm.broadcast(&mut scales);
-        let of_group = |(g, of_group): (&GroupId, &GroupSolution)| {
-            let numbers = [&of_group.gaps[..], &of_group.forces];
-            not_opposed(&fixed.context.groups[g], numbers, &of_group.closed, scales)
-        };
-        let own = solution.groups.iter().map(of_group).fold(0.0, larger);
-        let all = comm.collect(&own).into_iter();
-        certificate.friction = all.fold(certificate.friction, larger);
-    }
-    certificate
 }
 
 /// Corrects a solution by what it leaves unbalanced, where that can be solved for, whatever its certificate is then. Collective.
