@@ -10,7 +10,7 @@ const ROUND_OFF: f64 = 1e-10;
 pub struct ActiveEqualities {
     /// The equations; none has the pivot of another.
     pub equalities: Vec<ActiveEquality>,
-    /// Closed rows that say nothing beyond the others and the closed normal jumps.
+    /// Closed rows that follow from the others and the closed normal jumps.
     pub redundant: Vec<usize>,
 }
 
@@ -21,12 +21,12 @@ pub struct ActiveEquality {
     pub pivot: usize,
     /// The other jumps, and their factors.
     pub others: Terms,
-    /// The closed rows that it is made of, and their shares.
+    /// The closed rows that the equality combines, and their shares.
     shares: Terms,
 }
 
 impl ActiveEqualities {
-    /// Solves the rows that aren't `open`; flags of normal jumps come first, then those of rows.
+    /// Solves the closed rows; `open` has the flags of normal jumps, then those of rows.
     pub fn new(rows: &DependentConstraints, open: &[bool]) -> Self {
         let mut equalities = Self::default();
         let m = open.len() - rows.len();
@@ -61,8 +61,8 @@ impl ActiveEqualities {
         equalities
     }
 
-    /// Remainder of `normal` on the open normal jumps once the equalities are taken off, and how much of
-    /// every closed row that took.
+    /// Remainder of `normal` on the open normal jumps once the equalities are subtracted, and the multiple of every
+    /// closed row that this takes.
     fn remainder(&self, normal: &[(usize, f64)], open: &[bool]) -> (Terms, Terms) {
         let mut left: Terms = normal.iter().copied().filter(|&(i, _)| open[i]).collect();
         let mut taken = Terms::new();
@@ -77,14 +77,14 @@ impl ActiveEqualities {
         (left, taken)
     }
 
-    /// The multiples of closed rows that `normal` is on the open normal jumps, if it is.
+    /// Multiples of closed rows that make up `normal` on the open normal jumps; `None` where none do.
     pub fn express(&self, normal: &[(usize, f64)], open: &[bool]) -> Option<Terms> {
         let (left, taken) = self.remainder(normal, open);
         left.is_empty().then_some(taken)
     }
 
-    /// Puts the pivots of `t` where the equalities want them with the other normal jumps as they are; `bounds`
-    /// are those of normal jumps, then those of rows.
+    /// Sets the pivots of `t` so that the equalities hold, the other normal jumps being given; `bounds` are those of
+    /// normal jumps, then those of rows.
     pub fn hold(&self, rows: &DependentConstraints, bounds: &[f64], t: &mut [f64]) {
         let m = t.len();
         for equality in &self.equalities {
@@ -101,7 +101,7 @@ impl ActiveEqualities {
         }
     }
 
-    /// The forces μ of `count` rows that hold what is `left` of the load on the pivots.
+    /// Forces μ of `count` rows that balance the residual load `left` on the pivots.
     pub fn forces(&self, count: usize, left: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut forces = vec![0.0; count];
         for equality in &self.equalities {
@@ -113,7 +113,7 @@ impl ActiveEqualities {
         forces
     }
 
-    /// Scale of the terms that the force of row j is a sum of, for the `scale` of every normal jump.
+    /// Scale of the terms in the force of row j, from the `scale` of every normal jump.
     pub fn force_scale(&self, j: usize, scale: impl Fn(usize) -> f64) -> f64 {
         let of_equality = |equality: &ActiveEquality| -> f64 {
             let share = equality.shares.iter().find(|&&(row, _)| row == j);

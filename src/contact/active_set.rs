@@ -5,15 +5,14 @@
 //! empty but where more conditions meet than there are directions. Flags, bounds and forces are
 //! those of normal jumps, then those of linearly dependent constraints.
 //!
-//! The active set, which conditions are open and which are closed, is found by the first of three
-//! strategies that gets there:
+//! The active set, the closed conditions, is found by the first of three strategies that converges:
 //!
-//! 1. *Flipping*: a primal-dual active set (a semismooth Newton method) from the set that is given. Every
-//!    condition whose sign is wrong flips at once. A few linear systems, but it may cycle.
+//! 1. *Flipping*: a primal-dual active set (a semismooth Newton method) from the given set. Every
+//!    condition of wrong sign flips at once. A few linear systems, but it may cycle.
 //! 2. *Interior point* ([`super::interior_point`]): a set that is right or nearly so, and positions
-//!    within the gaps for bodies that nothing else holds. Some twenty systems, whatever the problem.
-//! 3. *Dual method* ([`super::dual`]): from that set, else from where flipping ended, conditions close one by one. It ends
-//!    for every positive definite H, with linearly dependent constraints too.
+//!    within the gaps for bodies that contact alone holds. Some twenty systems, whatever the problem.
+//! 3. *Dual method* ([`super::dual`]): from that set, else from the last one of flipping, conditions close one by one.
+//!    It ends for every positive definite H, with linearly dependent constraints too.
 
 use faer::MatRef;
 use serde::{Deserialize, Serialize};
@@ -30,11 +29,11 @@ pub(super) const FORCE_TOLERANCE: f64 = 1e-12;
 const DIAGONAL_SHARE: f64 = 1e-3;
 /// Negative gap, relative to the displacements, at which a contact closes.
 pub(super) const GAP_TOLERANCE: f64 = 1e-14;
-/// Attempts at flipping all wrong signs without progress before that is given up.
+/// Flips of all wrong signs without progress before flipping is given up.
 const PATIENCE: usize = 10;
-/// Linear systems that flipping may solve.
+/// Most linear systems of flipping.
 const FLIPPING_STEPS: usize = 25;
-/// Linear systems that the dual method may solve: for each condition, and all told.
+/// Most linear systems of the dual method: for each condition, and in total.
 const DUAL_STEPS_EACH: usize = 10;
 const MOST_DUAL_STEPS: usize = 1000;
 
@@ -47,16 +46,16 @@ pub struct ContactProblem<'a> {
     pub diagonal: &'a [f64],
     /// c.
     pub c: &'a [f64],
-    /// Scale of the terms that c is a difference of, for each condition.
+    /// Scale of the terms in c, for each condition.
     pub c_scale: &'a [f64],
     /// D.
     pub rows: &'a DependentConstraints,
     /// g, then d.
     pub bounds: &'a [f64],
-    /// Normal jumps from which open conditions go where the load drives them, and where they stay
-    /// along motions that nothing resists.
+    /// Normal jumps at which the motion of open conditions starts, and which they keep along motions without
+    /// resistance.
     pub center: &'a [f64],
-    /// Scale of the displacements that the normal jumps are differences of.
+    /// Scale of the displacements whose differences the normal jumps are.
     pub scale: f64,
 }
 
@@ -73,12 +72,12 @@ pub struct ContactSolution {
     pub fell_back: bool,
     /// True if all signs are right and the open conditions balanced.
     pub converged: bool,
-    /// True if something was seen to slide on and on against friction, so that there may be no solution.
+    /// True if a body slides without end against friction, so that there may be no solution.
     pub slides: bool,
 }
 
 impl ContactSolution {
-    /// Every one of `jumps` closed, before anything is known of the forces of `conditions`.
+    /// Solution with all `jumps` closed and no forces at `conditions` yet.
     pub fn bilateral(jumps: usize, conditions: usize) -> Self {
         Self {
             jumps: vec![0.0; jumps],
@@ -105,8 +104,7 @@ pub struct Trial {
 }
 
 impl ContactProblem<'_> {
-    /// Solves the problem from the conditions that are `open` at first, and leaves there which
-    /// ones are open in the solution.
+    /// Solves the problem from an initial active set; `open` then holds that of the solution.
     pub fn solve(&self, open: &mut [bool]) -> ContactSolution {
         if let Some(at_rest) = self.at_rest(open) {
             return at_rest;
@@ -116,7 +114,7 @@ impl ContactProblem<'_> {
         if !solution.converged {
             let before = solution.steps;
             let (mut named, center, named_in) = self.interior_point();
-            // Where nothing resists, bodies are within their gaps there, and not just anywhere.
+            // Keeps bodies that nothing resists within their gaps.
             let centered = ContactProblem {
                 center: &center,
                 ..*self
@@ -138,8 +136,8 @@ impl ContactProblem<'_> {
         solution
     }
 
-    /// t = 0 where nothing drives and nothing overlaps: round-off of a linear system, which is singular where contact
-    /// alone holds bodies, would drive them as far as their gaps let them.
+    /// Solution t = 0 without load and overlap: round-off of a linear system, singular where contact alone holds
+    /// bodies, would move them as far as their gaps let them.
     fn at_rest(&self, open: &mut [bool]) -> Option<ContactSolution> {
         let rests = self.c.iter().all(|&c| c == 0.0) && self.bounds.iter().all(|&g| g >= 0.0);
         rests.then(|| {
@@ -150,7 +148,7 @@ impl ContactProblem<'_> {
         })
     }
 
-    /// The open conditions and the normal jumps of the interior-point method, and what it cost.
+    /// Open conditions and normal jumps of the interior-point method, and the linear systems that it solved.
     fn interior_point(&self) -> (Vec<bool>, Vec<f64>, usize) {
         let m = self.c.len();
         let mut q = self.c.to_vec();
@@ -177,7 +175,7 @@ impl ContactProblem<'_> {
         (open, jumps.collect(), steps)
     }
 
-    /// Flips all wrong signs until there is none or their number no longer falls.
+    /// Flips all wrong signs until none is left or their number no longer falls.
     fn flip(&self, open: &mut [bool]) -> ContactSolution {
         let mut fewest = usize::MAX;
         let mut patience = PATIENCE;
@@ -206,7 +204,7 @@ impl ContactProblem<'_> {
         }
     }
 
-    /// The solution that `trial` is if all signs are `right`.
+    /// Solution of `trial`, converged if all signs are `right`.
     pub(super) fn solution(&self, trial: &Trial, steps: usize, right: bool) -> ContactSolution {
         let jumps = trial.jumps.iter().zip(self.bounds);
         ContactSolution {
@@ -219,8 +217,8 @@ impl ContactProblem<'_> {
         }
     }
 
-    /// t and λ with the conditions that aren't `open` held at their bounds. A closed dependent
-    /// condition that says nothing beyond the others has no force.
+    /// t and λ with closed conditions at their bounds. A closed dependent condition that follows from the others has no
+    /// force.
     pub fn linear(&self, open: &[bool]) -> Trial {
         let m = self.c.len();
         let factor = OpenFactor::new(self.h, self.diagonal, self.rows, open);
@@ -234,7 +232,7 @@ impl ContactProblem<'_> {
             })
             .collect();
         factor.equalities.hold(self.rows, self.bounds, &mut t);
-        // What the closed conditions leave of the load.
+        // The residual load beside the closed conditions.
         let mut left = self.c.to_vec();
         self.subtract(&t, &mut left);
         let mut opened: Vec<f64> = factor.open.iter().map(|&j| left[j]).collect();
@@ -292,8 +290,8 @@ impl ContactProblem<'_> {
         self.c_scale[i] + held + DIAGONAL_SHARE * self.diagonal[i] * displaced
     }
 
-    /// The conditions that are open with a negative gap or closed with a negative force, beyond
-    /// round-off: within it a condition stays what it was.
+    /// Conditions open with a negative gap or closed with a negative force, beyond round-off: within it the status is
+    /// kept.
     fn wrong_signs(&self, open: &[bool], trial: &Trial) -> Vec<usize> {
         (0..open.len())
             .filter(|&i| {
@@ -306,7 +304,7 @@ impl ContactProblem<'_> {
             .collect()
     }
 
-    /// Violation of the bound of condition i, which is open; 0 within round-off.
+    /// Violation of the bound of the open condition i; 0 within round-off.
     pub(super) fn violation(&self, i: usize, open: &[bool], trial: &Trial) -> f64 {
         let m = self.c.len();
         let t = &trial.jumps;
@@ -328,7 +326,7 @@ impl ContactProblem<'_> {
         (value - self.bounds[i]) / size
     }
 
-    /// True if condition i holds its sides together, beyond round-off.
+    /// True if condition i is in tension, beyond round-off.
     pub(super) fn pulls(&self, i: usize, trial: &Trial) -> bool {
         let force = trial.forces[i];
         force < 0.0 && force < -FORCE_TOLERANCE * self.force_scale(i, trial)

@@ -1,5 +1,5 @@
-//! Dependence of closed limits on each other: where one follows from closed ones and is violated all the same, it closes in
-//! the place of that one whose force vanishes first as its own grows.
+//! Dependence of closed limits on each other: a violated limit that follows from closed ones replaces the one whose
+//! force vanishes first as its own grows.
 //!
 //! D. Goldfarb, A. Idnani, *A numerically stable dual method for solving strictly convex quadratic programs*, Math.
 //! Programming 27 (1983).
@@ -7,11 +7,11 @@
 use super::active_equalities::ActiveEqualities;
 use super::dependent::{DependentConstraints, Terms};
 
-/// Share of a limit's normal in another's below which there is none.
+/// Share of a limit's normal in another's that counts as zero.
 pub(super) const NO_SHARE: f64 = 1e-10;
 
 impl DependentConstraints {
-    /// Opens the closed rows that follow from other closed limits: their gaps are what these make them.
+    /// Opens the closed rows that follow from other closed limits, which determine their gaps.
     pub fn open_redundant(&self, open: &mut [bool]) {
         if self.is_empty() {
             return;
@@ -22,7 +22,7 @@ impl DependentConstraints {
         }
     }
 
-    /// The multiples of closed limits' normals that the normal of limit k is, if it is.
+    /// Multiples of closed limits' normals that make up the normal of limit k; `None` where none do.
     pub fn shares_in(
         &self,
         k: usize,
@@ -48,8 +48,8 @@ impl DependentConstraints {
         Some(shares)
     }
 
-    /// Closes limit k under these `forces`; where it follows from closed ones, that one of them opens in exchange which
-    /// `may_open` and whose force vanishes first.
+    /// Closes limit k under these `forces`; where it follows from closed ones, opens the one of them that `may_open`
+    /// and whose force vanishes first.
     pub fn close(
         &self,
         k: usize,
@@ -68,7 +68,7 @@ impl DependentConstraints {
         open[k] = false;
     }
 
-    /// Amplification of round-off of closed limits in limit k, where that follows from them.
+    /// Amplification in limit k of the round-off of closed limits from which it follows.
     pub fn amplified(&self, k: usize, open: &[bool], equalities: &ActiveEqualities) -> f64 {
         if self.is_empty() {
             return 0.0;
@@ -78,8 +78,8 @@ impl DependentConstraints {
     }
 }
 
-/// The limit whose force is the first to vanish when each loses its share of a growing force, and how far that can grow;
-/// `None` if none vanishes.
+/// The limit whose force vanishes first as each loses its share of a growing force, and that force; `None` if none
+/// vanishes.
 pub fn first_to_vanish(shares: &[(usize, f64)], forces: &[f64]) -> Option<(usize, f64)> {
     let losing = shares.iter().filter(|(_, share)| *share > NO_SHARE);
     let growth = |&(i, share): &(usize, f64)| (i, forces[i].max(0.0) / share);

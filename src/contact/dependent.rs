@@ -1,13 +1,12 @@
 //! Conditions that depend on several normal jumps: D t ≤ d.
 //!
-//! Where more conditions meet at a node than it has directions, the normal jumps of some bound those
-//! of the others.
+//! At a node with more conditions than directions, the normal jumps of some bound those of the others.
 
 use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
-/// A sum of multiples: numbers and factors.
+/// Linear combination: numbers and factors.
 pub type Terms = Vec<(usize, f64)>;
 
 /// D, row by row.
@@ -58,7 +57,7 @@ impl DependentConstraints {
         self.rows[j].iter().map(|(_, c)| c.abs()).sum()
     }
 
-    /// y ← y − Dᵀ μ; the absolute terms of each entry that this changes.
+    /// y ← y − Dᵀ μ. Returns the absolute terms of each changed entry.
     pub fn subtract_transposed(&self, mu: &[f64], y: &mut [f64]) -> HashMap<usize, f64> {
         let mut scale: HashMap<usize, f64> = HashMap::new();
         for (row, mu) in self.rows.iter().zip(mu).filter(|(_, mu)| **mu != 0.0) {

@@ -1,23 +1,22 @@
 //! Contact problems with linearly dependent constraints, where closed conditions may follow from each other.
 //!
-//! Goldfarb and Idnani's dual method: closed conditions are independent of each other and all press;
-//! one that is violated closes, its force growing from zero, and each that would have to pull on
-//! the way opens. The energy rises with every condition that closes, so that no set comes back.
+//! Goldfarb and Idnani's dual method: closed conditions are independent of each other and in compression; a violated
+//! one closes as its force grows from zero, and each that would come under tension meanwhile opens. The energy rises
+//! with every condition that closes, so that no set comes back.
 
 use super::active_equalities::ActiveEqualities;
 use super::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE, Trial};
 use super::dependence::first_to_vanish;
 
 impl ContactProblem<'_> {
-    /// Opens the linearly dependent constraints that say nothing beyond closed ones: their gaps are what these
-    /// make them.
+    /// Opens the linearly dependent constraints that follow from closed ones, which determine their gaps.
     pub(super) fn open_redundant(&self, open: &mut [bool], trial: &Trial) {
         for &j in &trial.equalities.redundant {
             open[self.c.len() + j] = true;
         }
     }
 
-    /// Scale of the terms that the force of condition i is a sum of.
+    /// Scale of the terms in the force of condition i.
     pub(super) fn force_scale(&self, i: usize, trial: &Trial) -> f64 {
         let m = self.c.len();
         let of_jump = |i: usize| self.scale_of(i, &trial.jumps);
@@ -32,13 +31,13 @@ impl ContactProblem<'_> {
         of_jump(i) + held.sum::<f64>()
     }
 
-    /// True if condition i holds its sides apart, beyond round-off.
+    /// True if condition i is in compression, beyond round-off.
     fn presses(&self, i: usize, trial: &Trial) -> bool {
         trial.forces[i] > FORCE_TOLERANCE * self.force_scale(i, trial)
     }
 
-    /// Closes violated conditions one by one until there is none, starting from those of the closed
-    /// ones that press; gives up once `limit` systems are solved.
+    /// Closes violated conditions one by one until none is left, starting from the closed ones in compression; gives up
+    /// after `limit` linear systems.
     pub(super) fn dual(&self, open: &mut [bool], limit: usize) -> ContactSolution {
         let mut steps = 0;
         let mut trial = loop {
@@ -71,8 +70,8 @@ impl ContactProblem<'_> {
         }
     }
 
-    /// Closes the violated condition k, opening those that would have to pull; `None` where the
-    /// conditions contradict each other or too many systems are solved.
+    /// Closes the violated condition k and opens those that would come under tension; `None` where the conditions
+    /// contradict each other or too many systems are solved.
     fn press(
         &self,
         k: usize,

@@ -1,5 +1,5 @@
-//! Exchange of limits of a contact group that contradict each other where they are closed, or stick, all at once: one
-//! closes in the place of another ([`super::dependence`]), or slips as others make it.
+//! Active-set update for limits of a contact group that contradict each other when all are closed or stick: one closes
+//! in the place of another ([`super::dependence`]), or slips as the others determine.
 
 use std::collections::BTreeSet;
 
@@ -9,25 +9,25 @@ use super::law::PointStatus;
 use super::laws::{ContactLaws, Iterate, Statuses};
 use crate::vector::largest;
 
-/// Way beyond a bound, relative to the largest jump and bound, that is none.
+/// Overshoot of a bound, relative to the largest jump and bound, that counts as zero.
 const NO_WAY: f64 = 1e-12;
 /// Bisections of the range in which a point begins to slip.
 const BISECTIONS: usize = 40;
 
-/// An exchange of limits of a group.
+/// Active-set update of a contact group.
 struct Exchange<'a> {
     laws: &'a ContactLaws<'a>,
     /// The forces of all limits as far as they have grown.
     forces: Vec<f64>,
-    /// Limits that aren't among those that are closed, or stick, and depend on none of the others.
+    /// False for the independent limits that are closed or stick, true for all others.
     open: Vec<bool>,
-    /// Way beyond a bound that is none (m).
+    /// Overshoot of a bound that counts as zero (m).
     no_way: f64,
 }
 
 impl ContactLaws<'_> {
-    /// Makes limits that are to be closed or stick `now`, at an iterate, independent of each other where they contradict each
-    /// other; those that were so `before` are first. A tangential limit that others make slip slips.
+    /// Makes contradicting limits that are to close or stick `now`, at an iterate, independent of each other; those
+    /// closed or sticking `before` come first. A tangential limit slips where others make it slip.
     pub fn exchange(&self, at: &Iterate, before: &Statuses, now: &mut Statuses) {
         if self.rows.is_empty() {
             return;
@@ -44,7 +44,7 @@ impl ContactLaws<'_> {
             open,
             no_way: NO_WAY * largest(&finite),
         };
-        // Jumps of no row depend on none.
+        // Jumps outside of all rows are independent.
         let in_rows: BTreeSet<usize> = self.rows.iter().flatten().map(|(i, _)| *i).collect();
         let m = known.len() - self.rows.len();
         let sought = (0..known.len()).filter(|k| *k >= m || in_rows.contains(k));
@@ -58,23 +58,23 @@ impl ContactLaws<'_> {
     }
 }
 
-/// The first limits that give way to a force that grows.
+/// First status change under a growing force.
 struct Blocking {
-    /// Growth until then.
+    /// Growth of the force up to the change.
     growth: f64,
     change: Change,
 }
 
-/// Change of the active set in an exchange.
+/// Change of status.
 enum Change {
-    /// This normal limit opens.
+    /// Opening of a normal limit.
     Opens(usize),
-    /// This point slips, whose limits have these shares of the force.
+    /// Slip of a point, with the shares of its limits in the force.
     Slips(usize, [f64; 2]),
 }
 
 impl Exchange<'_> {
-    /// Closes limit k, or lets it stick, in exchange for what contradicts that.
+    /// Closes limit k, or lets it stick, and releases the limit that contradicts it.
     fn close(&mut self, k: usize, now: &mut Statuses) {
         let (laws, rows) = (self.laws, self.laws.rows);
         let equalities = ActiveEqualities::new(rows, &self.open);
@@ -125,8 +125,7 @@ impl Exchange<'_> {
         }
     }
 
-    /// Violation of the bound of limit k where those are at theirs whose `shares` it is made of (m); none within
-    /// round-off.
+    /// Violation of the bound of limit k with the limits of its `shares` at theirs (m); 0 within round-off.
     fn beyond(&self, k: usize, shares: &[(usize, f64)]) -> f64 {
         let way = shares.iter().map(|&(i, c)| c * self.laws.bounds[i]);
         let beyond = way.sum::<f64>() - self.laws.bounds[k];
@@ -137,7 +136,7 @@ impl Exchange<'_> {
         }
     }
 
-    /// Point p if it sticks and slips as its limits lose these `shares` of a force that grows.
+    /// Change of point p, if it sticks and slips as its limits lose these `shares` of a growing force.
     fn slipping(&self, p: usize, shares: &[(usize, f64)], now: &Statuses) -> Option<Blocking> {
         let point = &self.laws.points[p];
         let share = |i: usize| {
@@ -159,7 +158,7 @@ impl Exchange<'_> {
             let left = [0, 1].map(|k| force[k] - growth * own[k]);
             left[0].hypot(left[1]) > bound(pressure - growth * loss)
         };
-        // The force is at its bound no later than where all of the bound acts against the share.
+        // The force reaches its bound at the latest where all of the bound opposes the share.
         let size = own[0].hypot(own[1]);
         let mut range = [0.0, (bound(pressure) + force[0].hypot(force[1])) / size];
         while loss < 0.0 && !slips(range[1]) {
@@ -178,7 +177,7 @@ impl Exchange<'_> {
         })
     }
 
-    /// Opens the normal limit i, and what has no friction then.
+    /// Opens the normal limit i and the tangential limits that lose their friction.
     fn open(&mut self, i: usize, now: &mut Statuses) {
         self.open[i] = true;
         now.closed[i] = false;
@@ -190,7 +189,7 @@ impl Exchange<'_> {
         }
     }
 
-    /// Lets the point of the tangential limit k slip as what its jumps are made of says.
+    /// Lets the point of the tangential limit k slip as the other jumps determine.
     fn slip_of(&mut self, k: usize, now: &mut Statuses) {
         let rows = self.laws.rows;
         let mut points = self.laws.points.iter();
@@ -207,7 +206,7 @@ impl Exchange<'_> {
         self.slip(p, slip.map(|s| s / size), size, now);
     }
 
-    /// Lets point p slip so far in a direction.
+    /// Lets point p slip by `way` (m) in a direction.
     fn slip(&mut self, p: usize, direction: [f64; 2], way: f64, now: &mut Statuses) {
         let point = &self.laws.points[p];
         let is_closed = point.is_closed(&now.closed);
@@ -228,14 +227,14 @@ mod tests {
     use crate::contact::limits::{Beside, TangentialLimit};
     use crate::contact::tangent::ForceBound;
 
-    /// t_0 + t_1 ≤ −1 beside t_0 ≤ 0 and t_1 ≤ 0, or s_1 = 0 where the second jump is a slip.
+    /// Contradicting limits: t_0 + t_1 ≤ −1 with t_0 ≤ 0 and t_1 ≤ 0, or with s_1 = 0 where the second jump is a slip.
     fn contradicting() -> (Vec<f64>, DependentConstraints) {
         let mut rows = DependentConstraints::default();
         rows.push(vec![(0, 1.0), (1, 1.0)]);
         (vec![0.0, 0.0, -1.0], rows)
     }
 
-    /// The statuses after an exchange where all are to be closed, or stick, under these forces.
+    /// Statuses after an update in which all limits are to close or stick, under these forces.
     fn exchanged(tangents: &[TangentialLimit], forces: [f64; 3]) -> Statuses {
         let (bounds, rows) = contradicting();
         let laws = ContactLaws::new(&bounds, &rows, tangents, vec![1.0; 3]);

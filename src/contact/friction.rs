@@ -1,10 +1,10 @@
-//! The contact problem with friction: normal jumps t ≤ g with forces λ ≥ 0, tangential jumps w that stick where they
-//! are as long as |λ_t| ≤ b, and slip under |λ_t| = b, against the slip.
+//! The contact problem with friction: normal jumps t ≤ g with forces λ ≥ 0; tangential jumps w stick while |λ_t| < b,
+//! and slip under |λ_t| = b, against the slip.
 //!
-//! The bound b is given, or grows with the normal force, b = c + μ λ: then the matrix of the slipping ones isn't
-//! symmetric, and no energy has the solution for its minimum. A status for every limit makes the problem linear; all
-//! wrong statuses are corrected at once until none is wrong, as semismooth Newton does, and where that gets no
-//! further, from near the end of Lemke's path, which leads to a solution.
+//! The bound b is given (Tresca), or grows with the normal force (Coulomb), b = c + μ λ: then the matrix of the
+//! slipping points isn't symmetric, and no energy has the solution for its minimum. A status for every limit makes the
+//! problem linear; semismooth Newton corrects all wrong statuses at once until none is wrong. Where that stalls, it
+//! starts again near the end of Lemke's path, which leads to a solution.
 
 mod cones;
 mod lemke;
@@ -25,16 +25,16 @@ pub use super::tangent::{ForceBound, TangentialCondition};
 /// The contact problem with friction.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionProblem<'a> {
-    /// All limits; those of tangential jumps are where these stick.
+    /// The problem on all limits; the bound of a tangential jump is its sticking position.
     pub contact: ContactProblem<'a>,
     /// Tangential limits.
     pub tangents: &'a [TangentialLimit],
-    /// Where the search for what touches begins.
+    /// Patch of points in contact from which the search begins.
     pub last_patch: &'a LastPatch,
 }
 
 impl FrictionProblem<'_> {
-    /// Solves the problem from the statuses that its limits have at first, and leaves there those of the solution.
+    /// Solves the problem from initial statuses of its limits; `status` then holds those of the solution.
     pub fn solve(&self, status: &mut [Status]) -> ContactSolution {
         let on_patch = self.solve_on_patch(status);
         on_patch.unwrap_or_else(|| self.solve_whole(status))
@@ -52,7 +52,7 @@ impl FrictionProblem<'_> {
         self.solve_cones(status)
     }
 
-    /// The change of jumps and forces where limits keep these statuses; `bounds` are what the closed ones lack.
+    /// Change of jumps and forces with fixed statuses; `bounds` are the missing parts of closed ones.
     pub fn change(&self, fixed: &[FixedStatus]) -> Iterate {
         let on_patch = self.change_on_patch(fixed);
         on_patch.unwrap_or_else(|| self.change_whole(fixed))

@@ -1,9 +1,9 @@
-//! Conditions that open, by Mehrotra's predictor-corrector interior-point method.
+//! Open conditions by Mehrotra's predictor-corrector interior-point method.
 //!
 //! The problem in gaps, w = q + H s with s, w ≥ 0 and sᵀw = 0, is solved along the path sᵢwᵢ = μ → 0
-//! in some twenty steps whatever the number of conditions and however H is conditioned, where an
-//! active set may open them one by one or turn in circles. Linearly dependent constraints have gaps
-//! σ = e + D s ≥ 0 and forces μ ≥ 0 besides, w + Dᵀ μ = q + H s.
+//! in some twenty steps whatever the number of conditions and the condition of H, where an
+//! active set may open them one by one or cycle. Linearly dependent constraints add gaps
+//! σ = e + D s ≥ 0 and forces μ ≥ 0, w + Dᵀ μ = q + H s.
 
 use faer::linalg::solvers::SolveCore;
 use faer::{Conj, Mat, MatMut, MatRef, Side};
@@ -12,13 +12,13 @@ use super::dependent::DependentConstraints;
 use crate::schur::local::multiply_add;
 use crate::vector::axpy;
 
-/// Most steps.
+/// Maximum number of steps.
 const MAX_STEPS: usize = 60;
-/// Mean product of gap and force, relative to their scales, at which it ends.
+/// Mean product of gap and force, relative to their scales, at which the method ends.
 const TOLERANCE: f64 = 1e-20;
-/// Share of the way to the next bound that a step takes.
+/// Length of a step relative to that which reaches the next bound.
 const SHARE: f64 = 0.995;
-/// Stiffness relative to the diagonal that keeps a motion that nothing resists bounded.
+/// Stiffness, relative to the diagonal, that bounds motions without resistance.
 const SPRING: f64 = 1e-15;
 
 /// The problem.
@@ -37,8 +37,7 @@ pub struct InGaps<'a> {
 }
 
 impl InGaps<'_> {
-    /// The conditions that are open in the solution, those of gaps first, the gaps, and the number of
-    /// linear systems solved.
+    /// Open conditions of the solution, those of gaps first, the gaps, and the number of linear systems solved.
     pub fn open_conditions(&self) -> (Vec<bool>, Vec<f64>, usize) {
         let n = self.q.len();
         let all = n + self.rows.len();
@@ -92,7 +91,7 @@ struct Scaled {
 }
 
 impl Scaled {
-    /// q + H s − w − Dᵀ μ, then e + D s − σ: what the equations are missed by.
+    /// Residuals q + H s − w − Dᵀ μ, then e + D s − σ.
     fn missing(&self, point: &Point) -> Vec<f64> {
         let n = self.q.len();
         let mut missing = self.q.clone();
@@ -123,7 +122,7 @@ impl Scaled {
         matrix
     }
 
-    /// One predictor and one corrector; `None` where round-off leaves no step.
+    /// Predictor and corrector; `None` where round-off leaves no step.
     fn step(&self, point: &Point) -> Option<Point> {
         let (n, all) = (self.q.len(), point.s.len());
         let missing = self.missing(point);
@@ -172,7 +171,7 @@ impl Point {
         sum / self.s.len() as f64
     }
 
-    /// Length of a step until a gap or a force is zero, at most 1/SHARE.
+    /// Length of the step to the first zero gap or force, at most 1/SHARE.
     fn reach(&self, ds: &[f64], dw: &[f64]) -> f64 {
         let steps = self.s.iter().zip(ds).chain(self.w.iter().zip(dw));
         steps.fold(1.0 / SHARE, |reach, (x, dx)| {

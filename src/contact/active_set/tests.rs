@@ -35,7 +35,7 @@ impl Problem {
         problem
     }
 
-    /// With `m` normal jumps between bounds that are mostly positive.
+    /// A random problem of `m` normal jumps with mostly positive bounds.
     fn random(seed: usize, m: usize) -> Self {
         let a = Mat::from_fn(m, m, |i, j| noise(seed * 1000 + i * 31 + j));
         Self {
@@ -64,7 +64,7 @@ impl Problem {
         (problem.solve(&mut open), open)
     }
 
-    /// Fails unless the solution meets t ≤ g and D t ≤ d and is optimal with it; which conditions are open there.
+    /// Fails unless the solution meets t ≤ g and D t ≤ d and is optimal; returns its open conditions.
     #[track_caller]
     fn assert_optimal(&self) -> Vec<bool> {
         let Self { h, c, rows, bounds } = self;

@@ -1,9 +1,8 @@
-//! Friction along one or two tangents of a point: a force within a disc, |λ_t| ≤ b, against the slip s.
+//! Friction cone of a point along one or two tangents: |λ_t| ≤ b, against the slip s.
 //!
 //! Semismooth Newton on the laws ([`newton`](crate::contact::newton)), with a dense linear problem for given statuses
-//! ([`linear`]). Where this gets no further, it starts again from near the solution, where Lemke's path leads
-//! ([`lemke`](super::lemke)). After that viscous resistance to all jumps makes the problem easier, the slower things move
-//! the less.
+//! ([`linear`]). Where it stalls, it starts again near the solution, at the end of Lemke's path
+//! ([`lemke`](super::lemke)). The last resort is viscous regularization of all jumps, which vanishes with the velocity.
 
 mod linear;
 mod newton;
@@ -16,23 +15,22 @@ use crate::contact::open_factor::scale_of;
 use crate::contact::status::FixedStatus;
 use crate::contact::tangent::Beside;
 
-/// Residual that is accepted, relative to the terms of forces, where steps make it no less: round-off of points whose own
-/// stiffness is far above that of others. The certificate has the last word.
+/// Accepted residual, relative to the terms of forces, once steps no longer lessen it: round-off of points whose own
+/// stiffness is far above that of others. The certificate checks the result.
 const ACCEPTABLE: f64 = 1e-10;
 
-/// Share of the terms that the forces which act are a sum of: more than their round-off, once it is multiplied by what Newton's
-/// method may miss of the laws.
+/// Share of the terms of the acting forces: more than their round-off, times the tolerance of Newton's method.
 const OF_TERMS: f64 = 1e-5;
 
-/// A dense problem whose points have cones.
+/// Dense problem with friction cones.
 struct FrictionCones<'a> {
     contact: ContactProblem<'a>,
     laws: ContactLaws<'a>,
-    /// The norm of energies of the forces that act before anything moves, with what their own round-off may be.
+    /// Energy norm of the forces that act before any motion, with their round-off.
     acting: f64,
 }
 
-/// Where Newton's method ends.
+/// Result of Newton's method.
 struct Found {
     place: Iterate,
     state: Statuses,
@@ -70,7 +68,7 @@ impl FrictionProblem<'_> {
         }
     }
 
-    /// The change of jumps and forces where limits keep these statuses, as [`Self::change`] says.
+    /// Change of jumps and forces with fixed statuses, as in [`Self::change`].
     pub(super) fn change_cones(&self, fixed: &[FixedStatus]) -> Iterate {
         let mut tangents = self.tangents.to_vec();
         for tangent in &mut tangents {
@@ -110,7 +108,7 @@ impl FrictionProblem<'_> {
         change
     }
 
-    /// The limits whose law isn't fulfilled one step after they had these statuses.
+    /// Limits whose law is violated one step after these statuses.
     pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
         let cones = FrictionCones::new(self);
         let start = cones.start();
@@ -143,7 +141,7 @@ impl<'a> FrictionCones<'a> {
         }
     }
 
-    /// The place with these jumps and forces of dependent rows.
+    /// Iterate with these jumps and forces of dependent rows.
     fn place(&self, jumps: Vec<f64>, mut of_rows: Vec<f64>) -> Iterate {
         let mut forces = self.contact.c.to_vec();
         self.contact.subtract(&jumps, &mut forces);
@@ -172,7 +170,7 @@ impl<'a> FrictionCones<'a> {
         }
     }
 
-    /// The terms that the force of limit i is a sum of (N/m).
+    /// Scale of the terms in the force of limit i (N/m).
     fn force_scale(&self, i: usize, place: &Iterate) -> f64 {
         let m = place.jumps.len();
         let of_jump = |j: usize| {
@@ -192,7 +190,7 @@ impl<'a> FrictionCones<'a> {
         }
     }
 
-    /// Jumps and forces with exactly what limits do: nothing beyond bounds, no force where open.
+    /// Jumps and forces with exact laws: no overshoot of bounds, no force where open.
     fn exact(&self, found: &Found) -> (Vec<f64>, Vec<f64>) {
         let Found { place, state, .. } = found;
         let (mut jumps, mut forces) = (place.jumps.clone(), place.forces.clone());
@@ -213,7 +211,7 @@ impl<'a> FrictionCones<'a> {
                 forces[n] = 0.0;
                 continue;
             }
-            // Small slips know their direction less well than what balances the bodies.
+            // The direction of a small slip is less accurate than the force that balances the bodies.
             let here = self.laws.point(point, &cut, &state.closed);
             let size = here.size();
             let part = match act {

@@ -1,19 +1,20 @@
-//! The way to a solution from a problem whose solution is known: Lemke's method, on jumps and forces.
+//! Lemke's method on jumps and forces: a path to a solution from a problem with a known one.
 //!
-//! With θ p more on every normal force and θ b more on every given bound, all is closed and sticks where θ is large.
-//! From there θ goes down. Wherever a force or a jump reaches its limit, one status changes, and θ goes on in the
-//! direction, up or down, in which what was at its limit before moves away from it: a path of straight pieces that
-//! never comes back. No piece is endless: along one that is, jumps x would have xᵀ H x ≤ 0. So it gets to θ = 0,
-//! whatever the coefficients of friction, but for round-off; and where motions that nothing resists are driven.
+//! With θ p added to every normal force and θ b to every given bound, all limits are closed and stick for large θ. From
+//! there θ decreases. Wherever a force or a jump reaches its limit, one status changes, and θ goes on in the direction,
+//! up or down, in which the previous quantity leaves its limit: a piecewise linear path that never returns. No piece is
+//! endless: along an endless one jumps x would have xᵀ H x ≤ 0. So the path reaches θ = 0 whatever the coefficients of
+//! friction, except for round-off and for loads along motions without resistance.
 //!
 //! A. Klarbring, J.-S. Pang, *Existence of solutions to discrete semicoercive frictional contact problems*, SIAM J.
 //! Optim. 8 (1998).
 //!
-//! In space friction has a polygon in the place of the disc, and the end of the path is near the solution: the nearer, the
-//! finer polygons are where points slip. Slips that turn go from side to side of fine ones, so paths begin with few sides.
+//! In space a polyhedral cone replaces the friction cone, and the end of the path is near the solution: the nearer, the
+//! finer its polygons are in the direction of slip. Turning slips pass every side of fine ones, so paths begin with
+//! few.
 //!
-//! Closed rows that depend on each other give way a little. A bound that vanishes as the contact opens, c + μ λ, falls
-//! steeply to 0 with the last of the force: what ends there is about to open.
+//! Closed rows that depend on each other get a small compliance. A bound that vanishes as the contact opens, c + μ λ,
+//! falls steeply to 0 with the last of the force: a point that ends there is about to open.
 
 mod path;
 mod polygon;
@@ -25,21 +26,21 @@ use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
-/// Refinements of the polygons in each attempt: where they have few sides at first.
+/// Refinements of the polygons in each attempt; those with few sides at first have some.
 const FINER: [usize; ATTEMPTS] = [3, 0, 3, 0];
-/// Limits up to which the path is followed: its matrix is dense.
+/// Maximum number of limits on a path: its matrix is dense.
 const MOST_LIMITS: usize = 3000;
-/// Pivots between which its round-off may grow, but for that of large problems.
+/// Pivots between two refactorizations, except in large problems: their round-off grows.
 const MOST_UPDATES: usize = 20;
-/// Pivots, whatever the problem and for each limit.
+/// Maximum number of pivots: the constant part, and that for each limit.
 const EXCHANGES: usize = 2000;
 const EXCHANGES_EACH: usize = 8;
-/// Pivots in a row at one θ: round-off goes round in circles there.
+/// Maximum number of pivots in a row at one θ: round-off makes them cycle.
 const STANDS_STILL: usize = 100;
 
 impl FrictionProblem<'_> {
-    /// The end of the path with these `polygons` of friction, and the pivots that it took; `None` where it doesn't get
-    /// there. Every attempt goes another way.
+    /// End of the path with these friction `polygons`, and the number of pivots; `None` where the path fails. Every
+    /// attempt takes another path.
     fn follow(&self, polygons: &Polygons) -> (Option<End>, usize) {
         let is_prescribed =
             |tangent: &TangentialLimit| matches!(tangent.beside, Beside::Prescribed(_));
@@ -75,8 +76,8 @@ impl FrictionProblem<'_> {
         (None, most)
     }
 
-    /// Offers the ends of paths, with the pivots that each took, until one of them is taken as the beginning of a solution:
-    /// in space some attempts go on with polygons that are finer where points slip in the path before.
+    /// Offers ends of paths, with their numbers of pivots, until a solution is found from one: in space some attempts
+    /// refine the polygons in the slip directions of the path before.
     pub(super) fn try_paths<T>(
         &self,
         mut take: impl FnMut(Option<&End>, usize) -> Option<T>,
@@ -97,7 +98,7 @@ impl FrictionProblem<'_> {
         None
     }
 
-    /// The factors of all limits' jumps in the scale of energies; forces are divided by them.
+    /// Factors that scale all limits' jumps to energies; forces are divided by them.
     fn scales(&self) -> Vec<f64> {
         let gap = &self.contact;
         let of_jump = |j: usize| scale_of(gap.h[(j, j)], gap.diagonal[j]).sqrt();

@@ -1,13 +1,13 @@
-//! Other solutions: Coulomb's friction may have several.
+//! Further solutions: Coulomb friction may have several.
 
 use super::{FrictionProblem, Status};
 
-/// Difference of solutions, relative to the displacements, that isn't round-off.
+/// Difference of distinct solutions, relative to the displacements: more than round-off.
 const ANOTHER: f64 = 1e-7;
 
 impl FrictionProblem<'_> {
-    /// Distance of another solution from the `known` jumps, the largest difference (m): one that the search finds
-    /// from contacts that all slip, one way or the other, or are all open; `scale` is that of the displacements.
+    /// Largest difference (m) between the `known` jumps and another solution, sought from contacts that all slip, in
+    /// either direction, or are all open; `scale` is that of the displacements.
     pub fn other_solution(&self, known: &[f64], scale: f64) -> Option<f64> {
         let limits = self.contact.bounds.len();
         let all_slip = |slipping: Status| {

@@ -1,4 +1,4 @@
-//! The contact problem on a patch of it: points that stay open are condensed out, and checked afterwards.
+//! The contact problem on a patch: points that stay open are condensed out, and checked afterwards.
 //!
 //! Most conditions of a model never touch, but their jumps are unknowns of H. With λ_o = 0 on the jumps o of open points,
 //!
@@ -6,8 +6,8 @@
 //! H̃ = H_pp − H_po H_oo⁻¹ H_op,   c̃ = c_p − H_po H_oo⁻¹ c_o,   t_o = H_oo⁻¹ (c_o − H_op t_p)
 //! ```
 //!
-//! leave a problem of the same form on the patch p, which is solved the same way. Points whose t_o is beyond its bound
-//! join the patch, until there is none: then the solution is that of the whole problem.
+//! leave a problem of the same form on the patch p, which is solved in the same manner. Points whose t_o exceeds its
+//! bound join the patch until there is none: then the solution is that of the whole problem.
 
 use std::rc::Rc;
 
@@ -23,12 +23,12 @@ use crate::contact::patch::{CondensedPatch, LARGE, LastPatch};
 use crate::contact::status::FixedStatus;
 use crate::contact::tangent::{Beside, TangentialLimit};
 
-/// Jumps up to which the whole problem is solved at once: that costs less than to condense it.
+/// Number of jumps up to which the whole problem is cheaper to solve than to condense.
 const FEW: usize = 300;
-/// Most times that a patch may grow.
+/// Maximum number of patch enlargements.
 const ROUNDS: usize = 8;
-/// Stiffness of the springs that hold bodies which the first patch leaves free, relative to that of the jumps, from the
-/// stiffest on.
+/// Stiffness of the springs on bodies that the first patch leaves free, relative to that of the jumps, the stiffest
+/// first.
 const SPRINGS: [f64; 3] = [1e-2, 1e-4, 1e-6];
 
 /// A patch of a problem.
@@ -38,7 +38,7 @@ struct Patch<'a> {
 }
 
 impl FrictionProblem<'_> {
-    /// The solution by way of a patch; `None` where none is small enough and holds the bodies, or none leads to a solution.
+    /// Solution on a patch; `None` where none is small enough and holds the bodies, or none leads to a solution.
     pub(super) fn solve_on_patch(&self, status: &mut [Status]) -> Option<ContactSolution> {
         if self.contact.c.len() <= FEW {
             return None;
@@ -74,8 +74,7 @@ impl FrictionProblem<'_> {
         None
     }
 
-    /// The change of jumps and forces where limits keep these statuses, as [`Self::change`] says, by way of the patch that
-    /// these close.
+    /// Change of jumps and forces with fixed statuses, as in [`Self::change`], on the patch of the closed ones.
     pub(super) fn change_on_patch(&self, fixed: &[FixedStatus]) -> Option<Iterate> {
         if self.contact.c.len() <= FEW {
             return None;
@@ -90,7 +89,7 @@ impl FrictionProblem<'_> {
         })
     }
 
-    /// The normal jump with which every jump opens, itself where it is one; `None` where it doesn't open for certain.
+    /// The normal jump with which every jump opens, itself for a normal one; `None` for jumps that needn't open.
     fn normals(&self) -> Vec<Option<usize>> {
         let m = self.contact.c.len();
         let mut normal_of: Vec<Option<usize>> = (0..m).map(Some).collect();
@@ -116,8 +115,8 @@ impl FrictionProblem<'_> {
         normal_of.into_iter().map(|n| n.filter(opens)).collect()
     }
 
-    /// The normal jumps of the points with which the search for a patch begins: those that press, and where these leave a body
-    /// free those, too, that close as the loads move it against springs; `None` where no such patch is small enough.
+    /// Normal jumps of the first patch: those in compression, and, if these leave a body free, those that close as the
+    /// loads move it against springs; `None` where no such patch is small enough.
     fn first_patch(&self, normal_of: &[Option<usize>], status: &[Status]) -> Option<Vec<bool>> {
         let mut is_in = self.pressed(normal_of, status);
         let patch = |is_in: &[bool]| Patch::new(self, |&i| normal_of[i].is_none_or(|n| is_in[n]));
@@ -133,8 +132,8 @@ impl FrictionProblem<'_> {
         patch(&is_in).is_some().then_some(is_in)
     }
 
-    /// All jumps where the points of a patch are closed and stick, and all others open against springs of this stiffness,
-    /// relative to their own; `None` where the patch is too large, or even these leave a body free.
+    /// All jumps with the points of a patch closed and sticking, and the others open against springs of this stiffness,
+    /// relative to their own; `None` where the patch is too large, or a body remains free.
     fn held_by_springs(
         &self,
         normal_of: &[Option<usize>],
@@ -167,7 +166,7 @@ impl FrictionProblem<'_> {
         Some(jumps)
     }
 
-    /// The normal jumps of points that aren't open; where these are most, those that press where all of them are closed.
+    /// Normal jumps of closed points; if these are most, those in compression when all are closed.
     fn pressed(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
         let contact = &self.contact;
         let mut held = held(normal_of, status, Status::Open);
@@ -189,7 +188,7 @@ impl FrictionProblem<'_> {
     }
 }
 
-/// The normal jumps of points that aren't `open`.
+/// Normal jumps of points whose status isn't `open`.
 fn held<S: PartialEq>(normal_of: &[Option<usize>], statuses: &[S], open: S) -> Vec<bool> {
     let mut held = vec![false; normal_of.len()];
     for (normal, status) in normal_of.iter().zip(statuses) {
@@ -201,22 +200,22 @@ fn held<S: PartialEq>(normal_of: &[Option<usize>], statuses: &[S], open: S) -> V
 }
 
 impl<'a> Patch<'a> {
-    /// The patch of the jumps that `joins` names; `None` where it is too large or the bodies move freely as it is held.
+    /// The patch of jumps that `joins` selects; `None` where it is too large or leaves a body free.
     fn new(problem: &'a FrictionProblem<'a>, joins: impl Fn(&usize) -> bool) -> Option<Self> {
         let jumps: Vec<usize> = (0..problem.contact.c.len()).filter(joins).collect();
         let condensed = problem.last_patch.condensed(&problem.contact, jumps)?;
         Some(Self { problem, condensed })
     }
 
-    /// The limits of the patch, those of dependent rows at the end.
+    /// Limits of the patch, those of dependent rows last.
     fn limits(&self) -> Vec<usize> {
         let contact = &self.problem.contact;
         let rows = contact.c.len()..contact.bounds.len();
         self.condensed.jumps.iter().copied().chain(rows).collect()
     }
 
-    /// The answer to a question about the problem on the patch, whose statuses are `now` in the whole problem, and the
-    /// statuses that it leaves.
+    /// Result of a function of the problem on the patch, whose statuses are `now` in the whole problem, and the
+    /// statuses after it.
     fn ask<S: Copy, T>(
         &self,
         now: &[S],
@@ -276,7 +275,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// t_o for these jumps of the patch.
+    /// Open jumps t_o for these jumps of the patch.
     fn freed(&self, of_patch: &[f64]) -> Vec<f64> {
         let contact = &self.problem.contact;
         let CondensedPatch {
@@ -289,7 +288,7 @@ impl<'a> Patch<'a> {
         for (&i, t) in jumps.iter().zip(of_patch) {
             all[i] = *t;
         }
-        // The second time takes round-off off.
+        // The second pass removes round-off.
         for _ in 0..2 {
             let mut left = contact.c.to_vec();
             contact.subtract(&all, &mut left);
@@ -304,7 +303,7 @@ impl<'a> Patch<'a> {
         open.iter().map(|&i| all[i]).collect()
     }
 
-    /// All jumps where those of the patch are these.
+    /// All jumps for these of the patch.
     fn all_jumps(&self, of_patch: &[f64]) -> Vec<f64> {
         let mut jumps = vec![0.0; self.problem.contact.c.len()];
         for (&i, t) in self.condensed.open.iter().zip(self.freed(of_patch)) {
@@ -316,7 +315,7 @@ impl<'a> Patch<'a> {
         jumps
     }
 
-    /// All forces where those of the patch are these.
+    /// All forces for these of the patch.
     fn all_forces(&self, of_patch: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.problem.contact.bounds.len()];
         for (i, force) in self.limits().into_iter().zip(of_patch) {
@@ -325,7 +324,7 @@ impl<'a> Patch<'a> {
         forces
     }
 
-    /// The open normal jumps that are beyond their bounds.
+    /// Open normal jumps beyond their bounds.
     fn beyond(&self, jumps: &[f64]) -> Vec<usize> {
         let contact = &self.problem.contact;
         let largest = jumps.iter().fold(contact.scale, |m, t| m.max(t.abs()));

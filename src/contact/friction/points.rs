@@ -1,4 +1,4 @@
-//! Points with friction at random, and what a solution misses of their laws.
+//! Random points with friction, and the residual of a solution in their laws.
 
 use faer::Mat;
 
@@ -29,7 +29,7 @@ pub struct Points {
     pub tangents: Vec<TangentialLimit>,
 }
 
-/// Between −1 and 1.
+/// Reproducible number from −1 to 1.
 pub fn noise(seed: usize) -> f64 {
     2.0 * ((seed as f64 * 78.233).sin() * 43758.5453).fract().abs() - 1.0
 }
@@ -71,7 +71,7 @@ impl Points {
         }
     }
 
-    /// Takes another stiffness.
+    /// Replaces the stiffness.
     pub fn set_stiffness(&mut self, m: usize, entry: impl Fn(usize, usize) -> f64) {
         self.h = Mat::from_fn(m, m, entry);
         self.diagonal = (0..m).map(|i| self.h[(i, i)]).collect();
@@ -100,8 +100,8 @@ impl Points {
         })
     }
 
-    /// A solution from where all is closed, which converges and misses equilibrium and laws by less than `tolerance`;
-    /// with the statuses there.
+    /// Solution from all limits closed, and its statuses; fails unless it converges and violates equilibrium and laws
+    /// by less than `tolerance`.
     #[track_caller]
     pub fn solved(&self, what: &str, tolerance: f64) -> (ContactSolution, Vec<Status>) {
         let mut status = vec![Status::Closed; self.bounds.len()];
@@ -112,7 +112,7 @@ impl Points {
         (solution, status)
     }
 
-    /// The largest violation of equilibrium and of the laws.
+    /// Largest violation of equilibrium and of the laws.
     pub fn violation(&self, solution: &ContactSolution) -> f64 {
         let (t, forces) = (&solution.jumps, &solution.forces);
         let m = t.len();
@@ -139,7 +139,7 @@ impl Points {
             let (force, own) = (forces[tangent.limit], beyond(tangent.limit));
             let (size, of_force) = (own.hypot(slip), force.hypot(other));
             let (least, most) = match tangent.normal {
-                // About to open, with what is left of the cohesion.
+                // About to open, under the rest of the cohesion.
                 Some(n) if normal == 0.0 && beyond(n) > -1e-12 => {
                     (0.0, tangent.bound.at(0.0, true))
                 }

@@ -1,36 +1,36 @@
-//! The dense system of equations of fixed statuses, in the scale of energies; springs where it is singular.
+//! The dense system of equations of fixed statuses, in the scale of energies, with springs where it is singular.
 
 use faer::linalg::solvers::{PartialPivLu, SolveCore};
 use faer::{Conj, Mat, MatMut};
 
 use crate::vector::largest;
 
-/// Pivot of the scaled matrix, or size of what it makes of something of size 1, below which it is taken as singular.
+/// Pivot of the scaled matrix, or reciprocal size of its inverse, below which it counts as singular.
 const SINGULAR: f64 = 1e-13;
-/// Stiffness of the springs that make it regular then, in that scale.
+/// Stiffness of the springs that regularize it, in that scale.
 pub(super) const SPRING: f64 = 1e-12;
-/// Compliance of closed rows that depend on each other, in that scale: their forces share what one could carry.
+/// Compliance of closed rows that depend on each other, in that scale: they share the force that one could carry.
 pub(super) const YIELD: f64 = 1e-6;
-/// Part of that where refinements leave more than this of what is solved for: soft bodies between stiff ones carry a small
-/// part of what their rows could.
+/// Reduction of the springs when refinement leaves more than this part of the right-hand side: soft bodies between
+/// stiff ones carry a small part of what their rows could.
 const LESS: f64 = 1e-3;
 const BENT: f64 = 1e-12;
-/// Most refinements of a solution that springs have bent.
+/// Maximum number of refinements that remove the forces of the springs.
 const MAX_REFINEMENTS: usize = 40;
 
 /// A x = b in the scale of energies.
 pub(super) struct System {
     pub a: Mat<f64>,
-    /// Limits of the unknowns: jumps that aren't closed, then rows that are closed or slip.
+    /// Limits of the unknowns: open or slipping jumps, then closed or slipping rows.
     pub unknowns: Vec<usize>,
-    /// The factors of unknowns, jumps and forces, in that scale.
+    /// Factors of unknowns, jumps and forces, in that scale.
     pub scale: Vec<f64>,
-    /// A spring on every jump, and what gives way in every closed row, where A is singular.
+    /// Spring of every jump and compliance of every closed row, where A is singular.
     pub springs: Vec<f64>,
 }
 
 impl System {
-    /// A⁻¹ b, 0 where A is singular and b `is_balanced`.
+    /// Solution A⁻¹ b; 0 where A is singular and b `is_balanced`.
     pub fn solve(&self, b: Vec<f64>, is_balanced: impl Fn() -> bool) -> Vec<f64> {
         let n = b.len();
         let lu = self.a.partial_piv_lu();
@@ -52,7 +52,7 @@ impl System {
         }
     }
 
-    /// A with its springs, of which those of rows are a part only.
+    /// Factors of A with its springs, those of rows times `part`.
     fn held(&self, part: f64) -> PartialPivLu<f64> {
         let mut held = self.a.clone();
         for (k, &spring) in self.springs.iter().enumerate() {
@@ -73,7 +73,7 @@ impl System {
         left
     }
 
-    /// A⁻¹ b by factors that are nearly those of A.
+    /// Solution A⁻¹ b by iterative refinement with approximate factors.
     fn refine(&self, lu: &PartialPivLu<f64>, b: &[f64], most: usize) -> Vec<f64> {
         let mut x = b.to_vec();
         apply(lu, &mut x);
@@ -94,8 +94,8 @@ impl System {
     }
 }
 
-/// True if A is singular but for round-off. Where what is unresisted has little of the last unknowns, no pivot says so,
-/// but it is most of A⁻¹ times anything.
+/// True if A is singular to round-off. A motion without resistance may have little of the last unknowns, so that no
+/// pivot is small, but it dominates A⁻¹ times any vector.
 fn is_singular(lu: &PartialPivLu<f64>, n: usize) -> bool {
     if (0..n).any(|k| lu.U()[(k, k)].abs() <= SINGULAR) {
         return true;

@@ -19,7 +19,7 @@ fn equilibrium_and_every_law_hold_at_random_points() {
     assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
 }
 
-/// Cohesion acts where a contact is closed alone, so that a solution exists where all are pressed.
+/// Cohesion acts in closed contacts alone, so that a solution exists with all in compression.
 #[test]
 fn cohesion_holds_what_is_pressed() {
     let bound = ForceBound {
@@ -35,7 +35,7 @@ fn cohesion_holds_what_is_pressed() {
     }
 }
 
-/// Where it is lost as contacts open, some are about to: pressed by nothing, with a part of it.
+/// Cohesion lost on opening leaves some contacts about to open: without pressure, under a part of it.
 #[test]
 fn cohesion_that_is_lost_as_contacts_open_leaves_a_solution() {
     let bound = ForceBound {
@@ -120,7 +120,7 @@ fn a_block_slides_where_the_slope_is_steeper_than_its_friction() {
     }
 }
 
-/// Where a slip relieves the contact, sticking, slipping and opening are all in equilibrium.
+/// Sticking, slipping and opening are all in equilibrium, as slip relieves the contact.
 #[test]
 fn coulomb_s_friction_may_have_several_solutions() {
     let strong = ForceBound {
@@ -156,7 +156,7 @@ fn points_under_any_coefficient_find_a_solution() {
     }
 }
 
-/// It would open where it sticks or slips under all of its cohesion, and penetrate where it has none.
+/// A contact that would open if it stuck or slipped under all of its cohesion, and penetrate without any.
 #[test]
 fn a_contact_about_to_open_slips_under_part_of_its_cohesion() {
     let bound = ForceBound {
@@ -177,8 +177,8 @@ fn a_contact_about_to_open_slips_under_part_of_its_cohesion() {
     assert!((solution.forces[1] - 0.5).abs() < 1e-14);
 }
 
-/// A body that nothing resists in a motion that has next to nothing of the last unknowns; elimination leaves noise for
-/// its stiffness, of either sign, and no small pivot says so.
+/// A body with an unresisted motion that has next to nothing of the last unknowns: elimination leaves round-off of
+/// either sign for its stiffness, and no pivot is small.
 #[test]
 fn a_body_that_only_contact_stops_falls_until_it_does() {
     for seed in 0..40 {
@@ -201,7 +201,7 @@ fn a_body_that_only_contact_stops_falls_until_it_does() {
     }
 }
 
-/// Every point slips, some one way and some the other, and nothing else holds the body between them.
+/// A free body between points that all slip, in either direction.
 #[test]
 fn given_friction_lets_a_free_body_slip_both_ways() {
     for seed in 0..100 {
@@ -227,7 +227,7 @@ fn given_friction_lets_a_free_body_slip_both_ways() {
     }
 }
 
-/// A hundred points and more, of which few are pressed: what stays open is condensed out, whatever is closed at first.
+/// More than a hundred points, few of them in contact: the open ones are condensed out, whatever is closed at first.
 #[test]
 fn a_patch_has_the_solution_of_the_whole() {
     for seed in 0..4 {
@@ -235,7 +235,7 @@ fn a_patch_has_the_solution_of_the_whole() {
         for c in &mut points.c[..90] {
             *c -= 8.0;
         }
-        // A row keeps its jumps, and what friction holds without pressure stays, too.
+        // A row keeps its jumps in the patch, and so does friction without pressure.
         points.rows.push(vec![(0, 1.0), (1, -0.5)]);
         points.bounds.push(0.05);
         points.tangents[4].bound = GIVEN;
@@ -283,8 +283,8 @@ fn a_patch_has_the_solution_of_the_whole() {
     }
 }
 
-/// On a side of a polygon the force is up to half of the angle between sides off the slip, which a stiffness of 2 and more turns
-/// into less than half of that; in the plane there is nothing between polygons and discs.
+/// The force on a side of a polygon is up to half of the angle between sides off the slip, which a stiffness of 2 and
+/// more reduces to less than half of that; in the plane polygons and friction cones are the same.
 #[test]
 fn lemke_s_path_ends_near_the_solution_the_nearer_the_finer_polygons_are() {
     let make: [fn(usize, usize, ForceBound) -> Points; 2] = [Points::new, Points::in_space];
@@ -302,7 +302,7 @@ fn lemke_s_path_ends_near_the_solution_the_nearer_the_finer_polygons_are() {
                     (ends.len() == 4).then_some(())
                 })
             });
-            // Of 16 sides, then 4 times as fine again and again.
+            // Polygons of 16 sides, then of 4 times as many in every round.
             for (round, jumps) in (0..).zip(&ends) {
                 assert_eq!(jumps.len(), solution.jumps.len(), "{seed}");
                 let known = solution.jumps.iter().zip(jumps);

@@ -1,13 +1,13 @@
-//! The linear problem where it is known what is open, closed, sticks and slips.
+//! The linear problem of known statuses: open, closed, sticking and slipping.
 //!
-//! With the jumps of what is closed or sticks known,
+//! With the jumps of closed and sticking limits known,
 //!
 //! ```text
 //! λ = 0 where open,    D t = d where closed
 //! ```
 //!
-//! and the linear laws of what slips ([`LinearLaw`](crate::contact::law::LinearLaw)) are equations for the other jumps and
-//! forces.
+//! and the linear laws of slipping points ([`LinearLaw`](crate::contact::law::LinearLaw)) are equations for the other
+//! jumps and forces.
 
 use faer::Mat;
 
@@ -17,20 +17,20 @@ use crate::contact::friction::system::{SPRING, System, YIELD};
 use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{Iterate, Statuses};
 
-/// An equation while it is put together: Σ factor·force + Σ factor·jump = constant, all of limits.
+/// Equation under assembly: Σ factor·force + Σ factor·jump = constant, over limits.
 #[derive(Default)]
 struct Equation {
     forces: Vec<(usize, f64)>,
-    /// The way beyond its bound.
+    /// Overshoots of bounds and their factors.
     ways: Vec<(usize, f64)>,
     constant: f64,
-    /// Divisor of the row, and the spring that keeps it regular.
+    /// Divisor of the row, and the stiffness of the spring that keeps it regular.
     scale: f64,
     spring: f64,
 }
 
 impl FrictionCones<'_> {
-    /// Where the linear problem of a `state` is solved, from a place nearby.
+    /// Solution of the linear problem of a `state`, from a nearby iterate.
     pub(super) fn step(&self, place: &Iterate, state: &Statuses) -> Iterate {
         let m = place.jumps.len();
         let (mut jumps, mut of_rows) = (place.jumps.clone(), place.forces[m..].to_vec());
@@ -54,7 +54,7 @@ impl FrictionCones<'_> {
                 (equation.constant - forces.sum::<f64>() - ways.sum::<f64>()) / equation.scale
             })
             .collect();
-        // Where motions without resistance are balanced already, round-off mustn't drive them.
+        // Round-off mustn't drive balanced motions without resistance.
         let rests = |system: &System, left: &[f64]| {
             system.unknowns.iter().zip(left).all(|(&i, left)| {
                 let scale = self.force_scale(i, &start) / self.laws.stiffness[i].sqrt();
@@ -106,7 +106,7 @@ impl FrictionCones<'_> {
         equations
     }
 
-    /// The equation of a limit that isn't tangential; `None` where its jump or force is known.
+    /// The equation of a normal limit or row; `None` where its jump or force is known.
     fn normal(&self, i: usize, closed: bool) -> Option<Equation> {
         let of_jump = i < self.contact.c.len();
         match (of_jump, closed) {
@@ -116,7 +116,7 @@ impl FrictionCones<'_> {
         }
     }
 
-    /// λ = 0, to which more may be added.
+    /// The equation λ = 0, to which terms may be added.
     fn force_is(&self, i: usize) -> Equation {
         Equation {
             forces: vec![(i, 1.0)],
@@ -135,8 +135,8 @@ impl FrictionCones<'_> {
         }
     }
 
-    /// The equation number k of a point that parts: λ_n = 0 with limit n, and λ_t as it is along e, κ times what of the slip
-    /// is across: what the point misses of λ_n = 0 isn't to have the round-off of the slip's force.
+    /// Equation k of a point about to open: λ_n = 0 with limit n, and λ_t along e with κ times the slip across it, so
+    /// that the residual of λ_n = 0 is free of the round-off of the slip's force.
     fn parts(&self, point: &PointLaw, n: usize, k: usize, e: [f64; 2], across: f64) -> Equation {
         let mut equation = self.force_is(n);
         equation.spring = 0.0;
@@ -175,7 +175,7 @@ impl FrictionCones<'_> {
                 a[(k, l)] /= of_equation * of_unknown;
             }
         }
-        // The forces of jumps fall with these.
+        // Forces of jumps decrease with the jumps.
         let springs = (equations
             .iter()
             .zip(0..)
@@ -190,7 +190,8 @@ impl FrictionCones<'_> {
         }
     }
 
-    /// Adds the equations to the matrix, whose columns are those of the `unknowns`; `column` is the place of each among them.
+    /// Adds the equations to the matrix, whose columns are those of the `unknowns`; `column` is the index of each among
+    /// them.
     fn fill(
         &self,
         a: &mut Mat<f64>,
@@ -199,7 +200,7 @@ impl FrictionCones<'_> {
         column: &[Option<usize>],
     ) {
         let (contact, m) = (&self.contact, self.contact.c.len());
-        // Column by column, as they lie in memory: the largest part of all that is written here.
+        // Column by column, as in memory: these are most of the matrix' entries.
         let jumps: Vec<(usize, usize, f64)> = (equations.iter().flatten().enumerate())
             .flat_map(|(k, equation)| equation.forces.iter().map(move |&(i, c)| (k, i, c)))
             .filter(|&(_, i, _)| i < m)

@@ -1,4 +1,4 @@
-//! Semismooth Newton on friction cones, with viscous regularization where it gets no further.
+//! Semismooth Newton on friction cones, with viscous regularization where it stalls.
 
 use std::convert::Infallible;
 
@@ -14,37 +14,37 @@ use crate::contact::newton::{
 };
 use crate::vector::{between, dot, largest};
 
-/// Most steps of Newton's method.
+/// Maximum number of steps of Newton's method.
 const STEPS: usize = 40;
-/// The same between two changes of the viscosity.
+/// Maximum number of steps between two changes of the viscosity.
 const DAMPED_STEPS: usize = 15;
-/// Residual of the law that is accepted, relative to the forces that act.
+/// Accepted residual of the law, relative to the acting forces.
 const LAW: f64 = 1e-9;
 /// Round-off of the residual.
 const ROUND_OFF: f64 = 1e-15;
-/// Part of its bound that a point which slips may miss, and the part of a force's terms that is its round-off: beside the
-/// terms of a slip that nothing resists a whole bound is small.
+/// Part of its bound that the force of a slipping point may lack, and the part of a force's terms that is round-off: a
+/// whole bound is small against the terms of an unresisted slip.
 const MISSED_OF_BOUND: f64 = 1e-3;
 const MISSED_OF_TERMS: f64 = 1e-14;
 /// Force, relative to its terms, up to which a limit keeps its status.
 const STAYS: f64 = 1e-15;
-/// Viscosity of all jumps relative to stiffness and time: the first, the least and the largest.
+/// Viscosity of all jumps relative to stiffness and time: first, least and largest.
 const VISCOSITIES: [f64; 3] = [0.1, 1e-4, 10.0];
-/// Part of the way before that isn't less, and how often that may be.
+/// Ratio to the last motion that counts as no decrease, and how often this may occur.
 const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
-/// Resistance to a motion, relative to that of springs, that is round-off.
+/// Resistance to a motion, relative to that of springs, that counts as zero.
 const NO_RESISTANCE: f64 = 1e-10;
-/// Work of loads along a motion that friction doesn't take, relative to the terms that it is a sum of, that is no round-off.
+/// Work of loads beyond that of friction, relative to its terms, that exceeds round-off.
 const SURPLUS: f64 = 1e-9;
-/// Part of the fastest of jumps by which others change that stay as they are.
+/// Change of a jump, relative to the fastest one, that counts as zero.
 const STAYS_OPEN: f64 = 1e-6;
-/// Most changes of the viscosity.
+/// Maximum number of changes of the viscosity.
 const CHANGES: usize = 24;
 
 impl FrictionCones<'_> {
-    /// The solution, found from where these statuses are right, whether that took more than Newton's method, and whether
-    /// things slide on and on.
+    /// The solution from the iterate of these statuses, with two flags: more than Newton's method was needed; a body
+    /// slides without end.
     pub(super) fn solve(
         &self,
         problem: &FrictionProblem<'_>,
@@ -71,8 +71,8 @@ impl FrictionCones<'_> {
         }
     }
 
-    /// True if the force of a point that slips isn't at its bound, by more than round-off: a slip that nothing resists is of
-    /// any size, and so are the terms beside which the law's residual is small.
+    /// True if the force of a slipping point isn't at its bound, beyond round-off: an unresisted slip is of any size,
+    /// and so are the terms to which the law's residual is relative.
     fn misses_a_bound(&self, found: &Found) -> bool {
         let Found { place, state, .. } = found;
         let missed = self.laws.missed(place, state);
@@ -95,7 +95,7 @@ impl FrictionCones<'_> {
         problem.try_paths(|end, pivots| {
             *steps += pivots;
             let end = end?;
-            // Where nothing resists, what slips both ways is between both there, and not just anywhere.
+            // Without resistance, slips in both directions end between both bounds there.
             let start = self.place(end.jumps.clone(), end.of_rows.clone());
             let mut state = self.laws.begin(&end.status, &start);
             state.past.fill(Past::Opened);
@@ -105,14 +105,14 @@ impl FrictionCones<'_> {
         })
     }
 
-    /// The place from which open jumps go where the load drives them.
+    /// Iterate from which the load moves open jumps.
     pub(super) fn start(&self) -> Iterate {
         let rows = self.contact.rows.len();
         self.place(self.contact.center.to_vec(), vec![0.0; rows])
     }
 
-    /// Goes from one position to the next of a regularized problem, whose viscosity falls as long as that is found; to no end
-    /// where things slide on and on.
+    /// Steps through solutions of a regularized problem whose viscosity falls as long as they are found; sliding
+    /// without end is detected.
     fn regularized(&self, start: &Iterate, state: &Statuses, steps: &mut usize) -> Rest {
         let [mut viscosity, weakest, strongest] = VISCOSITIES;
         let (mut place, mut state) = (start.clone(), state.clone());
@@ -154,9 +154,8 @@ impl FrictionCones<'_> {
         Rest::Unknown
     }
 
-    /// True if things slide on and on where jumps go these ways: the bodies don't resist, nothing that is open closes
-    /// on the way, and loads do more work than all contacts take, that press as they do there and hold as much as they
-    /// can.
+    /// True if bodies slide without end along this motion of jumps: the bodies don't resist, no open limit closes, and
+    /// loads do more work than all contacts dissipate, under their present pressure and with friction at its bound.
     fn slides_on(&self, found: &Found, ways: &[f64]) -> bool {
         let Found { place, state, .. } = found;
         if self.resists(ways) > NO_RESISTANCE {
@@ -183,7 +182,7 @@ impl FrictionCones<'_> {
         closes <= STAYS_OPEN * far && work - taken > SURPLUS * (terms + taken)
     }
 
-    /// Resistance of the bodies to jumps that grow so, relative to springs as stiff as they are.
+    /// Resistance of the bodies to a motion of jumps, relative to springs as stiff as they are.
     fn resists(&self, ways: &[f64]) -> f64 {
         let mut forces = vec![0.0; ways.len()];
         self.contact.subtract(ways, &mut forces);
@@ -194,7 +193,7 @@ impl FrictionCones<'_> {
         -dot(ways, &forces) / springs.sum::<f64>()
     }
 
-    /// The solution where every jump is held viscously at where it is.
+    /// Solution with a viscous resistance of every jump to leaving its present value.
     fn damped(&self, viscosity: f64, place: &Iterate, state: &Statuses) -> Found {
         let contact = &self.contact;
         let mut h = contact.h.to_owned();
@@ -218,7 +217,7 @@ impl FrictionCones<'_> {
         damped.newton(place, state, DAMPED_STEPS)
     }
 
-    /// Newton's method from an iterate, by the equations of these statuses first.
+    /// Newton's method from an iterate, with the equations of these statuses first.
     pub(super) fn newton(&self, start: &Iterate, state: &Statuses, most: usize) -> Found {
         let settings = NewtonSettings {
             most,
@@ -250,10 +249,10 @@ impl FrictionCones<'_> {
     }
 }
 
-/// A dense problem as the one group of an operator.
+/// Dense problem as an operator of one group.
 struct Dense<'d, 'a>(&'d FrictionCones<'a>);
 
-/// The number of its group.
+/// Number of its group.
 const ONLY: GroupId = GroupId::new(0);
 
 fn only<T>(of_group: T) -> OnGroups<T> {

@@ -21,7 +21,7 @@ fn equilibrium_and_every_law_hold_at_random_points_in_space() {
             }] += 1;
         }
         steps = steps.max(solution.steps);
-        // From its own statuses it stays where it is.
+        // A restart from its own statuses keeps the solution.
         let known = status.clone();
         let again = points.solve(&mut status);
         assert!(again.converged && status == known, "seed {seed}");
@@ -35,7 +35,7 @@ fn slips_that_turn_about_are_found_by_newton_s_method_however_stiff_points_are()
         let count = 6 + seed % 7;
         let mut points = Points::in_space(count, 29 * seed, COULOMB);
         let (h, m) = (points.h.clone(), points.c.len());
-        // Neighbours hold each other a thousand times as stiffly as the body does.
+        // The springs between neighbours are a thousand times as stiff as the body.
         let of = |i: usize| (i - count) / 2;
         let coupled = |i: usize, j: usize| match i.min(j) >= count && (i ^ j) & 1 == 0 {
             true if i == j => 2e4,
@@ -60,7 +60,7 @@ fn lemke_s_path_ends_near_solutions() {
         let mut points =
             Points::in_space(2 + seed % 6, 23 * seed, [COULOMB, GIVEN, steep][seed % 3]);
         if seed % 2 == 0 {
-            // Nothing but friction resists where all slip alike.
+            // Friction alone resists an equal slip of all.
             let (h, m) = (points.h.clone(), points.c.len());
             let mean = |i: usize| (0..m).map(|j| h[(i, j)]).sum::<f64>() / m as f64;
             let all = (0..m).map(mean).sum::<f64>() / m as f64;
@@ -115,7 +115,7 @@ fn a_slip_that_supports_prescribe_along_one_tangent_turns_the_force_along_the_ot
     }
 }
 
-/// The tangential jumps of the last point are sums of those of two others, as at a node of several contacts.
+/// Tangential jumps of the last point as sums of those of two others, as at a node of several contacts.
 #[test]
 fn tangential_jumps_that_depend_on_others_have_their_laws_too() {
     let mut converged = 0;
@@ -142,7 +142,7 @@ fn tangential_jumps_that_depend_on_others_have_their_laws_too() {
     assert!(converged > 55, "{converged}");
 }
 
-/// Where a slip relieves the contact, whatever its direction, sticking and opening are both in equilibrium.
+/// Sticking and opening are both in equilibrium, as slip in any direction relieves the contact.
 #[test]
 fn a_second_start_finds_other_solutions_in_space() {
     let strong = ForceBound {
@@ -209,7 +209,7 @@ fn a_contact_about_to_open_slips_under_part_of_its_cohesion_in_any_direction() {
                 "{angle}"
             );
         }
-        // From its own statuses it stays where it is.
+        // A restart from its own statuses keeps the solution.
         let again = points.solve(&mut status);
         assert!(again.converged && again.jumps == solution.jumps, "{angle}");
     }
@@ -233,7 +233,7 @@ fn what_slides_on_and_on_is_seen() {
     }
 }
 
-/// The same with a wall on its way, however far: there is an equilibrium.
+/// The same with a wall in the direction of the slip, however far: an equilibrium exists.
 #[test]
 fn what_slides_to_a_wall_does_not_slide_on_and_on() {
     let mut points = Points::in_space(1, 3, COULOMB);

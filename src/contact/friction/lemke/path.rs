@@ -1,4 +1,4 @@
-//! The path as it stands: jumps and forces where as many quantities are 0 as there are limits, at θ = 0 and for every unit of θ.
+//! State of the path: jumps and forces with as many zero quantities as limits, at θ = 0 and for every unit of θ.
 
 mod points;
 
@@ -13,80 +13,81 @@ use crate::vector::{axpy, largest};
 /// The end of the path.
 pub(in crate::contact::friction) struct End {
     pub status: Vec<Status>,
-    /// The jumps there (m).
+    /// Jumps at the end (m).
     pub jumps: Vec<f64>,
-    /// The forces of dependent rows there (N/m).
+    /// Forces of dependent rows at the end (N/m).
     pub of_rows: Vec<f64>,
-    /// The directions of the forces of points that slip in space, in the scale of energies.
+    /// Directions of the forces of points that slip in space, in the scale of energies.
     pub directions: Vec<Option<[f64; 2]>>,
 }
 
 /// Compliance of closed rows that depend on each other.
 const YIELD: f64 = 1e-8;
-/// Stiffness of springs on all jumps, for motions that nothing resists.
+/// Stiffness of springs on all jumps, for motions without resistance.
 const SPRING: f64 = 1e-10;
 
-/// A quantity that is 0 at a limit or a point, or may not be negative there.
+/// Non-negative quantity of a limit or a point, which may be 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
-    /// The gap of a limit, or its way back to where it sticks.
+    /// Gap of a limit, or its slip.
     Way(usize),
-    /// The normal force of a limit, with what θ adds.
+    /// Normal force of a limit, with the part of θ.
     Force(usize),
-    /// The missing part of the bound of a tangential force along the normal of a side; the steep one of two bounds or not.
+    /// Missing part of the bound of a tangential force along the normal of a side; `steep` for the steep one of two
+    /// bounds.
     Bound {
         point: usize,
         side: usize,
         steep: bool,
     },
-    /// A part of the slip of a point.
+    /// Component of the slip of a point.
     Slip { point: usize, part: SlipPart },
 }
 
-/// Where the tangential force of a point is.
+/// Position of a point's tangential force in its polygon.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// Within the polygon.
+    /// Inside: the point sticks.
     Sticks,
     /// On a side, by the steep bound or not.
     Side(usize, bool),
-    /// Where two sides meet.
+    /// At a corner of two sides, by the steep bound or not.
     Corner([usize; 2], bool),
 }
 
-/// Where the path is: all in the scale of energies.
+/// State of the path, in the scale of energies.
 pub(super) struct Path {
-    /// The jumps of all limits, then their forces, for a unit of each of the quantities that are 0.
+    /// Jumps of all limits, then their forces, for a unit of each zero quantity.
     responses: Responses,
-    /// The same where all these are 0: at θ = 0, and for every unit of θ.
+    /// The same with all zero quantities at 0: at θ = 0, and for every unit of θ.
     value: [Vec<f64>; 2],
-    /// Both for the ways of independent jumps and the forces of dependent rows, whatever θ is.
+    /// Both for independent jumps and the forces of dependent rows as unknowns, from which pivots start.
     start: Mat<f64>,
     at_start: Vec<f64>,
     /// Number of independent jumps.
     independent: usize,
-    /// The quantities that are 0: one for a normal limit, as many for a point as it has tangents.
+    /// Zero quantities: one for a normal limit, as many for a point as it has tangents.
     zero: Vec<Quantity>,
     bounds: Vec<f64>,
-    /// The factors of jumps in that scale.
+    /// Factors of jumps in the scale of energies.
     scale: Vec<f64>,
-    /// The parts of normal forces that are in proportion to θ.
+    /// Parts of normal forces in proportion to θ.
     added: Vec<f64>,
     points: Vec<FrictionPolygon>,
-    /// The limits that aren't tangential.
+    /// Limits that aren't tangential.
     normals: Vec<usize>,
-    /// The points of each normal limit whose friction vanishes with it.
+    /// Points of each normal limit whose friction vanishes with its force.
     of_normal: Vec<Vec<usize>>,
 }
 
-/// Between half of one and one and a half, so that no two forces vanish at once.
+/// Number from 0.5 to 1.5 by which forces differ, so that no two vanish at once.
 fn spread(i: usize, attempt: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     0.5 + ((i + 1) as f64 * GOLDEN + attempt as f64 * 0.37).fract()
 }
 
-/// The jumps of all limits, then their forces, for a unit of the way of each independent jump and of the force of each
-/// dependent row, and both where all these are 0; in the scale of energies.
+/// Jumps of all limits, then their forces, for a unit of each independent jump and of the force of each dependent row,
+/// and both with all of these at 0; in the scale of energies.
 fn system_of_ways(
     problem: &FrictionProblem<'_>,
     scale: &[f64],
@@ -119,7 +120,7 @@ fn system_of_ways(
 }
 
 impl Path {
-    /// Beginning of the path, where all is closed.
+    /// Start of the path, with all limits closed.
     pub(super) fn new(problem: &FrictionProblem<'_>, polygons: &Polygons) -> Self {
         let contact = &problem.contact;
         let (m, count) = (contact.c.len(), contact.bounds.len());
@@ -162,7 +163,7 @@ impl Path {
         path
     }
 
-    /// The bounds of points that are free in the place of their ways, and the points whose friction vanishes with a
+    /// Makes bounds the zero quantities of frictionless points, and lists the points whose friction vanishes with a
     /// normal limit.
     fn place_free_points(&mut self) {
         for point in 0..self.points.len() {
@@ -181,7 +182,7 @@ impl Path {
         }
     }
 
-    /// A quantity as a sum of jumps and forces, and the rest of it.
+    /// Quantity as a combination of jumps and forces, and its remainder at θ = 0 and for a unit of θ.
     fn terms(&self, quantity: Quantity) -> (Terms, [f64; 2]) {
         let count = self.bounds.len();
         let none = (0, 0.0);
@@ -208,7 +209,7 @@ impl Path {
                     (true, Some(steep)) => (steep, [0.0; 2]),
                     _ => (polygon.coefficient, [polygon.cohesion, polygon.added]),
                 };
-                // Steep ones are of the size of the others.
+                // Scales steep bounds to the size of the others.
                 let size = share.max(1.0);
                 let direction = polygon.normal_of(side);
                 let mut terms = [none; 3];
@@ -238,7 +239,7 @@ impl Path {
     pub(super) fn refresh(&mut self) {
         let count = self.bounds.len();
         self.value = [self.at_start.clone(), vec![0.0; 2 * count]];
-        // The jumps that are known, and which quantity says so.
+        // Known jumps, and the quantity of each.
         let known: Vec<(usize, usize)> = (self.zero.iter().enumerate())
             .filter_map(|(k, zero)| match *zero {
                 Quantity::Way(i) if i < self.independent => Some((k, i)),
@@ -251,7 +252,7 @@ impl Path {
         }
         let unknown: Vec<usize> = (0..count).filter(|&i| is_unknown[i]).collect();
         let equations: Vec<usize> = (0..count).filter(|&k| is_equation[k]).collect();
-        // For every quantity that is 0, and for both values.
+        // A column for every zero quantity, and two for the values.
         let mut change = Mat::zeros(unknown.len(), count + 2);
         let mut matrix = Mat::zeros(unknown.len(), unknown.len());
         for (row, &k) in equations.iter().enumerate() {
@@ -288,7 +289,7 @@ impl Path {
         self.responses = Responses::new(all);
     }
 
-    /// Makes another quantity 0 in the place of the k-th.
+    /// Replaces the k-th zero quantity.
     fn replace(&mut self, k: usize, quantity: Quantity) {
         let of_value = self.quantity(quantity);
         let (terms, _) = self.terms(quantity);
@@ -319,7 +320,8 @@ impl Path {
         bounded
     }
 
-    /// Where the path, on its `way` from `theta`, meets the next limit that isn't the one that it has just left.
+    /// The next θ from `theta` in the direction `way` at which a quantity other than the one just left becomes 0, and
+    /// that quantity.
     pub(super) fn next(
         &self,
         theta: f64,
@@ -332,7 +334,7 @@ impl Path {
             if slope * way >= 0.0 || slope.is_nan() || left == Some(quantity) {
                 continue;
             }
-            // Round-off doesn't turn it back.
+            // Round-off mustn't reverse the direction.
             let at = -value / slope;
             let at = if way > 0.0 {
                 at.max(theta)
@@ -346,7 +348,7 @@ impl Path {
         nearest
     }
 
-    /// Changes a status where this quantity has become 0; what isn't any more.
+    /// Changes a status at a `quantity` that has become 0; returns the one that is free now.
     pub(super) fn pivot(&mut self, theta: f64, quantity: Quantity) -> Quantity {
         match quantity {
             Quantity::Way(n) | Quantity::Force(n) => {

@@ -1,5 +1,5 @@
-//! Friction of a point on the path: within a polygon, dᵀ λ_t ≤ b for the normals d of its sides, in the place of the disc
-//! |λ_t| ≤ b; along one tangent both are the same.
+//! Polygonal friction cone of a point on the path: dᵀ λ_t ≤ b for the normals d of its sides instead of |λ_t| ≤ b;
+//! along one tangent both are the same.
 //!
 //! D. E. Stewart, J. C. Trinkle, *An implicit time-stepping scheme for rigid body dynamics with inelastic collisions and
 //! Coulomb friction*, Int. J. Numer. Methods Engrg 39 (1996).
@@ -9,21 +9,21 @@ use std::rc::Rc;
 
 use crate::contact::tangent::TangentialLimit;
 
-/// Attempts, each of which goes another way.
+/// Number of attempts, each on another path.
 pub(super) const ATTEMPTS: usize = 4;
-/// Cohesion over the normal force below which a bound that vanishes with this falls to 0, one attempt after the other: where it
-/// is steep the path ends at the solution, but has further to go.
+/// Cohesion over the normal force below which a vanishing bound falls to 0, for every attempt: a steep one ends at the
+/// solution, but its path is longer.
 const STEEP: [f64; ATTEMPTS] = [1e2, 1e4, 1e3, 1e6];
-/// Sides in space at first.
+/// Number of sides in space before refinement, for every attempt.
 const SIDES: [usize; ATTEMPTS] = [16, 96, 24, 48];
-/// Part of the angle of a side by which the first is turned: no slip along an axis is along a normal.
+/// Rotation of the first side, as part of the angle of a side: keeps normals off the axes.
 const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
-/// Sides on either hand of a direction near which a polygon is fine, and those of the rest of it.
+/// Number of fine sides on either side of a refined direction.
 const BESIDE: usize = 6;
 const REST: usize = 14;
-/// Half of the angle that is fine, over the angle between sides before.
+/// Half of the refined angle, over the previous angle between sides.
 const FINE: f64 = 1.5;
-/// Force, relative to the largest where all is closed, that nothing exceeds: rows that give way would be far away.
+/// Most cohesion, relative to the largest force with all limits closed: compliant rows would move far otherwise.
 const MOST_COHESION: f64 = 10.0;
 
 /// The friction of a point, in the scale of energies of its first tangent.
@@ -33,19 +33,19 @@ pub(super) struct FrictionPolygon {
     pub normal: Option<usize>,
     /// The limits of its tangential jumps.
     pub tangents: [Option<usize>; 2],
-    /// The factors of the forces of both limits in that scale; slips are divided by them.
+    /// Factors of the forces of both limits in that scale; slips are divided by them.
     pub weights: [f64; 2],
     /// The coefficient of friction.
     pub coefficient: f64,
     /// The bound without normal force.
     pub cohesion: f64,
-    /// The part of the bound that is in proportion to θ.
+    /// Part of the bound in proportion to θ.
     pub added: f64,
-    /// Slope by which the bound falls to 0 where it does before the contact opens.
+    /// Slope of the bound to 0 just before the contact opens, where it vanishes then.
     pub steep: Option<f64>,
-    /// True if it vanishes where the contact is open.
+    /// True if the bound vanishes where the contact is open.
     pub only_closed: bool,
-    /// True if it never holds anything.
+    /// True if there is no friction.
     pub is_free: bool,
     /// The normals d of its sides.
     normals: Rc<[[f64; 2]]>,
@@ -54,11 +54,11 @@ pub(super) struct FrictionPolygon {
 /// The polygons of all points.
 #[derive(Clone, Debug)]
 pub(super) struct Polygons {
-    /// The attempt that they serve.
+    /// Number of the attempt.
     pub attempt: usize,
-    /// The directions near which those in space are fine, in the order of points; none at first.
+    /// Refined directions in space, in the order of points; none at first.
     directions: Vec<Option<[f64; 2]>>,
-    /// Angle between sides, near these.
+    /// Angle between sides near the refined directions.
     angle: f64,
     line: Rc<[[f64; 2]]>,
     /// Normals of equal sides in space.
@@ -66,7 +66,7 @@ pub(super) struct Polygons {
 }
 
 impl Polygons {
-    /// The polygons with which an attempt begins.
+    /// Polygons at the start of an attempt.
     pub(super) fn new(attempt: usize) -> Self {
         let angle = TAU / SIDES[attempt] as f64;
         let equal = (0..SIDES[attempt]).map(|side| unit((side as f64 + TURNED[attempt]) * angle));
@@ -79,7 +79,7 @@ impl Polygons {
         }
     }
 
-    /// Finer ones near the `directions` of points that slip; `None` where none does in space.
+    /// Polygons refined near the `directions` of slipping points; `None` where none slips in space.
     pub(super) fn finer(&self, directions: Vec<Option<[f64; 2]>>) -> Option<Self> {
         directions.iter().any(Option::is_some).then(|| Self {
             directions,
@@ -88,7 +88,7 @@ impl Polygons {
         })
     }
 
-    /// The normals of the sides of a point along so many tangents, counted from 0.
+    /// Normals of the sides of a point, on a line or in space.
     fn normals(&self, point: usize, in_space: bool) -> Rc<[[f64; 2]]> {
         match self.directions.get(point) {
             _ if !in_space => Rc::clone(&self.line),
@@ -112,14 +112,14 @@ fn unit(angle: f64) -> [f64; 2] {
     [angle.cos(), angle.sin()]
 }
 
-/// A part of a slip.
+/// Component of a slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SlipPart {
     /// Along the normal of a side.
     Along(usize),
     /// Across the normal of a side.
     Across(usize),
-    /// Along the normal of a side, where the rest is along that of another.
+    /// Along the normal of a side, in the basis of two.
     Beside(usize, usize),
 }
 
@@ -128,8 +128,8 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl FrictionPolygon {
-    /// The polygon of the next `point`, whose first tangential limit is this one; `None` where it is the second. `unit` is the
-    /// largest force where all is closed, `added` what θ adds to a given bound.
+    /// Polygon of the next `point` with this first tangential limit; `None` for the second one. `unit` is the largest
+    /// force with all limits closed, `added` the part of θ in a given bound.
     pub(super) fn new(
         limit: &TangentialLimit,
         scale: &[f64],
@@ -165,7 +165,7 @@ impl FrictionPolygon {
         self.tangents.into_iter().flatten()
     }
 
-    /// True if it is along one tangent alone.
+    /// True for a single tangent.
     pub(super) fn is_line(&self) -> bool {
         self.tangents[1].is_none()
     }
@@ -175,7 +175,7 @@ impl FrictionPolygon {
         0..self.normals.len()
     }
 
-    /// The sides beside one.
+    /// Both neighbours of a side.
     pub(super) fn neighbours(&self, side: usize) -> [usize; 2] {
         let sides = self.normals.len();
         [sides - 1, 1].map(|step| (side + step) % sides)
@@ -186,7 +186,7 @@ impl FrictionPolygon {
         self.normals[side]
     }
 
-    /// The sides between whose normals a vector is, or the one along which it is on a line.
+    /// Sides between whose normals a vector lies; on a line the one in its direction.
     pub(super) fn sides_towards(&self, v: [f64; 2]) -> Vec<usize> {
         if self.is_line() {
             return vec![usize::from(v[0] < 0.0)];
@@ -200,7 +200,7 @@ impl FrictionPolygon {
         vec![side, after(side)]
     }
 
-    /// The vector whose product with a slip is this part of it.
+    /// Vector whose scalar product with a slip is its component `part`.
     pub(super) fn direction(&self, part: SlipPart) -> [f64; 2] {
         match part {
             SlipPart::Along(side) => self.normal_of(side),

@@ -1,33 +1,33 @@
-//! Jumps and forces for a unit of what is 0 at each of the limits: a column each, in product form.
+//! Jumps and forces for a unit of the zero quantity of each limit: a column each, in product form.
 //!
-//! Where limit i gets another quantity that is 0, aᵀ x of the jumps and forces x, every column becomes
+//! When limit i gets another zero quantity, aᵀ x of the jumps and forces x, every column becomes
 //!
 //! ```text
 //! x ← x − c aᵀ x,    column i   c = x / aᵀ x
 //! ```
 //!
-//! A pivot needs one column of them. So c and a are kept, a column is made when it is asked for, and all of them
-//! where there are many pivots, by products of matrices.
+//! A pivot needs a single column. So c and a are stored, a column is computed on demand, and all of them
+//! after many pivots, by products of matrices.
 
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Mat, Par};
 
 use crate::vector::axpy;
 
-/// Pivots that are kept apart.
+/// Maximum number of stored pivots.
 const MOST_APART: usize = 64;
 
-/// A sum of three jumps and forces, by their number.
+/// Combination of three jumps and forces, by their number.
 pub(super) type Terms = [(usize, f64); 3];
 
 /// The columns.
 pub(super) struct Responses {
-    /// As they were before the pivots that are kept apart.
+    /// Columns before the stored pivots.
     columns: Mat<f64>,
     pivots: Vec<Pivot>,
 }
 
-/// Another quantity that is 0 at a limit.
+/// Replacement of the zero quantity of a limit.
 struct Pivot {
     limit: usize,
     /// a.
@@ -48,7 +48,7 @@ impl Responses {
         }
     }
 
-    /// The origin of column i: an own one, and the pivots since.
+    /// Origin of column i: the stored one, and the first pivot after it.
     fn origin(&self, i: usize) -> (&[f64], usize) {
         match self.pivots.iter().rposition(|one| one.limit == i) {
             Some(k) => (&self.pivots[k].column, k + 1),
@@ -67,12 +67,12 @@ impl Responses {
         column
     }
 
-    /// The value of this sum for a unit of the i-th quantity.
+    /// Value of a combination for a unit of the i-th quantity.
     pub(super) fn share(&self, i: usize, terms: &Terms) -> f64 {
         sum(terms, &self.column(i))
     }
 
-    /// Makes another quantity 0 in the place of the i-th, and returns its column.
+    /// Replaces the i-th zero quantity, and returns its column.
     pub(super) fn pivot(&mut self, i: usize, terms: Terms) -> &[f64] {
         if self.pivots.len() == MOST_APART {
             self.put_together();
@@ -88,7 +88,7 @@ impl Responses {
         &self.pivots[self.pivots.len() - 1].column
     }
 
-    /// Makes all columns: with the shares s of the pivots in them, s_k = a_kᵀ (x − Σ s_l c_l) for l < k.
+    /// Computes all columns: with the shares s of the pivots in them, s_k = a_kᵀ (x − Σ s_l c_l) for l < k.
     fn put_together(&mut self) {
         let (rows, count, apart) = (
             self.columns.nrows(),

@@ -1,10 +1,11 @@
-//! Points on the path: which quantities of one are 0 where it sticks, slips along a side of its polygon or at a corner, and opens.
+//! Points on the path: zero quantities of a point that sticks, slips along a side or at a corner of its polygon, or
+//! opens.
 
 use super::{Path, Place, Quantity};
 use crate::contact::friction::lemke::polygon::SlipPart;
 
 impl Path {
-    /// Where the tangential force of a point is.
+    /// Position of a point's tangential force in its polygon.
     pub(super) fn place(&self, point: usize) -> Place {
         let mut sides = Vec::new();
         for k in self.points[point].limits() {
@@ -19,7 +20,7 @@ impl Path {
         }
     }
 
-    /// The quantities that may not be negative at a point.
+    /// Non-negative quantities of a point.
     pub(super) fn bounded_at(&self, point: usize) -> Vec<Quantity> {
         let polygon = &self.points[point];
         let mut bounded = Vec::new();
@@ -51,7 +52,7 @@ impl Path {
         bounded
     }
 
-    /// Makes these quantities of a point 0, and no others.
+    /// Makes exactly these quantities of a point 0.
     fn arrange(&mut self, point: usize, wanted: &[Quantity]) {
         let polygon = self.points[point].clone();
         for &quantity in wanted {
@@ -69,7 +70,8 @@ impl Path {
         }
     }
 
-    /// Friction that vanishes with a normal force: the point slips as it opens, and from where it closes towards its slip.
+    /// Changes the status of a point whose friction vanishes with a normal force: it slips as it opens, and on closing
+    /// continues in the direction of its slip.
     pub(super) fn turn(&mut self, theta: f64, point: usize, quantity: Quantity) {
         let polygon = self.points[point].clone();
         let sides = match (quantity, self.place(point)) {
@@ -86,13 +88,13 @@ impl Path {
         self.arrange(point, &wanted);
     }
 
-    /// The tangential force of a point at θ.
+    /// Tangential force of a point at θ.
     pub(super) fn force_at(&self, theta: f64, point: usize) -> [f64; 2] {
         let (count, weights) = (self.bounds.len(), self.points[point].weights);
         self.vector(theta, point, |k, limit| (count + limit, weights[k], 0.0))
     }
 
-    /// A force or slip of a point at θ: which jump or force of its k-th limit, with what factor, beyond what.
+    /// Force or slip of a point at θ, from the index, factor and offset of its k-th limit's jump or force.
     fn vector(
         &self,
         theta: f64,
@@ -107,7 +109,7 @@ impl Path {
         vector
     }
 
-    /// Puts the force of a point on one more side, or on the same one by its other bound.
+    /// Moves the force of a point onto another side, or onto the same one by its other bound.
     pub(super) fn reach(&mut self, point: usize, side: usize, steep: bool) -> Quantity {
         let bound = |side, steep| Quantity::Bound { point, side, steep };
         let slip = |part| Quantity::Slip { point, part };
