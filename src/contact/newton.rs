@@ -196,18 +196,14 @@ pub fn newton<O: ContactOperator>(
             found.steps = steps;
             break;
         }
-        let is_full = accuracy == StepAccuracy::Full;
-        let is_enough = is_full && total.missed <= settings.tolerance;
-        let stalls = is_full && total.wrong == 0 && total.missed > 0.5 * missed;
-        let stalls = stalls && !is_enough && total.missed <= settings.acceptable;
-        if is_enough || stalls {
+        if let Some(is_last) = accepted(&total, accuracy, missed, settings) {
             best = Some(Found {
                 at: target.clone(),
                 statuses: statuses.clone(),
                 missed: total.missed,
                 steps,
             });
-            if total.missed <= settings.round_off || stalls {
+            if is_last {
                 break;
             }
         }
@@ -221,22 +217,11 @@ pub fn newton<O: ContactOperator>(
         least = least.min(total.merit);
         accuracy = operator.accuracy(&total);
         (missed, changed) = (total.missed, Some(total.wrong));
-        let past: OnGroups<Vec<Past>> = look
-            .iter()
-            .map(|(&g, of_group)| (g, of_group.statuses.past.clone()))
-            .collect();
         for (&g, of_group) in laws.iter_mut().filter(|_| settings.softens) {
             of_group.soften(&statuses[&g], &look[&g].statuses);
         }
-        let before = statuses;
-        (at, merit, statuses) =
-            part_of_way(operator, laws, (at, merit), target, (look, total), settings);
-        operator.exchange(&at, &before, &mut statuses);
-        for (g, past) in past {
-            if let Some(of_group) = statuses.get_mut(&g) {
-                of_group.past = past;
-            }
-        }
+        let from = (at, merit, statuses);
+        (at, merit, statuses) = advance(operator, laws, from, target, (look, total), settings);
     }
     Ok(best.unwrap_or(Found {
         at,
@@ -244,6 +229,48 @@ pub fn newton<O: ContactOperator>(
         missed: f64::INFINITY,
         steps: settings.most,
     }))
+}
+
+/// Whether a step with this residual is accepted, where the one before `missed` so much; true if it is the last one: as accurate
+/// as round-off lets it be, or no more accurate than the one before.
+fn accepted(
+    total: &TotalResidual,
+    accuracy: StepAccuracy,
+    missed: f64,
+    settings: NewtonSettings,
+) -> Option<bool> {
+    if accuracy != StepAccuracy::Full {
+        return None;
+    }
+    let stalls = total.wrong == 0 && total.missed > 0.5 * missed;
+    match total.missed <= settings.tolerance {
+        true => Some(total.missed <= settings.round_off),
+        false => (stalls && total.missed <= settings.acceptable).then_some(true),
+    }
+}
+
+/// The iterate, its merit and its statuses after the step from an iterate with this merit, by the equations of these statuses,
+/// to a `target`. Collective.
+fn advance<O: ContactOperator>(
+    operator: &O,
+    laws: &OnGroups<ContactLaws<'_>>,
+    (from, merit, before): (OnGroups<Iterate>, f64, OnGroups<Statuses>),
+    target: OnGroups<Iterate>,
+    whole: (OnGroups<LawResidual>, TotalResidual),
+    settings: NewtonSettings,
+) -> (OnGroups<Iterate>, f64, OnGroups<Statuses>) {
+    let past: OnGroups<Vec<Past>> = (whole.0.iter())
+        .map(|(&g, of_group)| (g, of_group.statuses.past.clone()))
+        .collect();
+    let (at, merit, mut statuses) =
+        part_of_way(operator, laws, (from, merit), target, whole, settings);
+    operator.exchange(&at, &before, &mut statuses);
+    for (g, past) in past {
+        if let Some(of_group) = statuses.get_mut(&g) {
+            of_group.past = past;
+        }
+    }
+    (at, merit, statuses)
 }
 
 /// The residual of the laws at an iterate, which within round-off keeps the statuses `before`; only the merit counts where these

@@ -151,7 +151,6 @@ fn move_nearer(
     let mut coefficients = found.unwrap_or_default();
     fixed.context.comm.broadcast(&mut coefficients);
     let unneeded = (released.as_ref()).map_or(&[][..], |released| &released.unneeded);
-    let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     if list.len() > fixed.free.list.len() {
         drop_forces(fixed, unneeded, solution);
     }
@@ -166,16 +165,7 @@ fn move_nearer(
         ..MinimumNorm::default()
     };
     let largest = before.max(largest_displacement(fixed, solution));
-    comm.gather(
-        &plan.group_owners(),
-        |g| {
-            let of_group = solution.groups.get_mut(&g);
-            of_group.map_or(0, |of_group| {
-                open(&fixed.context.groups[&g], of_group, OPENED * largest)
-            })
-        },
-        |_, opened| minimum_norm.opened += opened,
-    );
+    minimum_norm.opened = open_all(fixed, solution, OPENED * largest);
     solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
     (list, minimum_norm)
@@ -220,6 +210,27 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     );
     comm.broadcast(&mut largest);
     largest
+}
+
+/// Opens the points of all groups that have a gap of more than `closed_up_to` (m); returns their number, on the root.
+/// Collective.
+fn open_all(
+    fixed: &FixedActiveSet<'_>,
+    solution: &mut DiscreteSolution,
+    closed_up_to: f64,
+) -> usize {
+    let mut all = 0;
+    fixed.context.comm.gather(
+        &fixed.context.plan.group_owners(),
+        |g| {
+            let of_group = solution.groups.get_mut(&g);
+            of_group.map_or(0, |of_group| {
+                open(&fixed.context.groups[&g], of_group, closed_up_to)
+            })
+        },
+        |_, opened| all += opened,
+    );
+    all
 }
 
 /// Opens the points of a group that have a gap, and counts them. What has moved from where it stuck without force
