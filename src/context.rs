@@ -103,9 +103,9 @@ impl Context<'_> {
         }
     }
 
-    /// A failure that a pivot says, which isn't positive: where the materials' stiffnesses differ by more than digits
-    /// tell, this is no proof that something moves, and it is said instead.
-    pub fn of_pivot(&self, failure: Failure) -> Failure {
+    /// The failure of a factorization with a pivot that isn't positive: either something moves, or what holds it is less than
+    /// round-off. Where the materials' stiffnesses differ by more than digits tell, these are named instead.
+    pub fn of_pivot(&self, mut failure: Failure) -> Failure {
         let all = || self.catalog.materials.iter();
         let soft = all().map(|m| (m.stiffness.smallest(), &m.name));
         let stiff = all().map(|m| (m.stiffness.largest(), &m.name));
@@ -115,8 +115,14 @@ impl Context<'_> {
             return failure;
         };
         let ratio = most / least;
+        if failure.kind != FailureKind::IllPosed {
+            return failure;
+        }
         // NaN doesn't count as small.
-        if failure.kind != FailureKind::IllPosed || ratio < INDISTINCT {
+        if ratio < INDISTINCT {
+            failure
+                .message
+                .push_str("; or something does hold it, by less than numbers of 16 digits tell");
             return failure;
         }
         Failure::input(format!(

@@ -3,6 +3,7 @@
 //!
 //! Decks that aren't linear, static and of small strains, and unknown keywords, are refused by keyword and line.
 
+mod activation;
 mod amplitude;
 mod axes;
 mod behavior;
@@ -26,7 +27,6 @@ mod orientations;
 mod pairs;
 mod parameters;
 mod place;
-mod presence;
 mod pretensions;
 pub mod prints;
 mod reference;

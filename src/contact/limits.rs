@@ -8,8 +8,8 @@ use super::dependent::DependentConstraints;
 use super::jumps::{JumpOf, defining_conditions};
 use super::law::rest_of_bound;
 use super::status::{FixedStatus, LimitState};
-pub use super::tangent::{Beside, TangentialLimit};
 use super::tangent::{ForceBound, TangentialCondition};
+pub use super::tangent::{OtherTangent, TangentialLimit};
 
 /// A slip, relative to the displacements that are prescribed, that is none.
 const ROUND_OFF: f64 = 1e-14;
@@ -152,10 +152,10 @@ impl Limits {
         let of_condition: BTreeMap<usize, (usize, f64)> = (self.tightest.iter().enumerate())
             .map(|(limit, &(condition, factor))| (condition, (limit, factor)))
             .collect();
-        let beside = |other: usize| match (of_condition.get(&other), prescribed(other)) {
-            (Some(&(limit, _)), _) => Beside::Limit(limit),
-            (None, Some(slip)) if slip != 0.0 => Beside::Prescribed(slip),
-            _ => Beside::Nothing,
+        let other_tangent = |other: usize| match (of_condition.get(&other), prescribed(other)) {
+            (Some(&(limit, _)), _) => OtherTangent::Limit(limit),
+            (None, Some(slip)) if slip != 0.0 => OtherTangent::Prescribed(slip),
+            _ => OtherTangent::Nothing,
         };
         let mut tangents: Vec<TangentialLimit> = with_other(friction)
             .filter_map(|(tangential, other)| {
@@ -169,7 +169,7 @@ impl Limits {
                             / normal.map_or(1.0, |(_, factor)| factor),
                         ..tangential.bound
                     },
-                    beside: other.map_or(Beside::Nothing, beside),
+                    other: other.map_or(OtherTangent::Nothing, other_tangent),
                 })
             })
             .collect();

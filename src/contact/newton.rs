@@ -45,9 +45,9 @@ pub trait ContactOperator {
         part: f64,
     ) -> OnGroups<Iterate>;
 
-    /// Exchanges limits that are closed `now`, at an iterate, where they depend on each other and were closed otherwise
-    /// `before`; an operator that shares forces among such limits lets them be.
-    fn exchange(
+    /// Makes limits that are closed `now`, at an iterate, independent of each other, those that were closed `before` first; an
+    /// operator that shares forces among dependent limits leaves them.
+    fn make_independent(
         &self,
         _at: &OnGroups<Iterate>,
         _before: &OnGroups<Statuses>,
@@ -264,7 +264,7 @@ fn advance<O: ContactOperator>(
         .collect();
     let (at, merit, mut statuses) =
         part_of_way(operator, laws, (from, merit), target, whole, settings);
-    operator.exchange(&at, &before, &mut statuses);
+    operator.make_independent(&at, &before, &mut statuses);
     for (g, past) in past {
         if let Some(of_group) = statuses.get_mut(&g) {
             of_group.past = past;

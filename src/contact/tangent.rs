@@ -61,12 +61,12 @@ pub struct TangentialLimit {
     /// Bound of its force.
     pub bound: ForceBound,
     /// Slip of its point along the other tangent.
-    pub beside: Beside,
+    pub other: OtherTangent,
 }
 
 /// Slip of a point along the other one of its tangents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Beside {
+pub enum OtherTangent {
     /// No slip: the plane has but one tangent, or supports let nothing move along the other.
     #[default]
     Nothing,
@@ -80,11 +80,11 @@ impl TangentialLimit {
     /// The tangential limits of its point, the second of which may not be one, and the slip that supports prescribe along
     /// the second (m); `None` where it is the second itself.
     pub fn of_point(&self) -> Option<([Option<usize>; 2], f64)> {
-        let (second, prescribed) = match self.beside {
-            Beside::Limit(other) if other < self.limit => return None,
-            Beside::Limit(other) => (Some(other), 0.0),
-            Beside::Prescribed(slip) => (None, slip),
-            Beside::Nothing => (None, 0.0),
+        let (second, prescribed) = match self.other {
+            OtherTangent::Limit(other) if other < self.limit => return None,
+            OtherTangent::Limit(other) => (Some(other), 0.0),
+            OtherTangent::Prescribed(slip) => (None, slip),
+            OtherTangent::Nothing => (None, 0.0),
         };
         Some(([Some(self.limit), second], prescribed))
     }
@@ -96,8 +96,8 @@ impl TangentialLimit {
             limit: number(self.limit),
             normal: self.normal.map(&number),
             bound: self.bound,
-            beside: match self.beside {
-                Beside::Limit(limit) => Beside::Limit(number(limit)),
+            other: match self.other {
+                OtherTangent::Limit(limit) => OtherTangent::Limit(number(limit)),
                 known => known,
             },
         }

@@ -20,7 +20,7 @@ use super::rigid_modes::RigidBasis;
 use crate::contact::active_set::{ContactProblem, ContactSolution};
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::FrictionProblem;
-use crate::contact::limits::{Beside, TangentialLimit};
+use crate::contact::limits::{OtherTangent, TangentialLimit};
 use crate::contact::pair::{CondensedContact, PairResponse};
 use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::s_con::{ConState, Expected};
@@ -334,7 +334,7 @@ impl<'a> CoupledContact<'a> {
     /// True if a point slips in a plane.
     pub fn has_cones(&self) -> bool {
         let mut tangents = self.tangents.iter();
-        tangents.any(|tangent| tangent.beside != Beside::Nothing)
+        tangents.any(|tangent| tangent.other != OtherTangent::Nothing)
     }
 
     /// Entries of every pair's normal jumps, then those of every pair's linearly dependent constraints.

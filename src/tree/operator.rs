@@ -143,14 +143,14 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         from.iter().map(of_group).collect()
     }
 
-    fn exchange(
+    fn make_independent(
         &self,
         at: &OnGroups<Iterate>,
         before: &OnGroups<Statuses>,
         now: &mut OnGroups<Statuses>,
     ) {
         for (g, now) in now {
-            self.problem.laws[g].exchange(&at[g], &before[g], now);
+            self.problem.laws[g].make_independent(&at[g], &before[g], now);
         }
     }
 

@@ -3,11 +3,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::activation::Activation;
 use super::document::{Document, Names, quoted};
 use super::equations::Equation;
 use super::groups::Groups;
 use super::place::Places;
-use super::presence::Presence;
 use super::reference::NodeAxis;
 use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
@@ -330,10 +330,10 @@ impl SceneEquation {
     }
 
     /// The steps in which it is active, unless it is in all.
-    pub(super) fn presence(&self) -> Option<Presence> {
+    pub(super) fn activation(&self) -> Option<Activation> {
         let name = self.name.clone().filter(|_| self.values.contains(&None))?;
         let steps = self.values.iter().map(Option::is_some).collect();
-        Some(Presence { name, steps })
+        Some(Activation { name, steps })
     }
 }
 

@@ -100,7 +100,7 @@ impl Changes {
             .any(|change| matches!(change.of, Changed::Elements(_)))
     }
 
-    /// Presence of a pair in each of so many steps.
+    /// Activation of a pair in each of so many steps.
     pub(super) fn of_pair(&self, pair: usize, steps: usize) -> Vec<bool> {
         self.course(
             steps,
@@ -108,7 +108,7 @@ impl Changes {
         )
     }
 
-    /// Presence of an element in each of so many steps.
+    /// Activation of an element in each of so many steps.
     pub(super) fn of_element(&self, element: u32, steps: usize) -> Vec<bool> {
         self.course(steps, |of| match of {
             Changed::Elements(all) => all.binary_search(&element).is_ok(),
@@ -116,7 +116,7 @@ impl Changes {
         })
     }
 
-    /// Presence, in each of so many steps, of what changes concern: it is there at first unless it comes before
+    /// Activation, in each of so many steps, of what changes concern: it is there at first unless it comes before
     /// it goes.
     fn course(&self, steps: usize, concerns: impl Fn(&Changed) -> bool) -> Vec<bool> {
         let own: Vec<&Change> = self

@@ -1,10 +1,10 @@
 //! Pairs of surfaces on their way to contacts and ties of the scene.
 
+use super::activation::Activation;
 use super::contacts::{Adjust, Pair};
 use super::content::Content;
 use super::document::{Document, Names, quoted};
 use super::place::Places;
-use super::presence::Presence;
 use super::ties::SceneTie;
 use crate::error::InputError;
 
@@ -16,7 +16,7 @@ impl Content {
         (sides, names, ties): (&[[String; 2]], &[String], &[SceneTie]),
         taken: &mut Names,
         (document, warnings): (&mut Document, &mut Vec<String>),
-    ) -> Result<Vec<Presence>, InputError> {
+    ) -> Result<Vec<Activation>, InputError> {
         let count = self.steps.done.len();
         let (mut tied, mut passing) = (Vec::new(), Vec::new());
         let pairs = self.contacts.pairs.iter().zip(sides).zip(names);
@@ -51,7 +51,7 @@ impl Content {
                     }
                 }
                 if steps.contains(&false) {
-                    passing.push(Presence { name, steps });
+                    passing.push(Activation { name, steps });
                 }
             }
         }

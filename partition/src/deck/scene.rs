@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::activation::{self, Activation};
 use super::content::Content;
 use super::document::{Document, Linear, quoted};
 use super::elastic::Elastic;
@@ -9,7 +10,6 @@ use super::initial;
 use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
 use super::place::Places;
-use super::presence::{self, Presence};
 use super::scene_tables::SceneTables;
 use super::sections::{self, Body, Section};
 use super::steps::LoadStep;
@@ -64,7 +64,7 @@ pub(super) fn text(
         &mut tables.taken,
         (&mut document, warnings),
     )?;
-    passing.extend(tables.presences());
+    passing.extend(tables.activations());
     tables.write_conditions(&mut document);
     if content.steps.done.len() > 1 || !passing.is_empty() {
         for number in 0..content.steps.done.len() {
@@ -243,7 +243,7 @@ impl Content {
         &self,
         source: &Source,
         number: usize,
-        (tables, passing): (&SceneTables, &[Presence]),
+        (tables, passing): (&SceneTables, &[Activation]),
         dim: usize,
         document: &mut Document,
     ) -> Result<(), InputError> {
@@ -254,7 +254,7 @@ impl Content {
             document.key("name", quoted(name));
         }
         document.key("time", format!("{:?}", step.time));
-        presence::write(passing, number, document);
+        activation::write(passing, number, document);
         for list in ["displacement", "pressure", "traction", "force"] {
             let mut of_list = loads.iter().filter(|load| load.list == list).peekable();
             let acts = loads

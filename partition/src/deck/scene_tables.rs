@@ -1,5 +1,6 @@
 //! The tables of a deck's scene: what it has on groups of the mesh, under names of their own, before it is written.
 
+use super::activation::Activation;
 use super::conditions::{self, SceneEquation};
 use super::content::Content;
 use super::couplings::SceneCoupling;
@@ -8,7 +9,6 @@ use super::document::{Document, Names};
 use super::group_load::{OnGroup, OnGroups};
 use super::groups::Groups;
 use super::place::Places;
-use super::presence::Presence;
 use super::pretensions::{self, ScenePretension};
 use super::sections::Body;
 use super::springs::SceneSpring;
@@ -95,10 +95,10 @@ impl SceneTables {
     }
 
     /// The steps of equations and bodies that aren't there in all.
-    pub(super) fn presences(&self) -> impl Iterator<Item = Presence> {
-        let equations = self.equations.iter().filter_map(SceneEquation::presence);
+    pub(super) fn activations(&self) -> impl Iterator<Item = Activation> {
+        let equations = self.equations.iter().filter_map(SceneEquation::activation);
         let bodies = self.bodies.iter().zip(&self.names);
-        equations.chain(bodies.filter_map(|(body, name)| body.presence(name)))
+        equations.chain(bodies.filter_map(|(body, name)| body.activation(name)))
     }
 
     /// The conditions between groups, but for contacts and ties, written behind what is there.

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use super::activation::Activation;
 use super::initial::Initial;
 use super::loads::{Loads, item};
 use super::model_change::Changes;
 use super::place::Places;
-use super::presence::Presence;
 use super::steps::LoadStep;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
@@ -70,14 +70,14 @@ pub(super) struct Body {
     pub(super) is_reduced: bool,
     /// Their stress before anything acts.
     pub(super) initial: [f64; 6],
-    /// Presence of the elements in every step.
+    /// Activation of the elements in every step.
     steps: Vec<bool>,
 }
 
 impl Body {
     /// The steps in which a body is active, unless it is in all.
-    pub(super) fn presence(&self, name: &str) -> Option<Presence> {
-        self.steps.contains(&false).then(|| Presence {
+    pub(super) fn activation(&self, name: &str) -> Option<Activation> {
+        self.steps.contains(&false).then(|| Activation {
             name: name.to_owned(),
             steps: self.steps.clone(),
         })

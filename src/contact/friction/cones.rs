@@ -13,7 +13,7 @@ use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{ContactLaws, Iterate, Statuses};
 use crate::contact::open_factor::scale_of;
 use crate::contact::status::FixedStatus;
-use crate::contact::tangent::Beside;
+use crate::contact::tangent::OtherTangent;
 
 /// Accepted residual, relative to the terms of forces, once steps no longer lessen it: round-off of points whose own
 /// stiffness is far above that of others. The certificate checks the result.
@@ -73,8 +73,8 @@ impl FrictionProblem<'_> {
         let mut tangents = self.tangents.to_vec();
         for tangent in &mut tangents {
             tangent.bound.cohesion = 0.0;
-            if matches!(tangent.beside, Beside::Prescribed(_)) {
-                tangent.beside = Beside::Nothing;
+            if matches!(tangent.other, OtherTangent::Prescribed(_)) {
+                tangent.other = OtherTangent::Nothing;
             }
         }
         let cones = FrictionCones::new(&FrictionProblem {

@@ -24,7 +24,7 @@ use self::path::{End, Path};
 use self::polygon::{ATTEMPTS, Polygons};
 use super::FrictionProblem;
 use crate::contact::open_factor::scale_of;
-use crate::contact::tangent::{Beside, TangentialLimit};
+use crate::contact::tangent::{OtherTangent, TangentialLimit};
 
 /// Refinements of the polygons in each attempt; those with few sides at first have some.
 const FINER: [usize; ATTEMPTS] = [3, 0, 3, 0];
@@ -43,7 +43,7 @@ impl FrictionProblem<'_> {
     /// attempt takes another path.
     fn follow(&self, polygons: &Polygons) -> (Option<End>, usize) {
         let is_prescribed =
-            |tangent: &TangentialLimit| matches!(tangent.beside, Beside::Prescribed(_));
+            |tangent: &TangentialLimit| matches!(tangent.other, OtherTangent::Prescribed(_));
         if self.contact.bounds.len() > MOST_LIMITS || self.tangents.iter().any(is_prescribed) {
             return (None, 0);
         }

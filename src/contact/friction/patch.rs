@@ -21,7 +21,7 @@ use crate::contact::laws::Iterate;
 use crate::contact::open_factor::{factorize, scale_of};
 use crate::contact::patch::{CondensedPatch, LARGE, LastPatch};
 use crate::contact::status::FixedStatus;
-use crate::contact::tangent::{Beside, TangentialLimit};
+use crate::contact::tangent::{OtherTangent, TangentialLimit};
 
 /// Number of jumps up to which the whole problem is cheaper to solve than to condense.
 const FEW: usize = 300;
@@ -100,7 +100,7 @@ impl FrictionProblem<'_> {
         for tangent in self.tangents {
             let TangentialLimit { limit, bound, .. } = *tangent;
             let normal = tangent.normal.filter(|&n| n < m);
-            let opens = bound.only_closed && !matches!(tangent.beside, Beside::Prescribed(_));
+            let opens = bound.only_closed && !matches!(tangent.other, OtherTangent::Prescribed(_));
             match normal {
                 Some(n) if limit < m => {
                     stay[n] |= stay[limit] || !opens;

@@ -5,7 +5,7 @@ use faer::Mat;
 use crate::contact::active_set::{ContactProblem, ContactSolution};
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::{ForceBound, FrictionProblem, Status};
-use crate::contact::limits::{Beside, TangentialLimit};
+use crate::contact::limits::{OtherTangent, TangentialLimit};
 use crate::contact::patch::LastPatch;
 
 pub const COULOMB: ForceBound = ForceBound {
@@ -56,9 +56,9 @@ impl Points {
             limit: points + k,
             normal: Some(k / each),
             bound,
-            beside: match each {
-                1 => Beside::Nothing,
-                _ => Beside::Limit(points + (k ^ 1)),
+            other: match each {
+                1 => OtherTangent::Nothing,
+                _ => OtherTangent::Limit(points + (k ^ 1)),
             },
         };
         Self {
@@ -130,10 +130,10 @@ impl Points {
             worst = worst.max(beyond(i)).max(-forces[i]).max(product);
         }
         for tangent in &self.tangents {
-            let (other, slip) = match tangent.beside {
-                Beside::Limit(other) => (forces[other], beyond(other)),
-                Beside::Prescribed(slip) => (0.0, slip),
-                Beside::Nothing => (0.0, 0.0),
+            let (other, slip) = match tangent.other {
+                OtherTangent::Limit(other) => (forces[other], beyond(other)),
+                OtherTangent::Prescribed(slip) => (0.0, slip),
+                OtherTangent::Nothing => (0.0, 0.0),
             };
             let normal = tangent.normal.map_or(0.0, |n| forces[n]);
             let (force, own) = (forces[tangent.limit], beyond(tangent.limit));
@@ -145,8 +145,8 @@ impl Points {
                 }
                 _ => [tangent.bound.at(normal, normal > 0.0); 2].into(),
             };
-            worst = worst.max(match tangent.beside {
-                Beside::Prescribed(_) => (force * size - most * own).abs(),
+            worst = worst.max(match tangent.other {
+                OtherTangent::Prescribed(_) => (force * size - most * own).abs(),
                 _ => {
                     let opposed = of_force.max(least) * size - force * own - other * slip;
                     (of_force - most).max(opposed.abs())

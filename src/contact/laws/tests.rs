@@ -1,7 +1,7 @@
 //! The past of points that part, in the residual of their laws.
 
 use super::*;
-use crate::contact::tangent::{Beside, ForceBound};
+use crate::contact::tangent::{ForceBound, OtherTangent};
 
 const PARTS: PointStatus = PointStatus::Parts {
     direction: [1.0, 0.0],
@@ -18,7 +18,7 @@ fn after_parting(force: f64, past: Past) -> (PointStatus, Past) {
             cohesion: 1.0,
             only_closed: true,
         },
-        beside: Beside::Nothing,
+        other: OtherTangent::Nothing,
     };
     let rows = DependentConstraints::default();
     let laws = ContactLaws::new(&[0.0; 2], &rows, &[tangent], vec![1.0; 2]);

@@ -106,9 +106,9 @@ fn a_slip_that_supports_prescribe_along_one_tangent_turns_the_force_along_the_ot
         points.bounds = kept.iter().map(|&i| points.bounds[i]).collect();
         for (k, tangent) in points.tangents.iter_mut().enumerate() {
             tangent.limit = 3 + k;
-            tangent.beside = match k {
-                0 => Beside::Nothing,
-                _ => Beside::Prescribed(0.2 * noise(seed + k)),
+            tangent.other = match k {
+                0 => OtherTangent::Nothing,
+                _ => OtherTangent::Prescribed(0.2 * noise(seed + k)),
             };
         }
         points.solved(&format!("seed {seed}"), 1e-10);
@@ -130,7 +130,7 @@ fn tangential_jumps_that_depend_on_others_have_their_laws_too() {
             limit,
             normal: Some(2),
             bound: GIVEN,
-            beside: Beside::Limit(19 - limit),
+            other: OtherTangent::Limit(19 - limit),
         }));
         let solution = points.solve(&mut [Status::Closed; 11]);
         if solution.converged {

@@ -221,7 +221,7 @@ impl FrictionPolygon {
 mod tests {
     use super::*;
     use crate::contact::friction::points::COULOMB;
-    use crate::contact::tangent::Beside;
+    use crate::contact::tangent::OtherTangent;
 
     #[test]
     fn a_slip_is_between_the_normals_that_it_is_a_sum_of() {
@@ -229,7 +229,7 @@ mod tests {
             limit: 1,
             normal: Some(0),
             bound: COULOMB,
-            beside: Beside::Limit(2),
+            other: OtherTangent::Limit(2),
         };
         let finer = Polygons::new(0).finer(vec![Some([-0.6, 0.8])]).unwrap();
         let finest = finer.finer(vec![Some([0.8, -0.6])]).unwrap();

@@ -10,25 +10,25 @@ use super::laws::{ContactLaws, Iterate, Statuses};
 use crate::vector::largest;
 
 /// Overshoot of a bound, relative to the largest jump and bound, that counts as zero.
-const NO_WAY: f64 = 1e-12;
+const NO_OVERSHOOT: f64 = 1e-12;
 /// Bisections of the range in which a point begins to slip.
 const BISECTIONS: usize = 40;
 
 /// Active-set update of a contact group.
-struct Exchange<'a> {
+struct IndependentLimits<'a> {
     laws: &'a ContactLaws<'a>,
     /// The forces of all limits as far as they have grown.
     forces: Vec<f64>,
     /// False for the independent limits that are closed or stick, true for all others.
     open: Vec<bool>,
     /// Overshoot of a bound that counts as zero (m).
-    no_way: f64,
+    no_overshoot: f64,
 }
 
 impl ContactLaws<'_> {
     /// Makes contradicting limits that are to close or stick `now`, at an iterate, independent of each other; those
     /// closed or sticking `before` come first. A tangential limit slips where others make it slip.
-    pub fn exchange(&self, at: &Iterate, before: &Statuses, now: &mut Statuses) {
+    pub fn make_independent(&self, at: &Iterate, before: &Statuses, now: &mut Statuses) {
         if self.rows.is_empty() {
             return;
         }
@@ -38,11 +38,11 @@ impl ContactLaws<'_> {
         self.rows.open_redundant(&mut open);
         let finite = at.jumps.iter().chain(self.bounds);
         let finite: Vec<f64> = finite.copied().filter(|x| x.is_finite()).collect();
-        let mut exchange = Exchange {
+        let mut limits = IndependentLimits {
             laws: self,
             forces: at.forces.clone(),
             open,
-            no_way: NO_WAY * largest(&finite),
+            no_overshoot: NO_OVERSHOOT * largest(&finite),
         };
         // Jumps outside of all rows are independent.
         let in_rows: BTreeSet<usize> = self.rows.iter().flatten().map(|(i, _)| *i).collect();
@@ -51,8 +51,8 @@ impl ContactLaws<'_> {
         let (tangential, normal): (Vec<usize>, Vec<usize>) =
             sought.partition(|&k| self.is_tangential[k]);
         for k in normal.into_iter().chain(tangential) {
-            if known[k] && exchange.open[k] && self.known(now)[k] {
-                exchange.close(k, now);
+            if known[k] && limits.open[k] && self.known(now)[k] {
+                limits.close(k, now);
             }
         }
     }
@@ -73,7 +73,7 @@ enum Change {
     Slips(usize, [f64; 2]),
 }
 
-impl Exchange<'_> {
+impl IndependentLimits<'_> {
     /// Closes limit k, or lets it stick, and releases the limit that contradicts it.
     fn close(&mut self, k: usize, now: &mut Statuses) {
         let (laws, rows) = (self.laws, self.laws.rows);
@@ -130,7 +130,7 @@ impl Exchange<'_> {
         let way = shares.iter().map(|&(i, c)| c * self.laws.bounds[i]);
         let beyond = way.sum::<f64>() - self.laws.bounds[k];
         let amplified: f64 = shares.iter().map(|(_, c)| c.abs()).sum();
-        match beyond.abs() <= self.no_way * (1.0 + amplified) {
+        match beyond.abs() <= self.no_overshoot * (1.0 + amplified) {
             true => 0.0,
             false => beyond,
         }
@@ -224,7 +224,7 @@ mod tests {
     use super::*;
     use crate::contact::dependent::DependentConstraints;
     use crate::contact::friction::Status;
-    use crate::contact::limits::{Beside, TangentialLimit};
+    use crate::contact::limits::{OtherTangent, TangentialLimit};
     use crate::contact::tangent::ForceBound;
 
     /// Contradicting limits: t_0 + t_1 ≤ −1 with t_0 ≤ 0 and t_1 ≤ 0, or with s_1 = 0 where the second jump is a slip.
@@ -244,7 +244,7 @@ mod tests {
         };
         let before = laws.begin(&[Status::Closed, Status::Closed, Status::Open], &at);
         let mut now = laws.begin(&[Status::Closed; 3], &at);
-        laws.exchange(&at, &before, &mut now);
+        laws.make_independent(&at, &before, &mut now);
         now
     }
 
@@ -265,7 +265,7 @@ mod tests {
             limit: 1,
             normal: Some(0),
             bound,
-            beside: Beside::Nothing,
+            other: OtherTangent::Nothing,
         };
         let now = exchanged(&[tangent], [3.0, 0.2, 0.0]);
         assert!(now.closed[0] && now.closed[2]);

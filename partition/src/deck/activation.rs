@@ -5,15 +5,15 @@ use std::collections::BTreeSet;
 use super::document::{Document, quoted};
 
 /// A body, contact or equation that isn't there in all steps.
-pub(super) struct Presence {
+pub(super) struct Activation {
     pub(super) name: String,
     pub(super) steps: Vec<bool>,
 }
 
 /// Writes activations and deactivations of a step.
-pub(super) fn write(all: &[Presence], step: usize, document: &mut Document) {
+pub(super) fn write(all: &[Activation], step: usize, document: &mut Document) {
     for (key, comes) in [("add", true), ("remove", false)] {
-        let changes = |of: &&Presence| match step.checked_sub(1) {
+        let changes = |of: &&Activation| match step.checked_sub(1) {
             Some(before) => of.steps[before] != comes && of.steps[step] == comes,
             // Bodies that are added later are absent at first.
             None => !comes && !of.steps.contains(&true),
