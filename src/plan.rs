@@ -290,7 +290,7 @@ impl Plan {
     }
 
     /// Pairs of the owner of every such group and that of its cluster, cluster by cluster.
-    pub fn ways_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn routes_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|cluster| {
             let groups = cluster.groups.iter();

@@ -225,10 +225,10 @@ impl Coarse {
         let Some(parent) = plan.tree.nodes[v].parent else {
             return;
         };
-        let way = (plan.node_owners[v], plan.node_owners[parent]);
+        let route = (plan.node_owners[v], plan.node_owners[parent]);
         self.parts.remove(&v);
         comm.route(
-            [way],
+            [route],
             |_| part.take(),
             |_, arrived| self.parts.extend(arrived.map(|part| (v, part))),
         );

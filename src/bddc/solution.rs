@@ -256,7 +256,7 @@ impl Bddc {
         clusters: &Vectors,
         unbalanced: &Vectors,
     ) -> OnGroups<(Iterate, Vec<f64>)> {
-        let ways: Vec<(usize, MergeRootId)> = (self.between.iter().enumerate())
+        let routes: Vec<(usize, MergeRootId)> = (self.between.iter().enumerate())
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();
         let forces = self.locals.keys().map(|&c| {
@@ -271,18 +271,19 @@ impl Bddc {
         let forces: OnMergeRoots<BTreeMap<InterfaceDof, f64>> = forces.collect();
         let mut of_groups: OnGroups<[BTreeMap<InterfaceDof, f64>; 2]> = BTreeMap::new();
         comm.route(
-            ways.iter()
+            routes
+                .iter()
                 .map(|&(i, c)| (self.owners[c], self.between[i].owner)),
-            |way| {
-                let (i, c) = ways[way];
+            |route| {
+                let (i, c) = routes[route];
                 let said = self.between[i].dofs.iter().map(|dof| {
                     let at = self.dofs[c].binary_search(dof).ok();
                     (at.map(|at| clusters[&c][at]), forces[&c].get(dof).copied())
                 });
                 said.collect::<Vec<_>>()
             },
-            |way, said| {
-                let group = &self.between[ways[way].0];
+            |route, said| {
+                let group = &self.between[routes[route].0];
                 let [x, r] = of_groups.entry(group.number).or_default();
                 for (dof, (of_x, of_r)) in group.dofs.iter().zip(said) {
                     if let Some(of_x) = of_x {

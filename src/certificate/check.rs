@@ -173,7 +173,7 @@ impl Most {
             most.contact_force = larger(most.contact_force, size);
             most.bound = larger(most.bound, bound);
             most.beyond_bound = larger(most.beyond_bound, (size - bound).max(0.0));
-            most.astray = larger(most.astray, astray.way());
+            most.astray = larger(most.astray, astray.distance());
             // That is 0 to the second order where the force isn't along the slip.
             let [slip, force] = [slipped.slip, slipped.force];
             let aside = (force[0] * slip[1] - force[1] * slip[0]).abs();
@@ -194,17 +194,17 @@ pub fn not_opposed(
     let no_force = NO_FORCE * largest(forces);
     let of_point = |point: PointLaw| {
         let slipped = slipped(&point, gaps, forces, closed);
-        let way = slipped.way();
-        if way == 0.0 {
+        let distance = slipped.distance();
+        if distance == 0.0 {
             return 0.0;
         }
         let pressure = point.normal.map_or(0.0, |n| forces[n]);
-        let opposing = slipped.work() / way;
+        let opposing = slipped.work() / distance;
         let lacks = match point.bound.only_closed && pressure <= no_force {
             true => 0.5 * (slipped.size() - opposing),
             false => slipped.bound - opposing,
         };
-        scales.lesser(way, lacks)
+        scales.lesser(distance, lacks)
     };
     let points = group.point_laws();
     points.into_iter().map(of_point).fold(0.0, larger)

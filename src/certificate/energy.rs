@@ -93,14 +93,17 @@ impl BlockEnergy {
 
     /// Work done in the increment from the state `before`, that of unloaded bodies if there is none.
     pub fn work(&self, before: Option<&Self>) -> BlockWork {
-        let mut way = self.displacement.0.clone();
+        let mut increment = self.displacement.0.clone();
         if let Some(before) = before {
             let earlier = before.displacement.0.iter();
-            way.iter_mut().zip(earlier).for_each(|(u, was)| *u -= was);
+            increment
+                .iter_mut()
+                .zip(earlier)
+                .for_each(|(u, was)| *u -= was);
         }
         let [loads, supports, contacts] = [0, 1, 2].map(|k| {
-            let earlier = before.map_or(0.0, |before| dot(&before.forces[k].0, &way));
-            0.5 * (dot(&self.forces[k].0, &way) + earlier)
+            let earlier = before.map_or(0.0, |before| dot(&before.forces[k].0, &increment));
+            0.5 * (dot(&self.forces[k].0, &increment) + earlier)
         });
         let (elastic, terms) = before.map_or((0.0, 0.0), |b| (b.elastic, b.terms));
         let terms = self.terms + terms;

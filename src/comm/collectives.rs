@@ -26,10 +26,10 @@ impl Comm {
     ) {
         for bundles in bundles(owners.ranks()) {
             let mut arrived = BTreeMap::new();
-            let ways: Vec<(usize, usize)> = bundles.keys().map(|&owner| (owner, ROOT)).collect();
+            let routes: Vec<(usize, usize)> = bundles.keys().map(|&owner| (owner, ROOT)).collect();
             let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
             self.route(
-                ways,
+                routes,
                 |k| {
                     let made = bundles[k].iter().map(|&i| make(i.into()));
                     made.collect::<Vec<T>>()
@@ -76,10 +76,10 @@ impl Comm {
         mut take: impl FnMut(O::Of, T),
     ) {
         for bundles in bundles(owners.ranks()) {
-            let ways: Vec<(usize, usize)> = bundles.keys().map(|&owner| (ROOT, owner)).collect();
+            let routes: Vec<(usize, usize)> = bundles.keys().map(|&owner| (ROOT, owner)).collect();
             let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
             self.route(
-                ways,
+                routes,
                 |k| {
                     let made = bundles[k].iter().map(|&i| make(i.into()));
                     made.collect::<Vec<T>>()
@@ -97,11 +97,11 @@ impl Comm {
     /// `make(i)` is called where way `i` begins, `take(i, value)` where it ends.
     pub fn route<T: Serialize + DeserializeOwned>(
         &self,
-        ways: impl IntoIterator<Item = (usize, usize)>,
+        routes: impl IntoIterator<Item = (usize, usize)>,
         mut make: impl FnMut(usize) -> T,
         mut take: impl FnMut(usize, T),
     ) {
-        for (i, (from, to)) in ways.into_iter().enumerate() {
+        for (i, (from, to)) in routes.into_iter().enumerate() {
             match (from == self.rank(), to == self.rank()) {
                 (true, true) => take(i, make(i)),
                 (true, false) => self.send(to, &make(i)),
@@ -117,17 +117,17 @@ impl Comm {
     /// `make(i)` is called where way `i` begins.
     pub fn route_lists(
         &self,
-        ways: &[(usize, usize)],
+        routes: &[(usize, usize)],
         mut make: impl FnMut(usize) -> Vec<f64>,
     ) -> BTreeMap<usize, Vec<f64>> {
         let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-        for (i, &way) in ways.iter().enumerate() {
-            bundles.entry(way).or_default().push(i);
+        for (i, &route) in routes.iter().enumerate() {
+            bundles.entry(route).or_default().push(i);
         }
         let bundles: Vec<_> = bundles.into_iter().collect();
         let mut arrived = BTreeMap::new();
         self.route(
-            bundles.iter().map(|(way, _)| *way),
+            bundles.iter().map(|(route, _)| *route),
             |b| -> Vec<Reals> { bundles[b].1.iter().map(|&i| Reals(make(i))).collect() },
             |b, lists| arrived.extend(bundles[b].1.iter().copied().zip(lists)),
         );

@@ -19,7 +19,7 @@ impl Factors<'_> {
         let places = self.places();
         let mut of_clusters: OnPairs<Vec<T>> = BTreeMap::new();
         self.context.comm.route(
-            plan.ways_to_clusters(),
+            plan.routes_to_clusters(),
             |i| of_groups.remove(&places[i].1).unwrap_or_default(),
             |i, said| of_clusters.entry(places[i].0).or_default().extend(said),
         );
@@ -35,7 +35,7 @@ impl Factors<'_> {
         let places = self.places();
         let mut of_groups = BTreeMap::new();
         self.context.comm.route(
-            plan.ways_to_clusters()
+            plan.routes_to_clusters()
                 .map(|(group, cluster)| (cluster, group)),
             |i| -> Vec<T> {
                 let (p, g) = places[i];

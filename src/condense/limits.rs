@@ -30,7 +30,7 @@ pub fn limits_of_clusters(context: &Context<'_>, made: &OnGroups<Limits>) -> OnP
     let groups = plan.groups_by_cluster();
     let mut arrived: OnGroups<Limits> = BTreeMap::new();
     comm.route(
-        plan.ways_to_clusters(),
+        plan.routes_to_clusters(),
         |i| made.get(&groups[i]).cloned().unwrap_or_default(),
         |i, limits| {
             arrived.insert(groups[i], limits);

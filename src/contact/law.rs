@@ -68,7 +68,7 @@ impl PointState {
     }
 
     /// |s| (m).
-    pub fn way(&self) -> f64 {
+    pub fn distance(&self) -> f64 {
         self.slip[0].hypot(self.slip[1])
     }
 

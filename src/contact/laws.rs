@@ -155,11 +155,11 @@ impl<'a> ContactLaws<'a> {
         }
         let here = self.point(point, at, &before.closed);
         let (slip, force) = (here.slip, here.force);
-        let (way, size) = (here.way(), here.size());
-        let parts = || match way > 0.0 {
+        let (distance, size) = (here.distance(), here.size());
+        let parts = || match distance > 0.0 {
             true => PointStatus::Parts {
-                direction: slip.map(|s| s / way),
-                turning: point.turning(size / way),
+                direction: slip.map(|s| s / distance),
+                turning: point.turning(size / distance),
             },
             false => PointStatus::Parts {
                 direction: force.map(|f| f / size),
@@ -171,9 +171,11 @@ impl<'a> ContactLaws<'a> {
             PointStatus::Slips { .. } | PointStatus::Sticks
                 if now.points[k] == PointStatus::Open =>
             {
-                (before.past[k] != Past::Closed && way + size > 0.0).then(parts)
+                (before.past[k] != Past::Closed && distance + size > 0.0).then(parts)
             }
-            PointStatus::Parts { direction, .. } if along(force, direction) < 0.0 || way == 0.0 => {
+            PointStatus::Parts { direction, .. }
+                if along(force, direction) < 0.0 || distance == 0.0 =>
+            {
                 Some(PointStatus::Open)
             }
             PointStatus::Parts { direction, .. } if along(slip, direction) < 0.0 => {
@@ -209,16 +211,19 @@ impl<'a> ContactLaws<'a> {
                 return PointStatus::Open;
             }
             let here = self.point(point, at, &closed);
-            let way = here.way();
+            let distance = here.distance();
             let force = match own {
                 Status::Parting => here.size().min(point.bound.cohesion),
                 _ => here.bound,
             };
-            let (direction, turning) = match way > 0.0 {
-                true => (here.slip.map(|s| s / way), point.turning(force / way)),
+            let (direction, turning) = match distance > 0.0 {
+                true => (
+                    here.slip.map(|s| s / distance),
+                    point.turning(force / distance),
+                ),
                 false => ([own.sign(), 0.0], 0.0),
             };
-            if own == Status::Parting && way > 0.0 {
+            if own == Status::Parting && distance > 0.0 {
                 return PointStatus::Parts { direction, turning };
             }
             match own.is_closed() && point.prescribed == 0.0 || direction == [0.0; 2] {

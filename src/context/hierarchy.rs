@@ -25,12 +25,12 @@ pub fn carry(
         return;
     };
     let (here, above) = (plan.node_owners[v], plan.node_owners[parent]);
-    let way = match direction {
+    let route = match direction {
         Direction::Up => (here, above),
         Direction::Down => (above, here),
     };
     comm.route(
-        [way],
+        [route],
         |_| Reals(vector.take().unwrap_or_default()),
         |_, Reals(arrived)| {
             into.insert(v, arrived);

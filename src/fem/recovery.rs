@@ -78,8 +78,8 @@ impl Recovery {
                 let (sum, count) = (self.neighbours.entry(at_boundary))
                     .or_insert_with(|| (Polynomial::zero(block.dim), 0.0));
                 for within in corners.clone().filter(|&c| self.is_inner[c]) {
-                    let way = way(block, within, at_boundary);
-                    sum.add(1.0, &self.polynomials.get(within).seen_from(way));
+                    let offset = offset(block, within, at_boundary);
+                    sum.add(1.0, &self.polynomials.get(within).seen_from(offset));
                     *count += 1.0;
                 }
             }
@@ -127,7 +127,7 @@ impl Recovery {
                 let mut mean = [0.0; 6];
                 for &vertex in around {
                     let from = nodes[vertex];
-                    let value = self.polynomials.get(from).at(way(block, from, node));
+                    let value = self.polynomials.get(from).at(offset(block, from, node));
                     for (m, v) in mean.iter_mut().zip(value) {
                         *m += v / around.len() as f64;
                     }
@@ -147,6 +147,6 @@ fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
 }
 
 /// Vector from one node to another (m).
-fn way(block: &Block, from: usize, to: usize) -> [f64; 3] {
+fn offset(block: &Block, from: usize, to: usize) -> [f64; 3] {
     difference(block.points()[to], block.points()[from])
 }

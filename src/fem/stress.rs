@@ -299,13 +299,13 @@ impl LocalCell {
         let mut edges = [[0.0; 3]; 3];
         let at_corner = self.kind.edges_at(corner);
         for (edge, &(end, middle)) in edges.iter_mut().zip(at_corner) {
-            let way = difference(self.points[end], self.points[corner]);
+            let offset = difference(self.points[end], self.points[corner]);
             *edge = match middle {
-                None => way,
+                None => offset,
                 // The derivative at the end of a parabola through three points.
                 Some(middle) => {
                     let half = difference(self.points[middle], self.points[corner]);
-                    [0, 1, 2].map(|k| 4.0 * half[k] - way[k])
+                    [0, 1, 2].map(|k| 4.0 * half[k] - offset[k])
                 }
             };
         }

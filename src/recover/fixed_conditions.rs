@@ -120,8 +120,8 @@ mod tests {
     /// A force of constant size b along the slip s turns by b/|s| times what comes across.
     #[test]
     fn a_force_turns_with_the_slip_as_one_of_constant_size() {
-        let (group, way) = (group(COULOMB), [-3e-3, -4e-3]);
-        let mut solution = pressed([1.2, 1.6], way, false);
+        let (group, slip) = (group(COULOMB), [-3e-3, -4e-3]);
+        let mut solution = pressed([1.2, 1.6], slip, false);
         let fixed = conditions(&group, &mut solution, &[false; 3]);
         assert_eq!(fixed[0], FixedStatus::Closed { lacks: 0.0 });
         for (fixed, (share, force)) in fixed[1..].iter().zip([(0.6, 1.2), (0.8, 1.6)]) {

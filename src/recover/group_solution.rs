@@ -108,7 +108,7 @@ impl GroupSolution {
         let mut changed = false;
         for point in group.point_laws() {
             let here = self.point(&point);
-            let (size, way) = (here.size(), here.way());
+            let (size, distance) = (here.size(), here.distance());
             let sticks = point.limits().all(|j| self.closed[j]);
             for (slip, j) in here.slip.into_iter().zip(point.limits()) {
                 match sticks {
@@ -117,8 +117,8 @@ impl GroupSolution {
                         self.forces[j] *= here.bound / size;
                     }
                     false if here.work() < 0.0 => self.closed[j] = true,
-                    false if size == 0.0 && here.bound * way > 0.0 => {
-                        self.forces[j] = here.bound / way * slip;
+                    false if size == 0.0 && here.bound * distance > 0.0 => {
+                        self.forces[j] = here.bound / distance * slip;
                     }
                     _ => continue,
                 }

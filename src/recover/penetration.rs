@@ -40,10 +40,10 @@ pub fn probe(
     let along = |(row, node, weight): (u32, u32, f64), u: &[f64]| {
         let normal = catalog.probes[row as usize].normal;
         let start = node as usize * catalog.dim;
-        let way: f64 = (u[start..].iter().take(catalog.dim).zip(normal))
+        let displacement: f64 = (u[start..].iter().take(catalog.dim).zip(normal))
             .map(|(u, n)| u * n)
             .sum();
-        (row, weight * way)
+        (row, weight * displacement)
     };
     let mut jumps = vec![0.0; catalog.probes.len()];
     let mut size: f64 = 0.0;

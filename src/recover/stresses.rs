@@ -122,7 +122,7 @@ struct Exchange<'a> {
     /// The ranks that share every node on Γ, ascending.
     ranks: Vec<Vec<usize>>,
     /// From rank to rank, where they share any.
-    ways: Vec<(usize, usize)>,
+    routes: Vec<(usize, usize)>,
 }
 
 /// A part: number on Γ, material, block.
@@ -143,11 +143,11 @@ impl<'a> Exchange<'a> {
             let to = move |&from: &usize| of_node.iter().map(move |&to| (from, to));
             of_node.iter().flat_map(to)
         });
-        let ways: BTreeSet<(usize, usize)> = pairs.filter(|(from, to)| from != to).collect();
+        let routes: BTreeSet<(usize, usize)> = pairs.filter(|(from, to)| from != to).collect();
         Self {
             comm,
             ranks,
-            ways: ways.into_iter().collect(),
+            routes: routes.into_iter().collect(),
         }
     }
 
@@ -175,9 +175,9 @@ impl<'a> Exchange<'a> {
         let mine = all.len();
         let mut arrived = Vec::new();
         self.comm.route(
-            self.ways.iter().copied(),
-            |way| {
-                let to = self.ways[way].1;
+            self.routes.iter().copied(),
+            |route| {
+                let to = self.routes[route].1;
                 let shared = |node: u32| self.ranks[node as usize].contains(&to);
                 let parts = all[..mine].iter().filter(|((node, ..), _)| shared(*node));
                 parts.cloned().collect::<Vec<(Place, P)>>()

@@ -111,27 +111,27 @@ impl Increments<'_> {
         mut state: StepState,
         seconds: &mut RankSeconds,
     ) -> Result<Option<Increment>, Failure> {
-        let mut way = StepHalving::default();
+        let mut halving = StepHalving::default();
         let mut work = BTreeMap::new();
         let mut energy = EnergyBalance::default();
         loop {
             let moment = LoadPoint {
                 step: k,
-                part: way.next(),
+                part: halving.next(),
             };
             let analysis = analyse(&self.context, moment, earlier)?;
             let mut solved = self.solve(moment, &analysis, state.clone(), seconds)?;
             if !self.is_converged(&solved) {
-                match way.halve() {
+                match halving.halve() {
                     true => continue,
                     false => return Ok(None),
                 }
             }
             solved.slips.add_work(&work);
             solved.energy = solved.energy.since(energy);
-            if way.accept() {
+            if halving.accept() {
                 if let Some(outcome) = &mut solved.outcome {
-                    outcome.count_increments(way.increments);
+                    outcome.count_increments(halving.increments);
                 }
                 return Ok(Some(solved));
             }

@@ -48,13 +48,13 @@ mod tests {
 
     #[test]
     fn a_way_in_halves_ends_where_the_load_step_does() {
-        let mut way = StepHalving::default();
-        assert!(!way.accept());
-        assert!(way.halve());
-        assert_eq!(way.next(), 0.75);
-        assert!(!way.accept());
-        assert!(way.accept());
-        assert_eq!(way.increments, 3);
-        assert!(way.halve() && !way.halve());
+        let mut halving = StepHalving::default();
+        assert!(!halving.accept());
+        assert!(halving.halve());
+        assert_eq!(halving.next(), 0.75);
+        assert!(!halving.accept());
+        assert!(halving.accept());
+        assert_eq!(halving.increments, 3);
+        assert!(halving.halve() && !halving.halve());
     }
 }

@@ -86,19 +86,19 @@ impl StepState {
     #[must_use]
     pub fn handed_over(mut self, context: &Context<'_>, before: &Plan) -> Self {
         let Context { comm, plan, .. } = *context;
-        let ways = |from: &[usize], to: &[usize]| -> Vec<(usize, usize)> {
+        let routes = |from: &[usize], to: &[usize]| -> Vec<(usize, usize)> {
             from.iter().copied().zip(to.iter().copied()).collect()
         };
         let (mut slips, mut energies) = (BTreeMap::new(), BTreeMap::new());
         comm.route(
-            ways(before.group_owners().values(), plan.group_owners().values()),
+            routes(before.group_owners().values(), plan.group_owners().values()),
             |i| self.slips.remove(&GroupId::new(i)).map(Reals),
             |i, of_group| {
                 slips.extend(of_group.map(|Reals(of_group)| (GroupId::new(i), of_group)));
             },
         );
         comm.route(
-            ways(before.owners().values(), plan.owners().values()),
+            routes(before.owners().values(), plan.owners().values()),
             |i| self.energies.remove(&BlockId::new(i)),
             |i, energy| {
                 energies.extend(energy.map(|energy| (BlockId::new(i), energy)));

@@ -192,10 +192,10 @@ fn scales(comm: &Comm, solution: &ActiveSetSolution, bounds: &OnGroups<Vec<f64>>
     let is_finite = |x: &&f64| x.is_finite();
     let forces = solution.at.values().flat_map(|at| &at.forces);
     let jumps = solution.at.values().flat_map(|at| &at.jumps);
-    let ways = jumps.chain(bounds.values().flatten());
+    let distances = jumps.chain(bounds.values().flatten());
     [
         comm.largest(forces.filter(is_finite)),
-        comm.largest(ways.filter(is_finite)),
+        comm.largest(distances.filter(is_finite)),
     ]
 }
 

@@ -135,10 +135,10 @@ fn go(
     bounds: &[f64],
     open: &mut [bool],
     wrong: &[usize],
-    way: f64,
+    allowed: f64,
 ) -> usize {
-    let is_blocked = way.is_finite();
-    let closes = |j: usize, jumps: &[f64]| part(jumps, found, bounds, open, &[j]) <= way;
+    let is_blocked = allowed.is_finite();
+    let closes = |j: usize, jumps: &[f64]| part(jumps, found, bounds, open, &[j]) <= allowed;
     let changed: Vec<usize> = (wrong.iter().copied())
         .filter(|&j| match is_blocked {
             true => open[j] && closes(j, jumps),
@@ -146,7 +146,7 @@ fn go(
         })
         .collect();
     for j in 0..jumps.len() {
-        jumps[j] += way.min(1.0) * (found[j] - jumps[j]);
+        jumps[j] += allowed.min(1.0) * (found[j] - jumps[j]);
     }
     for &j in &changed {
         open[j] = !open[j];
@@ -216,8 +216,8 @@ mod tests {
                     descent = Some(jumps);
                 }
                 Some(jumps) => {
-                    let way = part(jumps, &found, &bounds, &open, &wrong);
-                    go(jumps, &found, &bounds, &mut open, &wrong, way);
+                    let allowed = part(jumps, &found, &bounds, &open, &wrong);
+                    go(jumps, &found, &bounds, &mut open, &wrong, allowed);
                 }
             }
         }

@@ -77,8 +77,11 @@ fn forms(places: &Places, kind: &str, nodes: Vec<u32>) -> Result<Vec<Form>, Stri
     match kind {
         "BEAM" => {
             too_few(2)?;
-            let way = difference(at(nodes[1]), at(nodes[0]));
-            Ok(vec![vec![(nodes[1], way), (nodes[0], way.map(|c| -c))]])
+            let offset = difference(at(nodes[1]), at(nodes[0]));
+            Ok(vec![vec![
+                (nodes[1], offset),
+                (nodes[0], offset.map(|c| -c)),
+            ]])
         }
         "STRAIGHT" => {
             too_few(3)?;
@@ -108,9 +111,9 @@ fn forms(places: &Places, kind: &str, nodes: Vec<u32>) -> Result<Vec<Form>, Stri
             let others = nodes.iter().filter(|node| !corners.contains(node));
             let in_plane = |&node: &u32| {
                 // Its place by those of the corners.
-                let way = difference(at(node), at(corners[0]));
+                let offset = difference(at(node), at(corners[0]));
                 let part = |a, b| dot(cross(a, b), normal) / dot(normal, normal);
-                let [u, v] = [part(way, t), part(s, way)];
+                let [u, v] = [part(offset, t), part(s, offset)];
                 let weights = [u + v - 1.0, -u, -v];
                 let of_corners = corners.into_iter().zip(weights);
                 let mut form = vec![(node, normal)];
@@ -135,9 +138,9 @@ fn corners(nodes: &[u32], at: impl Fn(u32) -> Vector) -> [u32; 3] {
             .max_by(|&a, &b| size(a).total_cmp(&size(b)))
             .unwrap_or(nodes[0])
     };
-    let way = |node: u32| difference(at(node), at(nodes[0]));
-    let second = farthest(&|node| length(way(node)));
-    let third = farthest(&|node| length(cross(way(second), way(node))));
+    let offset = |node: u32| difference(at(node), at(nodes[0]));
+    let second = farthest(&|node| length(offset(node)));
+    let third = farthest(&|node| length(cross(offset(second), offset(node))));
     [nodes[0], second, third]
 }
 
@@ -160,8 +163,8 @@ fn mean_rotation(at: impl Fn(u32) -> Vector, mut nodes: Vec<u32>) -> Result<Form
     let mut form = Form::new();
     let mut mean = [0.0; 3];
     for &node in &nodes {
-        let way = difference(at(node), middle);
-        let radius = advance(way, -dot(way, axis), axis);
+        let offset = difference(at(node), middle);
+        let radius = advance(offset, -dot(offset, axis), axis);
         let square = dot(radius, radius);
         if square > 0.0 {
             let turn = cross(axis, radius).map(|c| c / square / count);

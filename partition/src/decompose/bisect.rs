@@ -70,8 +70,9 @@ pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
         );
         candidates
     } else {
-        let ways = 1..(1usize << count) - 1;
-        ways.map(|way| (0..count).map(|i| way >> i & 1 == 1).collect())
+        let choices = 1..(1usize << count) - 1;
+        choices
+            .map(|choice| (0..count).map(|i| choice >> i & 1 == 1).collect())
             .collect()
     };
     best(graph, candidates, aim).unwrap_or_else(in_halves)
@@ -226,8 +227,8 @@ fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
     let mean = centres().fold([0.0; 3], |sum, c| [0, 1, 2].map(|k| sum[k] + c[k] / count));
     let mut spread = nalgebra::Matrix3::<f32>::zeros();
     for centre in centres() {
-        let way = nalgebra::Vector3::from_fn(|k, _| centre[k] - mean[k]);
-        spread += way * way.transpose();
+        let choice = nalgebra::Vector3::from_fn(|k, _| centre[k] - mean[k]);
+        spread += choice * choice.transpose();
     }
     let axes = spread.symmetric_eigen().eigenvectors;
     let in_space = axes.column_iter().map(|axis| [axis[0], axis[1], axis[2]]);

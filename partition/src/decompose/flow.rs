@@ -158,9 +158,9 @@ impl Network {
             return false;
         }
         let mut next: Vec<u32> = self.starts[..level.len()].to_vec();
-        let mut way: Vec<u32> = Vec::new();
+        let mut path: Vec<u32> = Vec::new();
         for &source in &queue[..sources] {
-            self.push_from(source as usize, &mut level, &mut next, &mut way);
+            self.push_from(source as usize, &mut level, &mut next, &mut path);
         }
         true
     }
@@ -172,18 +172,18 @@ impl Network {
         source: usize,
         level: &mut [u32],
         next: &mut [u32],
-        way: &mut Vec<u32>,
+        path: &mut Vec<u32>,
     ) {
-        way.clear();
+        path.clear();
         let mut vertex = source;
         while self.supply[source] > 0 {
             if self.demand[vertex] > 0 {
-                let least = way.iter().map(|&a| self.arcs[a as usize].capacity);
+                let least = path.iter().map(|&a| self.arcs[a as usize].capacity);
                 let flow = least.fold(self.supply[source].min(self.demand[vertex]), u32::min);
                 self.supply[source] -= flow;
                 self.demand[vertex] -= flow;
-                let mut full = way.len();
-                for (place, &a) in way.iter().enumerate().rev() {
+                let mut full = path.len();
+                for (place, &a) in path.iter().enumerate().rev() {
                     let reverse = self.arcs[a as usize].reverse as usize;
                     self.arcs[reverse].capacity += flow;
                     self.arcs[a as usize].capacity -= flow;
@@ -191,10 +191,10 @@ impl Network {
                         full = place;
                     }
                 }
-                if let Some(&a) = way.get(full) {
+                if let Some(&a) = path.get(full) {
                     let reverse = self.arcs[a as usize].reverse as usize;
                     vertex = self.arcs[reverse].to as usize;
-                    way.truncate(full);
+                    path.truncate(full);
                 }
                 continue;
             }
@@ -206,13 +206,13 @@ impl Network {
             match leads_on {
                 Some(a) => {
                     next[vertex] = a;
-                    way.push(a);
+                    path.push(a);
                     vertex = self.arcs[a as usize].to as usize;
                 }
                 None => {
                     next[vertex] = end;
                     level[vertex] = FAR;
-                    let Some(a) = way.pop() else { return };
+                    let Some(a) = path.pop() else { return };
                     let reverse = self.arcs[a as usize].reverse as usize;
                     vertex = self.arcs[reverse].to as usize;
                 }

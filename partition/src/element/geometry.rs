@@ -154,8 +154,8 @@ impl ReferenceElement {
     /// nearest to x where there are two. `None` where it passes by, or along it.
     pub fn crossing(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let aside = |p: [f64; 3]| {
-            let way = difference(p, x);
-            direction[0] * way[1] - direction[1] * way[0]
+            let offset = difference(p, x);
+            direction[0] * offset[1] - direction[1] * offset[0]
         };
         match (self.domain(), at) {
             (Domain::Line, &[p, q]) => {
@@ -171,11 +171,11 @@ impl ReferenceElement {
                 let (start, end, middle) = (aside(p), aside(q), aside(m));
                 let (half, slope) = (0.5 * (start + end) - middle, 0.5 * (end - start));
                 let inside = roots(half, slope, middle).filter(|xi| xi.abs() < 1.0);
-                let ways = inside.map(|xi| {
+                let offsets = inside.map(|xi| {
                     let point = self.position(at, [xi, 0.0, 0.0]);
                     dot(difference(point, x), direction)
                 });
-                ways.min_by(|a, b| a.abs().total_cmp(&b.abs()))
+                offsets.min_by(|a, b| a.abs().total_cmp(&b.abs()))
             }
             (Domain::Triangle | Domain::Square, _) => self.crossing_of_face(at, x, direction),
             _ => None,

@@ -80,7 +80,9 @@ impl Cube {
         let corners: Vec<Place> = match kind.domain() {
             // Edges of tetrahedra lead forward along all of their axes.
             Domain::Tetrahedron => {
-                let end = |way: usize| [0, 1, 2].map(|axis| place[axis] + way * (place[axis] % 2));
+                let end = |towards: usize| {
+                    [0, 1, 2].map(|axis| place[axis] + towards * (place[axis] % 2))
+                };
                 let start = [0, 1, 2].map(|axis| place[axis] - place[axis] % 2);
                 vec![start, end(1)]
             }

@@ -89,14 +89,14 @@ fn times_to_clusters(tree: &Tree, dim: usize) -> Numbered<TreeNodeId, f64> {
 /// thirds lie on one way.
 fn speed_up(tree: &Tree, times: &Numbered<TreeNodeId, f64>, coarse: f64) -> f64 {
     let mut all = coarse;
-    let mut ways = tree.nodes.like(0.0f64);
+    let mut paths = tree.nodes.like(0.0f64);
     for (v, &own) in times.each() {
-        let children = tree.nodes[v].children.iter().map(|&child| ways[child]);
-        ways[v] = own + children.fold(0.0, f64::max);
+        let children = tree.nodes[v].children.iter().map(|&child| paths[child]);
+        paths[v] = own + children.fold(0.0, f64::max);
         all += own;
     }
-    let way = ways.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    all / (way + 2.0 / 3.0 * coarse)
+    let longest = paths.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    all / (longest + 2.0 / 3.0 * coarse)
 }
 
 /// `below` has the work of every node with all that is under it.

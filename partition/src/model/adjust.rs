@@ -41,11 +41,13 @@ pub(super) fn adjust(
                 break;
             }
         }
-        let ways = before.iter().zip(&bodies.mesh.points);
-        let ways = ways.map(|(before, after)| length(advance(*after, -1.0, *before)));
-        let (moved, farthest) = ways
-            .filter(|&way| way > 0.0)
-            .fold((0, 0.0), |(n, most), way| (n + 1, f64::max(most, way)));
+        let offsets = before.iter().zip(&bodies.mesh.points);
+        let offsets = offsets.map(|(before, after)| length(advance(*after, -1.0, *before)));
+        let (moved, farthest) = offsets
+            .filter(|&offset| offset > 0.0)
+            .fold((0, 0.0), |(n, most), offset| {
+                (n + 1, f64::max(most, offset))
+            });
         if moved > 0 {
             warnings.push(format!(
                 "{what}: {moved} nodes are moved by up to {} {} onto the other side",
@@ -70,9 +72,9 @@ fn close(positions: &mut [[f64; 3]], points: &[ContactPoint<u32>], nothing: f64)
             let at =
                 |sum, &(node, weight): &(u32, f64)| advance(sum, weight, positions[node as usize]);
             let apart = point.entries.iter().fold([0.0; 3], at);
-            let way = apart.map(|c| -c / weight);
-            farthest = farthest.max(length(way));
-            positions[node as usize] = advance(positions[node as usize], 1.0, way);
+            let offset = apart.map(|c| -c / weight);
+            farthest = farthest.max(length(offset));
+            positions[node as usize] = advance(positions[node as usize], 1.0, offset);
         }
         if farthest <= nothing {
             break;

@@ -51,8 +51,8 @@ pub(super) fn contains(polygon: &[PlanePoint], x: PlanePoint) -> bool {
 pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePoint> {
     let mut inside = polygon.to_vec();
     for (i, &start) in convex.iter().enumerate() {
-        let way = difference(convex[(i + 1) % convex.len()], start);
-        let side = |p: PlanePoint| cross(way, difference(p, start));
+        let offset = difference(convex[(i + 1) % convex.len()], start);
+        let side = |p: PlanePoint| cross(offset, difference(p, start));
         let all = std::mem::take(&mut inside);
         let Some(mut before) = all.last().copied() else {
             break;

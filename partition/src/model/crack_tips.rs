@@ -205,9 +205,9 @@ impl<'a> Outline<'a> {
 
     /// Distance of a node behind a tip along a crack (m) and that from its line over it.
     fn behind(&self, tip: u32, direction: [f64; 3], node: u32) -> (f64, f64) {
-        let way = self.vector(tip, node);
-        let distance = -dot(way, direction);
-        let across = way[1] * direction[0] - way[0] * direction[1];
+        let offset = self.vector(tip, node);
+        let distance = -dot(offset, direction);
+        let across = offset[1] * direction[0] - offset[0] * direction[1];
         (distance, (across / distance).abs())
     }
 

@@ -104,9 +104,9 @@ fn turn_normals(
 /// Gives the point of two nodes another normal, and its gap along it where that is the one of the mesh.
 fn press_along(point: &mut ContactPoint<u32>, normal: [f64; 3], mesh: &Mesh) {
     let place = |at: usize| mesh.points[point.entries[at].0 as usize];
-    let way = difference(place(1), place(0));
-    if (point.gap - dot(way, point.normal())).abs() <= SAME * length(way) {
-        point.gap = dot(way, normal);
+    let offset = difference(place(1), place(0));
+    if (point.gap - dot(offset, point.normal())).abs() <= SAME * length(offset) {
+        point.gap = dot(offset, normal);
     }
     point.frame = LocalFrame::new(normal);
 }

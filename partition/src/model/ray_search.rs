@@ -94,9 +94,9 @@ impl<'a> Target<'a> {
             let faces = dot(facet.normal, direction) <= -FACING;
             let mut at_node = false;
             for (&node, &at) in facet.nodes.iter().zip(&facet.at) {
-                let way = difference(at, start);
-                let ahead = dot(way, direction);
-                if length(advance(way, -ahead, direction)) > slack {
+                let offset = difference(at, start);
+                let ahead = dot(offset, direction);
+                if length(advance(offset, -ahead, direction)) > slack {
                     continue;
                 }
                 at_node = true;

@@ -160,8 +160,8 @@ impl Places {
         };
         let (mut place, mut scale) = ([0.0; 3], 0.0);
         for &(node, weight) in point.entries.iter().filter(on_a) {
-            let way = difference(self.nodes[&node].at, point.position);
-            place = advance(place, weight, way);
+            let offset = difference(self.nodes[&node].at, point.position);
+            place = advance(place, weight, offset);
             scale += weight.abs();
         }
         let force_point = difference(point.force_point, point.position);

@@ -49,7 +49,7 @@ impl FrictionProblem<'_> {
         }
         let mut path = Path::new(self, polygons);
         let most = EXCHANGES + EXCHANGES_EACH * self.contact.bounds.len();
-        let (mut theta, mut way) = (f64::INFINITY, -1.0);
+        let (mut theta, mut sense) = (f64::INFINITY, -1.0);
         let (mut entered, mut still) = (None, 0);
         let often = (self.contact.bounds.len() / 2).max(MOST_UPDATES);
         for pivots in 0..most {
@@ -57,11 +57,11 @@ impl FrictionProblem<'_> {
                 path.refresh();
             }
             if let Some(quantity) = entered {
-                way = path.quantity(quantity)[1].signum();
+                sense = path.quantity(quantity)[1].signum();
             }
-            match path.next(theta, way, entered) {
+            match path.next(theta, sense, entered) {
                 Some((at, _)) if at <= 0.0 => return (Some(path.end()), pivots),
-                None if way < 0.0 => return (Some(path.end()), pivots),
+                None if sense < 0.0 => return (Some(path.end()), pivots),
                 Some((at, quantity)) => {
                     still = if at == theta { still + 1 } else { 0 };
                     if still > STANDS_STILL {

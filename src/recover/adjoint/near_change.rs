@@ -16,14 +16,14 @@ pub fn about_to_change(solved: Solved<'_>) -> Vec<String> {
     let forces = discrete.groups.values().flat_map(|of| &of.forces);
     let force = NEAR * context.comm.largest(forces);
     let displacements = discrete.blocks.values().flat_map(|of| &of.u);
-    let way = NEAR * context.comm.largest(displacements);
+    let distance = NEAR * context.comm.largest(displacements);
     let plan = context.plan;
     let mut names = Vec::new();
     let mut more = 0;
     context.comm.gather(
         &plan.group_owners(),
         |g| match discrete.groups.get(&g) {
-            Some(of_group) => near(&context.groups[&g], of_group, (force, way)),
+            Some(of_group) => near(&context.groups[&g], of_group, (force, distance)),
             None => Vec::new(),
         },
         |g, near: Vec<usize>| {
@@ -43,12 +43,16 @@ pub fn about_to_change(solved: Solved<'_>) -> Vec<String> {
 }
 
 /// The points of a group of which a force or a way is less than these sizes, or friction as near to its bound.
-fn near(group: &ContactGroup, solution: &GroupSolution, (force, way): (f64, f64)) -> Vec<usize> {
+fn near(
+    group: &ContactGroup,
+    solution: &GroupSolution,
+    (force, distance): (f64, f64),
+) -> Vec<usize> {
     let unilateral = group.points.iter().enumerate();
     let unilateral = unilateral.filter(|(_, point)| !point.law.is_tied());
     let vanishes = |j: usize| match solution.closed[j] {
         true => solution.forces[j] <= force,
-        false => solution.gaps[j] <= way,
+        false => solution.gaps[j] <= distance,
     };
     let mut near: Vec<usize> = unilateral
         .map(|(j, _)| j)
@@ -59,7 +63,7 @@ fn near(group: &ContactGroup, solution: &GroupSolution, (force, way): (f64, f64)
         let sticks = law.limits().all(|j| solution.closed[j]);
         let is_near = match sticks {
             true => here.bound - here.size() <= force,
-            false => here.way() <= way,
+            false => here.distance() <= distance,
         };
         // Without a bound nothing acts along the tangents, whatever sticks or slips.
         near.extend(law.normal.filter(|_| is_near && here.bound > force));

@@ -37,7 +37,7 @@ impl SlippingPoints {
         let mut all = Vec::new();
         for law in group.point_laws() {
             let here = solution.point(&law);
-            let (size, way) = (here.size(), here.way());
+            let (size, distance) = (here.size(), here.distance());
             let open = law.limits().filter(|&j| !solution.closed[j]);
             let tangents = open.map(|j| (j, solution.forces[j] / size));
             let tangents: Vec<(usize, f64)> = tangents.collect();
@@ -48,8 +48,8 @@ impl SlippingPoints {
                 normal,
                 is_closed: law.is_closed(&solution.closed),
                 coefficient: law.bound.coefficient,
-                turning: match tangents.len() > 1 && way > 0.0 {
-                    true => size / way,
+                turning: match tangents.len() > 1 && distance > 0.0 {
+                    true => size / distance,
                     false => 0.0,
                 },
                 tangents,

@@ -26,9 +26,9 @@ impl ActiveSetFronts {
                 .extend(condensed.map(|top| (v, top.into())));
             return;
         };
-        let way = (plan.node_owners[v], plan.node_owners[parent]);
+        let route = (plan.node_owners[v], plan.node_owners[parent]);
         comm.route(
-            [way],
+            [route],
             |_| condensed.take(),
             |_, arrived| {
                 self.merged.extend(arrived.map(|condensed| (v, condensed)));

@@ -303,7 +303,7 @@ impl Deck {
             points.fold([0.0; 3], |sum, x| advance(sum, 1.0 / nodes.len() as f64, x))
         };
         let faces = self.surfaces.get(surface).map(|set| set.members.list());
-        let way = |face: &Face| {
+        let direction = |face: &Face| {
             let Face::Of(element, number) = *face else {
                 return None;
             };
@@ -318,8 +318,8 @@ impl Deck {
                 middle(&nodes[..kind.corners()]),
             ))
         };
-        let ways = faces.into_iter().flatten().filter_map(way);
-        ways.fold([0.0; 3], |sum, way| advance(sum, 1.0, way))
+        let directions = faces.into_iter().flatten().filter_map(direction);
+        directions.fold([0.0; 3], |sum, direction| advance(sum, 1.0, direction))
     }
 
     /// Gives the element that was appended last its tag, and says whether it is a side, and whether it has incompatible

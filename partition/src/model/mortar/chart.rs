@@ -122,8 +122,8 @@ impl Chart {
 
     /// Coordinates in the plane across the normal.
     fn flat(&self, x: [f64; 3]) -> PlanePoint {
-        let way = difference(x, self.origin);
-        self.frame.tangents.map(|t| dot(t, way))
+        let offset = difference(x, self.origin);
+        self.frame.tangents.map(|t| dot(t, offset))
     }
 
     /// ξ of a point of the plane, by Newton's method from `near`. Beyond its edges the facet goes on straight.
@@ -149,8 +149,8 @@ impl Chart {
 
 /// The distance of x from the line through p and q.
 pub(super) fn aside(p: PlanePoint, q: PlanePoint, x: PlanePoint) -> f64 {
-    let (way, to) = ([q[0] - p[0], q[1] - p[1]], [x[0] - p[0], x[1] - p[1]]);
-    (way[0] * to[1] - way[1] * to[0]).abs() / way[0].hypot(way[1])
+    let (offset, to) = ([q[0] - p[0], q[1] - p[1]], [x[0] - p[0], x[1] - p[1]]);
+    (offset[0] * to[1] - offset[1] * to[0]).abs() / offset[0].hypot(offset[1])
 }
 
 /// The point of a facet nearest to ξ, more or less.

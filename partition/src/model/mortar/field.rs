@@ -58,10 +58,13 @@ impl<'a> NormalField<'a> {
     pub fn aside(&self, xi: f64, x: [f64; 3]) -> [f64; 2] {
         let SurfaceFacet { kind, at, .. } = self.facet;
         let normal = kind.position(&self.normals, [xi, 0.0, 0.0]);
-        let way = difference(x, self.position([xi, 0.0, 0.0]));
+        let offset = difference(x, self.position([xi, 0.0, 0.0]));
         let turn = slope(*kind, &self.normals, xi);
         let step = slope(*kind, at, xi);
-        [cross(normal, way), cross(turn, way) - cross(normal, step)]
+        [
+            cross(normal, offset),
+            cross(turn, offset) - cross(normal, step),
+        ]
     }
 }
 

@@ -37,10 +37,10 @@ pub(super) fn foot(facet: &Map, [x, normal]: [[f64; 3]; 2], start: Xi) -> Option
     let tangents = LocalFrame::new(normal).tangents;
     let mut eta = start;
     for _ in 0..STEPS {
-        let way = difference(facet.at(eta), x);
+        let offset = difference(facet.at(eta), x);
         let slopes = facet.slopes(eta);
         let j = tangents.map(|t| slopes.map(|slope| dot(t, slope)));
-        let step = solve(j, tangents.map(|t| -dot(t, way)));
+        let step = solve(j, tangents.map(|t| -dot(t, offset)));
         eta = [eta[0] + step[0], eta[1] + step[1]];
         if step[0].abs().max(step[1].abs()) <= ROUND_OFF {
             return Some((eta, dot(difference(facet.at(eta), x), normal)));

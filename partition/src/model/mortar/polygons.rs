@@ -94,9 +94,9 @@ fn candidates(opposite: &Opposite, field: &NormalField, chart: &Chart) -> Vec<us
     let mut candidates = opposite.target.facets(|low, high| {
         let center = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let size = 0.5 * length(difference(high, low));
-        let way = difference(center, start);
-        let along = dot(way, axis);
-        let across = (dot(way, way) - along * along).max(0.0).sqrt();
+        let offset = difference(center, start);
+        let along = dot(offset, axis);
+        let across = (dot(offset, offset) - along * along).max(0.0).sqrt();
         across <= radius + size + spread * (along.abs() + size)
     });
     candidates.sort_unstable();

@@ -38,8 +38,8 @@ pub(in crate::model) fn opposite(
     let (opposite, gap) = match hit {
         Hit::Nodes(nodes) => {
             let node = *nodes.first()?;
-            let way = difference(mesh.points[node as usize], of.position);
-            (vec![(node, -1.0)], dot(way, of.normal))
+            let offset = difference(mesh.points[node as usize], of.position);
+            (vec![(node, -1.0)], dot(offset, of.normal))
         }
         Hit::Facet(facet) => {
             let facet = &side.facets[facet];

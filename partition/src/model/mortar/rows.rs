@@ -156,11 +156,11 @@ impl Row {
         } else {
             self.area.sqrt()
         };
-        let way = |node: u32| difference(mesh.points[node as usize], a.position);
+        let offset = |node: u32| difference(mesh.points[node as usize], a.position);
         // Each node takes part as it does already.
         let before = self.side_b.clone();
         for axis in self.axes(a, normal, mesh) {
-            let place = |node: u32| dot(axis, way(node)) / size;
+            let place = |node: u32| dot(axis, offset(node)) / size;
             let moment =
                 |terms: &[(u32, f64)]| terms.iter().map(|&(n, c)| c * place(n)).sum::<f64>();
             let defect = moment(&self.side_a) - moment(&before);
@@ -184,8 +184,8 @@ impl Row {
             return vec![t_1];
         }
         let flat = |node: u32| {
-            let way = difference(mesh.points[node as usize], a.position);
-            [dot(t_1, way), dot(t_2, way)]
+            let offset = difference(mesh.points[node as usize], a.position);
+            [dot(t_1, offset), dot(t_2, offset)]
         };
         let total: f64 = self.side_b.iter().map(|(_, c)| c.abs()).sum();
         let parts = || self.side_b.iter().map(|&(n, c)| (c.abs() / total, flat(n)));
@@ -208,8 +208,8 @@ impl Row {
     /// Point at which the force on side a acts: beside node `a` where others hand over to it.
     fn force_point(&self, a: &SideNode, mesh: &Mesh) -> [f64; 3] {
         (self.side_a.iter()).fold(a.position, |at, &(node, value)| {
-            let way = difference(mesh.points[node as usize], a.position);
-            advance(at, value / self.area, way)
+            let offset = difference(mesh.points[node as usize], a.position);
+            advance(at, value / self.area, offset)
         })
     }
 

@@ -102,8 +102,8 @@ impl<'a> View<'a> {
     fn thickness(&self, facet: &SkinFacet) -> f64 {
         let nodes = self.mesh.cells.nodes_of(facet.place.cell as usize).iter();
         let depth = |&node: &u32| {
-            let way = difference(facet.shape.at[0], self.mesh.points[node as usize]);
-            dot(way, facet.shape.normal)
+            let offset = difference(facet.shape.at[0], self.mesh.points[node as usize]);
+            dot(offset, facet.shape.normal)
         };
         nodes.map(depth).fold(0.0, f64::max)
     }
@@ -113,8 +113,8 @@ impl<'a> View<'a> {
         let corners = shape.at.iter().take(shape.kind.corners());
         let mut flat: Vec<PlanePoint> = corners
             .map(|&x| {
-                let way = difference(x, self.facet.shape.at[0]);
-                self.frame.tangents.map(|t| dot(t, way))
+                let offset = difference(x, self.facet.shape.at[0]);
+                self.frame.tangents.map(|t| dot(t, offset))
             })
             .collect();
         if let ([p, q], true) = (&flat[..], self.width > 0.0) {
@@ -142,7 +142,7 @@ impl<'a> View<'a> {
         let beyond = || {
             let is_curved = shape.kind.dim() > 1 && !shape.kind.is_linear();
             let foot = is_curved.then(|| foot_on(shape, [x, normal])).flatten();
-            foot.map(|(_, way)| way)
+            foot.map(|(_, offset)| offset)
         };
         crossing.or_else(beyond).unwrap_or_else(|| {
             let to_plane = dot(difference(shape.at[0], x), shape.normal);

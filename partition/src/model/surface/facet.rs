@@ -145,8 +145,8 @@ impl SurfaceFacet {
     /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
     fn aside(&self, node: u32, normal: [f64; 3]) -> Option<[f64; 3]> {
         let from = self.nodes.iter().position(|&n| n == node)?;
-        let way = advance(self.middle(), -1.0, self.at[from]);
-        Some(advance(way, -dot(way, normal), normal))
+        let offset = advance(self.middle(), -1.0, self.at[from]);
+        Some(advance(offset, -dot(offset, normal), normal))
     }
 
     /// The edges of a face at its corner `node`, across `normal`.
@@ -157,8 +157,8 @@ impl SurfaceFacet {
         }
         let edges = self.kind.edges_at(corner);
         let edge = |&(end, _): &(usize, Option<usize>)| {
-            let way = advance(self.at[end], -1.0, self.at[corner]);
-            advance(way, -dot(way, normal), normal)
+            let offset = advance(self.at[end], -1.0, self.at[corner]);
+            advance(offset, -dot(offset, normal), normal)
         };
         Some([edge(edges.first()?), edge(edges.get(1)?)])
     }

@@ -22,7 +22,7 @@ use crate::contact::laws::{Iterate, Statuses};
 struct Equation {
     forces: Vec<(usize, f64)>,
     /// Overshoots of bounds and their factors.
-    ways: Vec<(usize, f64)>,
+    jumps: Vec<(usize, f64)>,
     constant: f64,
     /// Divisor of the row, and the stiffness of the spring that keeps it regular.
     scale: f64,
@@ -47,11 +47,11 @@ impl FrictionCones<'_> {
         let left: Vec<f64> = (equations.iter().flatten())
             .map(|equation| {
                 let forces = equation.forces.iter().map(|&(i, c)| c * start.forces[i]);
-                let ways = equation
-                    .ways
+                let jumps = equation
+                    .jumps
                     .iter()
                     .map(|&(i, c)| c * self.laws.beyond(i, &start));
-                (equation.constant - forces.sum::<f64>() - ways.sum::<f64>()) / equation.scale
+                (equation.constant - forces.sum::<f64>() - jumps.sum::<f64>()) / equation.scale
             })
             .collect();
         // Round-off mustn't drive balanced motions without resistance.
@@ -83,7 +83,7 @@ impl FrictionCones<'_> {
             for i in point.limits() {
                 equations[i] = match (act, i < m) {
                     (PointStatus::Open, true) => Some(self.force_is(i)),
-                    (PointStatus::Sticks, false) => Some(self.way_is_none(i)),
+                    (PointStatus::Sticks, false) => Some(self.overshoot_is_zero(i)),
                     _ => None,
                 };
             }
@@ -95,7 +95,7 @@ impl FrictionCones<'_> {
                     }
                     _ => Some(Equation {
                         forces: law.forces,
-                        ways: law.slips,
+                        jumps: law.slips,
                         constant: law.constant,
                         spring: if law.limit < m { SPRING } else { 0.0 },
                         ..self.force_is(law.limit)
@@ -111,7 +111,7 @@ impl FrictionCones<'_> {
         let of_jump = i < self.contact.c.len();
         match (of_jump, closed) {
             (true, false) => Some(self.force_is(i)),
-            (false, true) => Some(self.way_is_none(i)),
+            (false, true) => Some(self.overshoot_is_zero(i)),
             _ => None,
         }
     }
@@ -126,9 +126,9 @@ impl FrictionCones<'_> {
         }
     }
 
-    fn way_is_none(&self, i: usize) -> Equation {
+    fn overshoot_is_zero(&self, i: usize) -> Equation {
         Equation {
-            ways: vec![(i, 1.0)],
+            jumps: vec![(i, 1.0)],
             scale: 1.0 / self.laws.stiffness[i].sqrt(),
             spring: -YIELD,
             ..Equation::default()
@@ -145,7 +145,7 @@ impl FrictionCones<'_> {
             let weight = self.laws.stiffness[first] / (self.laws.stiffness[first] + across);
             let normal = [(first, -weight * e[1]), (second, weight * e[0])];
             equation.forces = normal.to_vec();
-            equation.ways = normal.map(|(i, c)| (i, -across * c)).to_vec();
+            equation.jumps = normal.map(|(i, c)| (i, -across * c)).to_vec();
         }
         equation
     }
@@ -223,7 +223,7 @@ impl FrictionCones<'_> {
                     a[(k, own)] += factor;
                 }
             }
-            for &(i, factor) in &equation.ways {
+            for &(i, factor) in &equation.jumps {
                 let one = [(i, 1.0)];
                 let row = if i < m {
                     &one[..]

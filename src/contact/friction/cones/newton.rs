@@ -127,17 +127,17 @@ impl FrictionCones<'_> {
                 viscosity = (4.0 * viscosity).min(strongest);
                 continue;
             }
-            let ways = found.place.jumps.iter().zip(&place.jumps);
-            let ways: Vec<f64> = ways.map(|(to, from)| to - from).collect();
-            let way = largest(&ways);
-            if viscosity <= weakest && way > SLOWER * last {
+            let changes = found.place.jumps.iter().zip(&place.jumps);
+            let changes: Vec<f64> = changes.map(|(to, from)| to - from).collect();
+            let change = largest(&changes);
+            if viscosity <= weakest && change > SLOWER * last {
                 sliding += 1;
-                if sliding >= PATIENCE && self.slides_on(&found, &ways) {
+                if sliding >= PATIENCE && self.slides_on(&found, &changes) {
                     return Rest::Slides;
                 }
             }
-            let slows = way < last;
-            last = way;
+            let slows = change < last;
+            last = change;
             viscosity = (0.25 * viscosity).max(weakest);
             let of_rows = found.place.forces[self.contact.c.len()..].to_vec();
             place = self.place(found.place.jumps, of_rows);
@@ -156,15 +156,15 @@ impl FrictionCones<'_> {
 
     /// True if bodies slide without end along this motion of jumps: the bodies don't resist, no open limit closes, and
     /// loads do more work than all contacts dissipate, under their present pressure and with friction at its bound.
-    fn slides_on(&self, found: &Found, ways: &[f64]) -> bool {
+    fn slides_on(&self, found: &Found, changes: &[f64]) -> bool {
         let Found { place, state, .. } = found;
-        if self.resists(ways) > NO_RESISTANCE {
+        if self.resists(changes) > NO_RESISTANCE {
             return false;
         }
-        let along = |row: &[(usize, f64)]| row.iter().map(|&(i, c)| c * ways[i]).sum::<f64>();
+        let along = |row: &[(usize, f64)]| row.iter().map(|&(i, c)| c * changes[i]).sum::<f64>();
         let rows = self.contact.rows.iter().map(along);
-        let all: Vec<f64> = ways.iter().copied().chain(rows).collect();
-        let far = largest(ways);
+        let all: Vec<f64> = changes.iter().copied().chain(rows).collect();
+        let far = largest(changes);
         let [mut taken, mut closes] = [0.0; 2];
         for i in (0..all.len()).filter(|&i| !self.laws.is_tangential[i]) {
             match state.closed[i] {
@@ -176,21 +176,21 @@ impl FrictionCones<'_> {
             let [along, across] = point.tangents.map(|i| i.map_or(0.0, |i| all[i]));
             taken += self.laws.point(point, place, &state.closed).bound * along.hypot(across);
         }
-        let work = dot(self.contact.c, ways);
-        let terms = self.contact.c.iter().zip(ways);
-        let terms: f64 = terms.map(|(c, way)| (c * way).abs()).sum();
+        let work = dot(self.contact.c, changes);
+        let terms = self.contact.c.iter().zip(changes);
+        let terms: f64 = terms.map(|(c, change)| (c * change).abs()).sum();
         closes <= STAYS_OPEN * far && work - taken > SURPLUS * (terms + taken)
     }
 
     /// Resistance of the bodies to a motion of jumps, relative to springs as stiff as they are.
-    fn resists(&self, ways: &[f64]) -> f64 {
-        let mut forces = vec![0.0; ways.len()];
-        self.contact.subtract(ways, &mut forces);
-        let springs = ways
+    fn resists(&self, changes: &[f64]) -> f64 {
+        let mut forces = vec![0.0; changes.len()];
+        self.contact.subtract(changes, &mut forces);
+        let springs = changes
             .iter()
             .zip(&self.laws.stiffness)
-            .map(|(way, r)| r * way * way);
-        -dot(ways, &forces) / springs.sum::<f64>()
+            .map(|(change, r)| r * change * change);
+        -dot(changes, &forces) / springs.sum::<f64>()
     }
 
     /// Solution with a viscous resistance of every jump to leaving its present value.

@@ -30,7 +30,7 @@ const SPRING: f64 = 1e-10;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Quantity {
     /// Gap of a limit, or its slip.
-    Way(usize),
+    Gap(usize),
     /// Normal force of a limit, with the part of θ.
     Force(usize),
     /// Missing part of the bound of a tangential force along the normal of a side; `steep` for the steep one of two
@@ -136,7 +136,7 @@ impl Path {
             start,
             at_start,
             independent: m,
-            zero: (0..count).map(Quantity::Way).collect(),
+            zero: (0..count).map(Quantity::Gap).collect(),
             bounds,
             added: (0..count)
                 .map(|i| unit * spread(i, polygons.attempt))
@@ -187,7 +187,7 @@ impl Path {
         let count = self.bounds.len();
         let none = (0, 0.0);
         match quantity {
-            Quantity::Way(i) => ([(i, -1.0), none, none], [self.bounds[i], 0.0]),
+            Quantity::Gap(i) => ([(i, -1.0), none, none], [self.bounds[i], 0.0]),
             Quantity::Force(i) => {
                 let own = (count + i, 1.0);
                 ([own, none, none], [0.0, self.added[i]])
@@ -242,7 +242,7 @@ impl Path {
         // Known jumps, and the quantity of each.
         let known: Vec<(usize, usize)> = (self.zero.iter().enumerate())
             .filter_map(|(k, zero)| match *zero {
-                Quantity::Way(i) if i < self.independent => Some((k, i)),
+                Quantity::Gap(i) if i < self.independent => Some((k, i)),
                 _ => None,
             })
             .collect();
@@ -312,7 +312,7 @@ impl Path {
     /// The quantities that may not be negative.
     fn bounded(&self) -> Vec<Quantity> {
         let of_normal = |&i: &usize| match self.is_open(i) {
-            true => Quantity::Way(i),
+            true => Quantity::Gap(i),
             false => Quantity::Force(i),
         };
         let mut bounded: Vec<Quantity> = self.normals.iter().map(of_normal).collect();
@@ -325,23 +325,23 @@ impl Path {
     pub(super) fn next(
         &self,
         theta: f64,
-        way: f64,
+        sense: f64,
         left: Option<Quantity>,
     ) -> Option<(f64, Quantity)> {
         let mut nearest: Option<(f64, Quantity)> = None;
         for quantity in self.bounded() {
             let [value, slope] = self.quantity(quantity);
-            if slope * way >= 0.0 || slope.is_nan() || left == Some(quantity) {
+            if slope * sense >= 0.0 || slope.is_nan() || left == Some(quantity) {
                 continue;
             }
             // Round-off mustn't reverse the direction.
             let at = -value / slope;
-            let at = if way > 0.0 {
+            let at = if sense > 0.0 {
                 at.max(theta)
             } else {
                 at.min(theta)
             };
-            if nearest.is_none_or(|(nearest, _)| (at - nearest) * way < 0.0) {
+            if nearest.is_none_or(|(nearest, _)| (at - nearest) * sense < 0.0) {
                 nearest = Some((at, quantity));
             }
         }
@@ -351,7 +351,7 @@ impl Path {
     /// Changes a status at a `quantity` that has become 0; returns the one that is free now.
     pub(super) fn pivot(&mut self, theta: f64, quantity: Quantity) -> Quantity {
         match quantity {
-            Quantity::Way(n) | Quantity::Force(n) => {
+            Quantity::Gap(n) | Quantity::Force(n) => {
                 let was = self.zero[n];
                 for point in self.of_normal[n].clone() {
                     self.turn(theta, point, quantity);

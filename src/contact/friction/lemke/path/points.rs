@@ -145,7 +145,7 @@ impl Path {
             }
             SlipPart::Along(side) | SlipPart::Across(side) => {
                 let limits = self.points[point].limits();
-                (side, limits.map(Quantity::Way).collect())
+                (side, limits.map(Quantity::Gap).collect())
             }
         };
         self.arrange(point, &wanted);
