@@ -10,6 +10,7 @@ mod between;
 mod classes;
 mod closed;
 pub mod cluster_schur;
+mod cluster_unknowns;
 mod coarse;
 mod conjugate_gradients;
 mod constraints;
@@ -32,6 +33,7 @@ use self::between::{Between, between};
 use self::classes::{Class, Classes};
 use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
+use self::cluster_unknowns::ClusterUnknowns;
 use self::coarse::{Coarse, Part};
 use self::constraints::{Mechanism, Side};
 use self::local::{Local, Shared};
@@ -51,7 +53,7 @@ pub struct Bddc {
     /// The owner of every cluster.
     owners: Numbered<MergeRootId, usize>,
     /// Their unknowns, on all ranks.
-    dofs: Numbered<MergeRootId, Vec<InterfaceDof>>,
+    unknowns: ClusterUnknowns,
     /// The contact groups between clusters.
     between: Vec<Between>,
     /// The contact groups of this rank, by number.
@@ -104,7 +106,7 @@ impl Bddc {
             level: PreconditionerLevel::first(context.catalog.dim),
             between,
             owners,
-            dofs,
+            unknowns: ClusterUnknowns::new(dofs),
             groups,
             ties: Ties::default(),
             classes: Classes::default(),
@@ -259,14 +261,16 @@ impl Bddc {
     ) -> (Classes, Numbered<MergeRootId, bool>) {
         let Context { comm, plan, .. } = *context;
         let ties = self.ties(comm);
-        let classes = Classes::new(&self.dofs, &ties);
-        let shares_the_same = |c: MergeRootId| {
-            let mut dofs = self.dofs[c].iter();
-            classes.are_as_in(&self.classes, c) && dofs.all(|dof| ties.is_as_in(&self.ties, dof))
-        };
+        let classes = Classes::new(&self.unknowns, &ties);
+        let mut is_retied = self.stale.like(false);
+        for dof in ties.differences(&self.ties) {
+            (self.unknowns.clusters_of(dof)).for_each(|c| is_retied[c] = true);
+        }
+        let shares_the_same = |c: MergeRootId| !is_retied[c] && classes.are_as_in(&self.classes, c);
         let is_touched = |c: MergeRootId| self.stale[c] || touched[plan.merge_roots[c]];
         let is_changed = |c: MergeRootId| !shares_the_same(c) || renewed && is_touched(c);
-        let changed: Numbered<MergeRootId, bool> = self.dofs.ids().map(is_changed).collect();
+        let changed: Numbered<MergeRootId, bool> =
+            self.unknowns.dofs.ids().map(is_changed).collect();
         self.stale = (changed.ids())
             .map(|c| !changed[c] && is_touched(c))
             .collect();

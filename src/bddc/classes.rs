@@ -10,6 +10,7 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use crate::bddc::closed::Ties;
+use crate::bddc::cluster_unknowns::ClusterUnknowns;
 use crate::schur::condensed::InterfaceDof;
 
 /// Most unknowns of a class all of which are coarse ones.
@@ -103,24 +104,10 @@ impl Classes {
         self.list.iter().map(home).collect()
     }
 
-    /// The classes of clusters that have these `dofs`, with closed contact conditions that tie some to others.
-    pub fn new(dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>, ties: &Ties) -> Self {
-        let mut ends: Vec<(InterfaceDof, MergeRootId)> = Vec::new();
-        for (c, list) in dofs.each() {
-            for dof in list {
-                match ties.tied(dof) {
-                    Some(terms) => ends.extend(terms.iter().map(|(dof, _)| (*dof, c))),
-                    None => ends.push((*dof, c)),
-                }
-            }
-        }
-        ends.sort_unstable();
-        ends.dedup();
-        let mut of: BTreeMap<Vec<MergeRootId>, Vec<InterfaceDof>> = BTreeMap::new();
-        for of_dof in ends.chunk_by(|a, b| a.0 == b.0) {
-            let clusters: Vec<MergeRootId> = of_dof.iter().map(|(_, c)| *c).collect();
-            of.entry(clusters).or_default().push(of_dof[0].0);
-        }
+    /// The classes of clusters that have these unknowns, with closed contact conditions that tie some to others.
+    pub fn new(unknowns: &ClusterUnknowns, ties: &Ties) -> Self {
+        let dofs = &unknowns.dofs;
+        let (of, partial) = unknowns.by_clusters_under(ties);
         let mut classes = Self {
             list: Vec::new(),
             of_clusters: dofs.like(Vec::new()),
@@ -134,12 +121,8 @@ impl Classes {
             for &c in &clusters {
                 classes.of_clusters[c].push(classes.list.len());
             }
-            let has = |dof: &InterfaceDof| {
-                let mut clusters = clusters.iter();
-                clusters.all(|&c| dofs[c].binary_search(dof).is_ok())
-            };
             let mut class = Class {
-                is_partial: !of_class.iter().all(has),
+                is_partial: partial.contains(&clusters),
                 clusters,
                 dofs: of_class,
                 turned: None,

@@ -164,14 +164,19 @@ impl Ties {
         joined
     }
 
+    /// The tied unknowns, ascending, and the terms in their places.
+    pub fn tied(&self) -> impl Iterator<Item = (&InterfaceDof, &Terms)> {
+        self.resolved.iter()
+    }
+
     /// The terms in the place of an unknown that is tied.
-    pub fn tied(&self, dof: &InterfaceDof) -> Option<&Terms> {
+    pub fn terms_of(&self, dof: &InterfaceDof) -> Option<&Terms> {
         self.resolved.get(dof)
     }
 
     /// The terms in the place of an unknown: itself where it isn't tied.
     pub fn terms(&self, dof: &InterfaceDof) -> Terms {
-        let terms = self.tied(dof);
+        let terms = self.terms_of(dof);
         terms.cloned().unwrap_or_else(|| vec![(*dof, 1.0)])
     }
 
@@ -197,8 +202,10 @@ impl Ties {
         }
     }
 
-    /// True if an unknown is tied as in others.
-    pub fn is_as_in(&self, others: &Self, dof: &InterfaceDof) -> bool {
-        self.resolved.get(dof) == others.resolved.get(dof)
+    /// The unknowns that aren't tied as in `others`.
+    pub fn differences<'a>(&'a self, others: &'a Self) -> impl Iterator<Item = InterfaceDof> + 'a {
+        let differs = |dof: &&InterfaceDof| self.resolved.get(dof) != others.resolved.get(dof);
+        let all = self.resolved.keys().chain(others.resolved.keys());
+        all.filter(differs).copied()
     }
 }

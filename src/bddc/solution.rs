@@ -119,7 +119,7 @@ impl Bddc {
 
     /// The `constants` on the unknowns of a cluster.
     fn constants_of(&self, c: MergeRootId, constants: &BTreeMap<InterfaceDof, f64>) -> Vec<f64> {
-        let dofs = self.dofs[c].iter();
+        let dofs = self.unknowns.dofs[c].iter();
         dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
             .collect()
     }
@@ -184,7 +184,7 @@ impl Bddc {
                 let (k, c) = ends[i];
                 let of_cluster = &known[&plan.merge_roots[c]];
                 let dofs = classes[k].dofs.iter();
-                let at = dofs.map(|dof| self.dofs[c].binary_search(dof).ok());
+                let at = dofs.map(|dof| self.unknowns.dofs[c].binary_search(dof).ok());
                 at.map(|at| at.map(|at| of_cluster[at])).collect::<Vec<_>>()
             },
             |i, said| {
@@ -224,8 +224,9 @@ impl Bddc {
             |i, of_group| {
                 let clusters = &self.between[i].clusters;
                 loads.extend(of_group.into_iter().filter_map(|(dof, load)| {
-                    let place =
-                        |&c: &MergeRootId| Some((c, self.dofs[c].binary_search(&dof).ok()?));
+                    let place = |&c: &MergeRootId| {
+                        Some((c, self.unknowns.dofs[c].binary_search(&dof).ok()?))
+                    };
                     let (c, place) = clusters.iter().find_map(place)?;
                     Some((c, place, load))
                 }));
@@ -260,7 +261,7 @@ impl Bddc {
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();
         let forces = self.locals.keys().map(|&c| {
-            let at = self.dofs[c]
+            let at = self.unknowns.dofs[c]
                 .iter()
                 .copied()
                 .zip(unbalanced[&c].iter().copied());
@@ -277,7 +278,7 @@ impl Bddc {
             |route| {
                 let (i, c) = routes[route];
                 let said = self.between[i].dofs.iter().map(|dof| {
-                    let at = self.dofs[c].binary_search(dof).ok();
+                    let at = self.unknowns.dofs[c].binary_search(dof).ok();
                     (at.map(|at| clusters[&c][at]), forces[&c].get(dof).copied())
                 });
                 said.collect::<Vec<_>>()

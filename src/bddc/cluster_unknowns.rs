@@ -1,0 +1,102 @@
+//! The unknowns of all clusters, by the clusters that have them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use contact_dd_partition::id::MergeRootId;
+use contact_dd_partition::numbered::Numbered;
+
+use crate::bddc::closed::Ties;
+use crate::schur::condensed::InterfaceDof;
+
+/// Unknowns, ascending, by the clusters that have them.
+type ByClusters = BTreeMap<Vec<MergeRootId>, Vec<InterfaceDof>>;
+
+/// The unknowns of all clusters, on every rank; sorted once, as active sets change the clusters of few of them.
+#[derive(Debug)]
+pub struct ClusterUnknowns {
+    /// The unknowns of every cluster, ascending.
+    pub dofs: Numbered<MergeRootId, Vec<InterfaceDof>>,
+    /// Every unknown with every cluster that has it, ascending.
+    ends: Vec<(InterfaceDof, MergeRootId)>,
+    /// All of them, where nothing is tied.
+    by_clusters: ByClusters,
+}
+
+impl ClusterUnknowns {
+    /// The unknowns of clusters that have these `dofs`.
+    pub fn new(dofs: Numbered<MergeRootId, Vec<InterfaceDof>>) -> Self {
+        let of_cluster = |(c, list): (MergeRootId, &Vec<InterfaceDof>)| {
+            let ends: Vec<_> = list.iter().map(|&dof| (dof, c)).collect();
+            ends
+        };
+        let mut ends: Vec<(InterfaceDof, MergeRootId)> = dofs.each().flat_map(of_cluster).collect();
+        ends.sort_unstable();
+        let mut by_clusters = ByClusters::new();
+        for of_dof in ends.chunk_by(|a, b| a.0 == b.0) {
+            let clusters = of_dof.iter().map(|&(_, c)| c).collect();
+            by_clusters.entry(clusters).or_default().push(of_dof[0].0);
+        }
+        Self {
+            dofs,
+            ends,
+            by_clusters,
+        }
+    }
+
+    /// The clusters that have an unknown, ascending.
+    pub fn clusters_of(&self, dof: InterfaceDof) -> impl Iterator<Item = MergeRootId> + '_ {
+        let first = self.ends.partition_point(|end| end.0 < dof);
+        let of_dof = self.ends[first..]
+            .iter()
+            .take_while(move |end| end.0 == dof);
+        of_dof.map(|&(_, c)| c)
+    }
+
+    /// The unknowns that are left where `ties` put others in the place of some, by the clusters that have them then; and the
+    /// clusters of unknowns that one of them had not before.
+    pub fn by_clusters_under(&self, ties: &Ties) -> (ByClusters, BTreeSet<Vec<MergeRootId>>) {
+        let mut after: BTreeMap<InterfaceDof, BTreeSet<MergeRootId>> = BTreeMap::new();
+        for (&dof, terms) in ties.tied() {
+            after.entry(dof).or_default();
+            for &(staying, _) in terms {
+                let clusters =
+                    after
+                        .entry(staying)
+                        .or_insert_with(|| match ties.terms_of(&staying) {
+                            Some(_) => BTreeSet::new(),
+                            None => self.clusters_of(staying).collect(),
+                        });
+                clusters.extend(self.clusters_of(dof));
+            }
+        }
+        let (mut all, mut partial) = (self.by_clusters.clone(), BTreeSet::new());
+        let mut changed: BTreeSet<Vec<MergeRootId>> = BTreeSet::new();
+        for (&dof, clusters) in &after {
+            let before: Vec<MergeRootId> = self.clusters_of(dof).collect();
+            if clusters.iter().eq(&before) {
+                continue;
+            }
+            if let Some(of_class) = all.get_mut(&before) {
+                of_class.retain(|other| *other != dof);
+                changed.insert(before.clone());
+            }
+            let clusters: Vec<MergeRootId> = clusters.iter().copied().collect();
+            if clusters.is_empty() {
+                continue;
+            }
+            if clusters.iter().any(|c| before.binary_search(c).is_err()) {
+                partial.insert(clusters.clone());
+            }
+            all.entry(clusters.clone()).or_default().push(dof);
+            changed.insert(clusters);
+        }
+        for clusters in changed {
+            let of_class = all.entry(clusters.clone()).or_default();
+            of_class.sort_unstable();
+            if of_class.is_empty() {
+                all.remove(&clusters);
+            }
+        }
+        (all, partial)
+    }
+}
