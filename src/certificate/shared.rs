@@ -13,19 +13,19 @@ use crate::vector::larger;
 pub struct SharedCheck {
     /// Traces of the block on Γ.
     pub(super) trace_dofs: Vec<InterfaceDof>,
-    /// Residual on them, to be summed over the blocks that share them.
+    /// Residual on these traces, to be summed over the blocks that share them.
     #[serde(with = "crate::bytes")]
     pub(super) residual: Vec<f64>,
     #[serde(with = "crate::bytes")]
     pub(super) scale: Vec<f64>,
-    /// The nodes, and the displacement there.
+    /// The nodes, and their displacements.
     pub(super) nodes: Vec<u32>,
     #[serde(with = "crate::bytes")]
     pub(super) displacement: Vec<f64>,
 }
 
 impl SharedCheck {
-    /// Splits it into `count` parts that have whole nodes, those of a node always in the same one.
+    /// Splits the check into `count` parts by nodes, each node always in the same part.
     pub fn parts(self, count: usize) -> Vec<Self> {
         if count == 1 {
             return vec![self];

@@ -37,7 +37,7 @@ pub enum PointStatus {
     },
 }
 
-/// The linear law of a tangential force: Σ factor·force + Σ factor·slip = constant, each term that of a limit.
+/// The linear law of a tangential force, with forces and slips of limits: Σ factor·force + Σ factor·slip = constant.
 #[derive(Clone, Debug)]
 pub struct LinearLaw {
     /// The limit whose force the law determines.

@@ -47,7 +47,7 @@ pub struct Statuses {
 pub enum Past {
     /// Never open since the search began.
     Closed,
-    /// Open once before: it parts before it opens again.
+    /// Opened once: it parts first if it is to open again.
     Opened,
     /// Force above the cohesion as it parted, and not open since: if it parts and exceeds the cohesion again, neither
     /// sticking nor slipping is right, and it opens.
