@@ -1,4 +1,4 @@
-//! Reactions: what supports carry.
+//! Reactions: forces of supports.
 
 use contact_dd_partition::id::{BlockId, OnBlocks};
 

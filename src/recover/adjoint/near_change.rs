@@ -4,9 +4,9 @@ use super::solved::Solved;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
 
-/// A force, a gap or a slip is about to vanish below this part of the largest force or displacement.
+/// Force, gap or slip, relative to the largest force or displacement, below which it is about to vanish.
 const NEAR: f64 = 1e-6;
-/// Points that are named at most.
+/// Most points that are named.
 const MOST: usize = 20;
 
 /// The points whose status is about to change, in words; on the root. Collective.
@@ -42,7 +42,7 @@ pub fn about_to_change(solved: Solved<'_>) -> Vec<String> {
     names
 }
 
-/// The points of a group of which a force or a way is less than these sizes, or friction as near to its bound.
+/// The points of a group with a force or a gap or slip below these sizes, or with friction as near to its bound.
 fn near(group: &ContactGroup, solution: &GroupSolution, (force, way): (f64, f64)) -> Vec<usize> {
     let unilateral = group.points.iter().enumerate();
     let unilateral = unilateral.filter(|(_, point)| !point.law.is_tied());
@@ -61,7 +61,7 @@ fn near(group: &ContactGroup, solution: &GroupSolution, (force, way): (f64, f64)
             true => here.bound - here.size() <= force,
             false => here.way() <= way,
         };
-        // Without a bound nothing acts along the tangents, whatever sticks or slips.
+        // Without a bound there is no tangential force, be the point sticking or slipping.
         near.extend(law.normal.filter(|_| is_near && here.bound > force));
     }
     near.sort_unstable();
