@@ -73,7 +73,7 @@ pub fn plank(draft: &mut Draft) {
     }
 }
 
-/// None where both sides are clamped.
+/// A gap that vanishes where both sides are clamped.
 fn clamped_gap(draft: &mut Draft, deflection: f64, length: f64) -> String {
     let gap = bending_gap(draft, deflection, length);
     format!("(x/({length:e}))*({gap})")
