@@ -1,4 +1,4 @@
-//! Scenes whose solution is known: chosen first, and the loads and gaps from it.
+//! Scenes with a solution chosen first, and loads and gaps computed from it.
 
 use contact_dd_partition::element::geometry::padded;
 use contact_dd_partition::model::Model;
