@@ -48,8 +48,8 @@ impl SharedCheck {
     }
 }
 
-/// Largest values at the nodes of `checks`, in the order of blocks: the residual and its scale, and the
-/// jump of the displacement.
+/// Largest values at the nodes of `checks`, in the order of blocks: the residual and its scale, and the jump of the
+/// displacement.
 pub fn at_shared_nodes<'a>(checks: impl Iterator<Item = &'a SharedCheck>) -> Most {
     let mut sums: HashMap<InterfaceDof, [f64; 2]> = HashMap::new();
     let mut known: HashMap<u32, &[f64]> = HashMap::new();

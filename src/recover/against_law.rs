@@ -59,8 +59,8 @@ fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec
     all.into_iter().map(|(point, _)| point).collect()
 }
 
-/// Violations of the laws by the points of a group, as forces (N/m): λ − max(0, λ − r gap), and along the tangents
-/// λ_t − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
+/// Violations of the laws by the points of a group, as forces (N/m): λ − max(0, λ − r gap), and along the tangents λ_t
+/// − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
 fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
     let (gaps, forces) = (&solution.gaps, &solution.forces);
     let normal = |j: usize| {

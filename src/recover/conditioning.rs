@@ -11,9 +11,8 @@ use crate::recover::fixed_active_set::FixedActiveSet;
 /// Accuracy of the inverse iteration with an iterative solver.
 const ACCURACY: f64 = 3e-2;
 
-/// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
-/// contacts fixed as they are, D its diagonal: round-off makes a relative error of about
-/// κ · 10⁻¹⁶ in displacements.
+/// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its contacts fixed
+/// as they are, D its diagonal: round-off makes a relative error of about κ · 10⁻¹⁶ in displacements.
 ///
 /// One step of inverse iteration: the Rayleigh quotient of x = A⁻¹ s is at least λ_min, and little more unless s has
 /// next to nothing of its mode. s is random, with a part constant over each block, which the smooth and therefore

@@ -27,9 +27,8 @@ const OPENED: f64 = 1e-13;
 /// Most corrections of the round-off that a move leaves unbalanced; each moves bodies again, by less.
 const CORRECTIONS: usize = 2;
 
-/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
-/// whatever the contacts do, in the Euclidean sense over the nodes of the bodies that take part.
-/// Collective.
+/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free whatever the contacts
+/// do, in the Euclidean sense over the nodes of the bodies that take part. Collective.
 pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let blocks = solution.blocks.iter_mut();
     let displacement = blocks.map(|(&b, s)| (b, &mut s.u)).collect();

@@ -29,8 +29,8 @@ pub struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies
-    /// that take part. Collective.
+    /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies that take part.
+    /// Collective.
     pub fn project(&self, context: &Context<'_>, kind: Field, fields: OnBlocks<&mut Vec<f64>>) {
         if self.list.is_empty() {
             return;

@@ -121,7 +121,7 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
     }
 }
 
-/// True if a solution can be improved by solving its laws anew.
+/// True if a solution violates balance or the laws of contact by more than is good enough.
 fn breaks_laws(certificate: &Certificate) -> bool {
     short_of_laws(certificate) > GOOD
 }

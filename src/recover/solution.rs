@@ -57,8 +57,8 @@ impl Solution {
         self.certificate.is_a_number() && estimate.error.is_finite() && estimate.energy.is_finite()
     }
 
-    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked
-    /// for, those of load step `stress_of`. Collective.
+    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked for,
+    /// those of load step `stress_of`. Collective.
     pub fn new(
         fixed: &FixedActiveSet<'_>,
         analysis: &RigidBodyAnalysis,

@@ -159,7 +159,7 @@ impl Search<'_> {
         Ok((solution, faults))
     }
 
-    /// That solution with this `tolerance` of an iterative solver, from an earlier solution. Collective.
+    /// The solution of a step with this `tolerance` of an iterative solver, from an earlier one. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.

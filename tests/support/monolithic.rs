@@ -6,8 +6,8 @@
 //! K u + Dᵀ μ + Bᵀ λ = f,   D u = v,   B u ≤ g,   λ ≥ 0,   λ (B u − g) = 0
 //! ```
 //!
-//! by a primal-dual active set: with the closed conditions A as equations the system is linear,
-//! indefinite and sparse; conditions of A in tension open, penetrating ones close.
+//! by a primal-dual active set: with the closed conditions A as equations the system is linear, indefinite and sparse;
+//! conditions of A in tension open, penetrating ones close.
 
 use std::collections::HashSet;
 

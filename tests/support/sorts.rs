@@ -62,8 +62,7 @@ pub fn sort(name: &str) -> Sort {
 }
 
 impl Sort {
-    /// A mesh of [`super::blocks::Blocks`], of pairs of linear triangles, in cells of this sort,
-    /// with straight edges.
+    /// A mesh of [`super::blocks::Blocks`], of pairs of linear triangles, in cells of this sort, with straight edges.
     pub fn of(self, mesh: &Mesh) -> Mesh {
         let paired = self.paired(mesh);
         if self.is_quadratic {

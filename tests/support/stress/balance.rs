@@ -1,8 +1,8 @@
 //! Balance of the load by contact forces: a linear program, solved by the simplex method.
 //!
-//! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the
-//! rigid motions R of all bodies. Either they do, or a motion z exists that supports and contact
-//! allow, D R z = 0 and B R z ≤ 0, and that the load drives, fᵀ R z > 0; both are checked.
+//! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the rigid motions R of
+//! all bodies. Either they do, or a motion z exists that supports and contact allow, D R z = 0 and B R z ≤ 0, and that
+//! the load drives, fᵀ R z > 0; both are checked.
 //!
 //! Friction adds tangential forces: |λ_t| ≤ μ λ + b, with b > 0 for a Tresca bound and for cohesion, where all contacts
 //! count as closed. In space discs are replaced by polygons: an inner one to show balance, an outer one to show

@@ -3,8 +3,7 @@
 use super::boxes::wall;
 use super::draft::{Draft, rectangle};
 
-/// Cantilevers on top of each other with rough gaps, like a leaf spring; the lowest may touch
-/// stops.
+/// Cantilevers on top of each other with rough gaps, like a leaf spring; the lowest may touch stops.
 pub fn beams(draft: &mut Draft) {
     let count = draft.random.count(1, 4);
     let length = draft.random.magnitude(0.5, 2.0);

@@ -59,8 +59,8 @@ pub fn cracked(draft: &mut Draft) {
     }
 }
 
-/// Pieces of a line that are open: one at most, so that no two open pieces share a node that would
-/// have to be glued on either side.
+/// Pieces of a line that are open: one at most, so that no two open pieces share a node that would have to be glued on
+/// either side.
 fn crack(draft: &mut Draft, across: usize) -> Vec<bool> {
     let at = draft.random.below(across);
     (0..across).map(|i| i == at).collect()

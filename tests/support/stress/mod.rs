@@ -97,8 +97,7 @@ pub struct Drawn {
     pub cells: &'static str,
     /// The scene file.
     pub text: String,
-    /// True if its gaps, loads and prescribed displacements were replaced by those of a solution
-    /// chosen first.
+    /// True if its gaps, loads and prescribed displacements were replaced by those of a solution chosen first.
     pub manufactured: bool,
     /// Factor of gaps, loads and prescribed displacements.
     pub factor: f64,
