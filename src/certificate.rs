@@ -16,31 +16,32 @@ use self::most::Most;
 use self::scales::{Scales, SlipScales};
 use crate::vector::{larger, largest};
 
-/// Sum of forces, relative to the terms that they are sums of, that is no load.
+/// Resultant of forces, relative to its terms, below which there is no load.
 const NO_LOAD: f64 = 1e-12;
 
-/// Moments relative to forces at the rim of the scene below which there are none.
+/// Moments, relative to forces at the rim of the scene, below which they count as zero.
 const SMALL_MOMENT: f64 = 1e-3;
 
-/// Bounds of friction relative to contact forces, and to the terms that forces are sums of, below which what friction does
-/// isn't known as well as these are.
+/// Bounds of friction, relative to contact forces and to the terms of nodal forces, below which friction is known less
+/// accurately than these.
 const SMALL_BOUND: f64 = 1e-3;
 const BOUND_OF_TERMS: f64 = 1e-6;
 
-/// Checks of the full discrete problem, all relative to the scale of what they check.
+/// Checks of the full discrete problem, each relative to its own scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certificate {
     /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
     pub equilibrium: f64,
-    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: what the
-    /// condition of the scene makes of round-off.
+    /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: round-off amplified by the
+    /// condition of the scene.
     pub equilibrium_of_load: f64,
-    /// The largest load at a node over that scale: near 0 where the forces are round-off of a scene
-    /// without load, or displacements drive it.
+    /// The largest load at a node over that scale: near 0 if forces are round-off of a scene without load, or
+    /// displacements drive it.
     #[serde(skip)]
     pub load_share: f64,
-    /// The largest displacement over what may move the scene without load: prescribed displacements, gaps, closing
-    /// motions and earlier slips. Forces that are round-off of farther ways are no round-off of a scene without load.
+    /// Largest displacement over the largest cause of motion in a scene without load: prescribed displacements, gaps,
+    /// closing motions, earlier slips. If it is large, the scene has a load, though forces are round-off of
+    /// displacements.
     #[serde(skip)]
     pub farther: f64,
     /// Largest penetration over the largest displacement.
@@ -50,11 +51,11 @@ pub struct Certificate {
     /// Largest product of contact force and gap over the product of their scales.
     pub complementarity: f64,
     /// The largest of four violations of the law of friction: tangential force beyond the friction cone, over the
-    /// largest bound of friction, or a thousandth of the largest contact force; slip of sticking points, over the largest
-    /// displacement; the lesser of slip, over a tenth of the largest displacement, and of what the force that opposes it
-    /// lacks of its bound; slip times the force across it, over the product of both scales.
+    /// largest bound of friction, or a thousandth of the largest contact force; slip of sticking points, over the
+    /// largest displacement; the lesser of slip, over a tenth of the largest displacement, and the shortfall of the
+    /// opposing force from its bound; slip times the force across it, over the product of both scales.
     pub friction: f64,
-    /// Slip of sticking points over the largest displacement, one of these three.
+    /// Slip of sticking points over the largest displacement, the second of these four.
     #[serde(skip)]
     pub drift: f64,
     /// The scales of slips and of forces of friction.
@@ -69,13 +70,13 @@ pub struct Certificate {
     /// True if loads work along motions that no contact force resists.
     #[serde(skip)]
     pub is_driven: bool,
-    /// The scales of what was checked.
+    /// The scales of the checks.
     #[serde(skip)]
     pub scales: Scales,
 }
 
 impl Certificate {
-    /// True if every check is a number.
+    /// True if no check is NaN.
     pub fn is_a_number(&self) -> bool {
         let checks = [
             self.equilibrium,
@@ -91,7 +92,7 @@ impl Certificate {
         !checks.into_iter().any(f64::is_nan)
     }
 
-    /// For every check the worse of two.
+    /// The worse of two values for every check.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
         // NaN is worse than any number.
@@ -116,9 +117,9 @@ impl Certificate {
     }
 }
 
-/// The certificate of the whole solution, of what was checked on blocks, in their order, and of what is largest elsewhere:
-/// at contact points and at shared nodes; in a plane state or in space. What is nothing beside the scales of the load steps
-/// `before` is measured by these.
+/// The certificate of the whole solution from the checks of blocks, in their order, and the largest values `elsewhere`:
+/// at contact points and at shared nodes; in a plane state or in space. Values that vanish against the scales of the
+/// load steps `before` are measured by these scales.
 pub fn certificate(
     checks: &[BlockCheck],
     elsewhere: Most,
@@ -131,7 +132,7 @@ pub fn certificate(
     let scales = Scales::of(&most);
     before.replace_nothing(&mut most);
     if most.scale < NO_LOAD * most.rest && most.load < f64::EPSILON * most.rest {
-        // Bodies that only came to rest: what is left is round-off of their way, and so is what acts.
+        // Bodies that only came to rest: residuals and forces are round-off of their displacement.
         most.scale = most.rest;
     }
     let force_scale = larger(most.scale, most.contact_force);
@@ -167,7 +168,7 @@ pub fn certificate(
     }
 }
 
-/// The sum of the external forces on blocks; around an axis only that along it, as all others cancel.
+/// The resultant of external forces on blocks; around an axis only the component along it, as all others cancel.
 fn external(checks: &[BlockCheck], plane: Option<PlaneState>) -> External {
     let mut external = External::default();
     checks
@@ -180,14 +181,14 @@ fn external(checks: &[BlockCheck], plane: Option<PlaneState>) -> External {
     external
 }
 
-/// The sums of external forces and of their moments over their scales, where forces at nodes are of this `scale` (N/m).
+/// Resultants of external forces and of moments over their scales, where nodal forces have this `scale` (N/m).
 fn balances(external: &External, scale: f64) -> [f64; 2] {
-    // Without load what is left of forces is round-off of the terms that they are sums of.
+    // Without load, forces are round-off of the terms that they are sums of.
     let to_load = match external.force_scale >= NO_LOAD * scale {
         true => 1.0,
         false => external.force_scale / scale,
     };
-    // Where supports carry at each of their nodes what acts there, moments are of round-off alone.
+    // Where supports carry the load at each of their own nodes, moments are round-off only.
     let moment_scale = larger(
         external.moment_scale,
         SMALL_MOMENT * external.force_scale * external.reach,

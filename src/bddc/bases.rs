@@ -1,4 +1,4 @@
-//! The bases of classes, made where the first cluster of each is, and handed to all clusters that have it.
+//! The bases of classes, computed by the owner of each class's first cluster and sent to all its clusters.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,9 @@ use crate::context::Context;
 use crate::error::Failure;
 
 impl Bddc {
-    /// The bases of the classes of every cluster of this rank whose part of the preconditioner is to be made: those that
-    /// they had `before`, but of the classes that are to be `made` of what they are to the clusters. Each is made where
-    /// the first cluster of the class is. Collective.
+    /// The bases of classes for every cluster of this rank whose part of the preconditioner is remade: those that it
+    /// had `before`, or new ones from the clusters' sides for the classes that are `made`. The owner of a class's first
+    /// cluster computes its basis. Collective.
     pub(super) fn bases(
         &self,
         context: &Context<'_>,
@@ -46,8 +46,8 @@ impl Bddc {
         Ok(bases)
     }
 
-    /// The bases of the classes that are `made` of what they are to the clusters, each for every cluster of this rank that
-    /// has it. Collective.
+    /// The bases of the classes that are `made`, from the clusters' sides, for every cluster of this rank in a class.
+    /// Collective.
     fn new_bases(
         &self,
         context: &Context<'_>,

@@ -16,12 +16,12 @@ pub struct Between {
     pub owner: usize,
     /// The unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
-    /// The clusters that have some of them, or what may be tied to some, ascending.
+    /// The clusters with some of these unknowns, or others that these may be tied to, ascending.
     pub clusters: Vec<MergeRootId>,
 }
 
-/// The contact groups between clusters with these `dofs`, in the order of the hierarchy, each with its number, its owner
-/// and its unknowns.
+/// The contact groups between clusters with these `dofs`, in the order of the hierarchy, each with its number, its
+/// owner and its unknowns.
 pub fn between(
     dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>,
     groups: impl Iterator<Item = ((GroupId, usize), Vec<InterfaceDof>)>,
@@ -33,7 +33,7 @@ pub fn between(
     for ((number, owner), sought) in groups {
         let mut clusters: BTreeSet<MergeRootId> =
             dofs.ids().filter(|&c| has_some(c, &sought)).collect();
-        // What a group below ties may be tied to unknowns of this one.
+        // A lower group's ties may involve unknowns of this one.
         for below in &between {
             if (below.dofs.iter()).any(|dof| sought.binary_search(dof).is_ok()) {
                 clusters.extend(&below.clusters);

@@ -1,4 +1,4 @@
-//! The classes of Γ: unknowns that the same clusters have, vertices and edges of the clusters among them.
+//! The classes of Γ: unknowns that the same clusters share, such as vertices and edges of the clusters.
 
 use std::collections::BTreeMap;
 
@@ -13,43 +13,43 @@ use crate::bddc::closed::Ties;
 use crate::bddc::cluster_unknowns::ClusterUnknowns;
 use crate::schur::condensed::InterfaceDof;
 
-/// Most unknowns of a class all of which are coarse ones.
+/// Most unknowns of a class that is coarse as a whole.
 const SMALL: usize = 4;
-/// Length that is none beside a unit vector.
+/// Length, relative to a unit vector, below which it is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Unknowns that the same clusters have.
+/// Unknowns that the same clusters share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
     /// The clusters, ascending.
     pub clusters: Vec<MergeRootId>,
     /// The unknowns, ascending.
     pub dofs: Vec<InterfaceDof>,
-    /// True if one of the clusters has only some combinations of them.
+    /// True if one of the clusters has only some combinations of the unknowns.
     is_partial: bool,
-    /// Unknowns in the place of these where one of two clusters has only some.
+    /// New unknowns of the class if one of its two clusters has only some combinations.
     pub turned: Option<Turned>,
 }
 
 /// Combinations of the unknowns of a class of two clusters: those that both have, then those that one of them has.
 ///
-/// Classes under closed contact conditions: with displacements of another cluster in the place of one of its own, a
-/// cluster has only as many combinations of them as it has conditions.
+/// They occur under closed contact conditions: with its own displacements replaced by another cluster's, a cluster has
+/// only as many combinations of these as it has conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
     /// The new unknowns, a column each.
     pub q: Mat<f64>,
-    /// Bounds of the unknowns of both, of the first and of the second cluster.
+    /// Bounds of the unknowns of both clusters, of the first and of the second.
     pub ends: [usize; 4],
 }
 
 impl Class {
-    /// Number of unknowns that all of its clusters have.
+    /// Number of unknowns that all of its clusters share.
     pub fn size(&self) -> usize {
         (self.turned.as_ref()).map_or(self.dofs.len(), |turned| turned.ends[1])
     }
 
-    /// The combinations that both of its clusters have, for `values` of its unknowns.
+    /// The combinations that both of its clusters share, for `values` of its unknowns.
     pub fn turn(&self, values: Vec<f64>) -> Vec<f64> {
         let Some(turned) = &self.turned else {
             return values;
@@ -59,7 +59,7 @@ impl Class {
         (0..turned.ends[1]).map(|j| combinations[(j, 0)]).collect()
     }
 
-    /// True if all of its unknowns are coarse ones, as those of a vertex.
+    /// True if all of its unknowns are coarse, like a vertex's.
     pub fn is_coarse(&self) -> bool {
         self.is_partial && self.turned.is_none() || self.size() <= SMALL
     }
@@ -68,22 +68,22 @@ impl Class {
 /// All classes.
 #[derive(Clone, Debug, Default)]
 pub struct Classes {
-    /// The classes that several clusters have, by these in ascending order.
+    /// The classes of several clusters, in ascending order of these.
     pub list: Vec<Class>,
     /// Numbers of the classes of every cluster, ascending.
     pub of_clusters: Numbered<MergeRootId, Vec<usize>>,
-    /// Unknowns of every cluster that no other has.
+    /// Unknowns of each cluster alone.
     pub own: Numbered<MergeRootId, Vec<InterfaceDof>>,
 }
 
 impl Classes {
-    /// The number of a class, if it is one of these.
+    /// The index of a class, if it is among these.
     pub fn place_of(&self, class: &Class) -> Option<usize> {
         let at = (self.list).binary_search_by(|other| other.clusters.cmp(&class.clusters));
         at.ok().filter(|&k| self.list[k] == *class)
     }
 
-    /// True if cluster c has the same unknowns in the same classes as in others.
+    /// True if cluster c has the same unknowns in the same classes as in `others`.
     pub fn are_as_in(&self, others: &Self, c: MergeRootId) -> bool {
         let (Some(own), Some(list)) = (others.own.get(c), others.of_clusters.get(c)) else {
             return false;
@@ -94,7 +94,7 @@ impl Classes {
             && pairs.all(|(&k, &other)| self.list[k] == others.list[other])
     }
 
-    /// The lowest node above all clusters of each class, where clusters are the `nodes` of a tree.
+    /// The lowest node above all clusters of each class, where the `nodes` of a tree are the clusters'.
     pub fn homes(&self, tree: &Tree, nodes: &Numbered<MergeRootId, TreeNodeId>) -> Vec<TreeNodeId> {
         let home = |class: &Class| {
             let first = nodes[class.clusters[0]];
@@ -136,8 +136,8 @@ impl Classes {
     }
 }
 
-/// The combinations of the unknowns of a class that its two clusters have, of which one doesn't have all; `None` where
-/// there are more clusters, or combinations that neither has.
+/// The combinations of the unknowns of a class with two clusters, one of which doesn't have all; `None` if there are
+/// more clusters, or combinations that neither has.
 fn turned(
     class: &Class,
     dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>,
@@ -146,7 +146,7 @@ fn turned(
     let [a, b] = class.clusters[..] else {
         return None;
     };
-    // What each has, in terms of the class.
+    // The combinations of each, in terms of the class.
     let n = class.dofs.len();
     let row = |dof: &InterfaceDof| -> Vec<(usize, f64)> {
         let place = |dof: &InterfaceDof| class.dofs.binary_search(dof).ok();
@@ -198,7 +198,7 @@ fn turned(
     })
 }
 
-/// The sets of n unknowns that rows link, and the members of each.
+/// The sets of n unknowns that rows connect, and the members of each.
 fn linked<'a>(
     n: usize,
     rows: impl Iterator<Item = &'a Vec<(usize, f64)>>,
@@ -214,7 +214,7 @@ fn linked<'a>(
     (linked, members)
 }
 
-/// An orthonormal basis of what is orthogonal to the columns of a matrix.
+/// An orthonormal basis of the orthogonal complement of a matrix's columns.
 fn complement(a: &Mat<f64>) -> Mat<f64> {
     if a.ncols() == 0 {
         return Mat::identity(a.nrows(), a.nrows());

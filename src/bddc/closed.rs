@@ -35,10 +35,10 @@ pub struct GroupBetween {
 }
 
 impl GroupBetween {
-    /// Contact group g of this rank, of which no condition is fixed yet.
+    /// Contact group g of this rank, with no condition fixed yet.
     ///
     /// # Errors
-    /// A contact point that nothing can be replaced for.
+    /// A contact point without an unknown that can be replaced.
     pub fn new(context: &Context<'_>, g: GroupId, group: &ContactGroup) -> Result<Self, Failure> {
         let limits = resting_limits(context, g, group)?;
         let rows = group.rows_of(&limits);
@@ -61,10 +61,10 @@ impl GroupBetween {
         dofs
     }
 
-    /// Fixes which of its conditions are `open`.
+    /// Fixes the statuses of its conditions, `open` or closed.
     ///
     /// # Errors
-    /// A closed one that nothing can be replaced for, which no subset of independent ones has.
+    /// A closed condition none of whose unknowns can be replaced, although it is independent.
     pub fn fix(
         &mut self,
         group: &ContactGroup,
@@ -81,7 +81,7 @@ impl GroupBetween {
         Ok(())
     }
 
-    /// The ties between unknowns that closed conditions make.
+    /// The ties between unknowns due to closed conditions.
     pub fn ties(&self) -> Ties {
         Ties {
             direct: (self.replaced.iter())
@@ -91,7 +91,7 @@ impl GroupBetween {
         }
     }
 
-    /// The constants of what is tied, where the closed limits, and the jumps of ties behind them, have these `values`.
+    /// The constants of tied unknowns for these `values` of closed limits, and of the jumps of ties after them.
     pub fn constants(&self, values: &[f64]) -> Vec<(InterfaceDof, f64)> {
         let constant = |replaced: &Replaced| {
             let terms = replaced.jumps.iter().map(|&(t, c)| c * values[t]);
@@ -107,8 +107,8 @@ impl GroupBetween {
         loads.collect()
     }
 
-    /// The jumps and forces of its limits, 0 where open, and the forces at the jumps of ties, for displacements and unbalanced
-    /// forces at its unknowns.
+    /// The jumps and forces of its limits, 0 where open, and the forces at the jumps of ties, from displacements and
+    /// unbalanced forces at its unknowns.
     pub fn answer(
         &self,
         x: &BTreeMap<InterfaceDof, f64>,
@@ -134,10 +134,10 @@ impl GroupBetween {
 /// Ties of closed conditions, on all ranks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ties {
-    /// Tied displacements and what is in their place, but for constants, group by group up the hierarchy: what a group
-    /// ties one above may tie to others.
+    /// Tied displacements and the terms that replace them, without constants, group by group up the hierarchy: unknowns
+    /// in a group's terms may be tied by one above.
     direct: Vec<(InterfaceDof, Terms)>,
-    /// The tied unknowns in terms of those that nothing ties.
+    /// The tied unknowns in terms of untied ones.
     resolved: BTreeMap<InterfaceDof, Terms>,
 }
 
@@ -174,13 +174,13 @@ impl Ties {
         self.resolved.get(dof)
     }
 
-    /// The terms in the place of an unknown: itself where it isn't tied.
+    /// The terms of an unknown: itself if it isn't tied.
     pub fn terms(&self, dof: &InterfaceDof) -> Terms {
         let terms = self.terms_of(dof);
         terms.cloned().unwrap_or_else(|| vec![(*dof, 1.0)])
     }
 
-    /// Adds to the constants of tied displacements those of what they are tied to.
+    /// Adds the constants of the unknowns in their terms to those of tied displacements.
     pub fn resolve(&self, constants: &mut BTreeMap<InterfaceDof, f64>) {
         for (dof, terms) in self.direct.iter().rev() {
             let staying = terms.iter();
@@ -190,7 +190,7 @@ impl Ties {
         }
     }
 
-    /// Carries forces at tied displacements to what they are tied to, where they stay, too.
+    /// Adds forces at tied displacements to those at the unknowns in their terms, without removing them.
     pub fn carry(&self, forces: &mut BTreeMap<InterfaceDof, f64>) {
         for (dof, terms) in &self.direct {
             let Some(&force) = forces.get(dof) else {

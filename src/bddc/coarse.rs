@@ -1,7 +1,7 @@
-//! The coarse problem: what clusters leave to coarse unknowns, merged up the hierarchy above them.
+//! The coarse problem: the clusters' Schur complements on coarse unknowns, merged up the hierarchy above them.
 //!
-//! The unknowns of a class are eliminated at the lowest node above all of its clusters. Ranks share the nodes as they
-//! share the clusters, and only what is above clusters that changed is made again.
+//! The unknowns of a class are eliminated at the lowest node above all of its clusters. Nodes are distributed over
+//! ranks like the clusters, and only nodes above changed clusters are factorized again.
 
 use std::collections::BTreeMap;
 
@@ -20,19 +20,19 @@ use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 
-/// The Schur complement that a cluster or a node leaves to coarse unknowns.
+/// The Schur complement of a cluster or a node on coarse unknowns.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Part {
-    /// The classes, each by its first unknown, and how many coarse unknowns each has.
+    /// The classes, each by its first unknown, with their numbers of coarse unknowns.
     classes: Vec<(InterfaceDof, usize)>,
     s: PackedSymmetric,
-    /// The diagonal of the coarse matrix, as far as it is added up.
+    /// The diagonal of the coarse matrix, as far as it is assembled.
     #[serde(with = "crate::bytes")]
     diagonal: Vec<f64>,
 }
 
 impl Part {
-    /// The part of cluster c, which leaves `s`.
+    /// The part of cluster c with the Schur complement `s`.
     pub fn of(c: MergeRootId, local: &Local, s: PackedSymmetric, classes: &Classes) -> Self {
         let first = |&k: &usize| classes.list[k].dofs[0];
         let counts = local.bases().iter().map(|basis| basis.coarse);
@@ -50,15 +50,15 @@ impl Part {
 #[derive(Debug)]
 struct Front {
     factor: Trapezoid<f64>,
-    /// Places of the unknowns of each child, those that are eliminated first.
+    /// Positions of the unknowns of each child, eliminated ones first.
     places: Vec<Vec<usize>>,
     /// The smallest pivot relative to its diagonal entry.
     smallest_pivot: f64,
 }
 
 impl Front {
-    /// Adds up `children`, with a share of the diagonal of each, eliminates the classes that `is_own`, and returns what
-    /// that leaves to the others.
+    /// Assembles `children`, with a share of the diagonal of each, eliminates the classes that `is_own`, and returns
+    /// the Schur complement on the others.
     fn new(
         children: &[(&Part, f64)],
         is_own: impl Fn(&InterfaceDof) -> bool,
@@ -117,12 +117,12 @@ pub struct Coarse {
     fronts: OnTreeNodes<Front>,
     /// The coarse matrices of clusters and nodes, at the owner of the node above.
     parts: OnTreeNodes<Part>,
-    /// The share of the diagonal that is added; none before the first factorization.
+    /// The share of the diagonal that is added; `None` before the first factorization.
     share: Option<f64>,
 }
 
 impl Coarse {
-    /// Above the clusters of a `plan`; nothing is factorized yet.
+    /// The coarse problem above the clusters of a `plan`, not factorized yet.
     pub fn new(plan: &Plan) -> Self {
         Self {
             nodes: plan.deepest_first(|v| plan.is_above_merge_roots(v)),
@@ -132,8 +132,8 @@ impl Coarse {
         }
     }
 
-    /// Factorizes whatever is above clusters that are `remade`, which leave these `parts`, by cluster; the first of
-    /// `holds`, shares of the diagonal, is added that leaves it definite. Collective.
+    /// Factorizes all nodes above clusters that are `remade`, which have these `parts`, by cluster; adds the first of
+    /// `holds`, shares of the diagonal, that makes the matrix definite. Collective.
     ///
     /// # Errors
     /// A part of the scene can move.
@@ -166,7 +166,7 @@ impl Coarse {
         factorized
     }
 
-    /// Merges what is `touched`. Collective; what failed on this rank is said at the end.
+    /// Merges the `touched` nodes. Collective; failures of this rank are returned at the end.
     fn merge(
         &mut self,
         context: &Context<'_>,
@@ -197,7 +197,7 @@ impl Coarse {
             let children: Option<Vec<(&Part, f64)>> =
                 plan.tree.nodes[v].children.iter().map(child).collect();
             let is_due = plan.node_owners[v] == comm.rank() && result.is_ok();
-            // A child that failed isn't there; its owner says why.
+            // The part of a failed child is missing; its owner reports why.
             let merged = children
                 .filter(|_| is_due)
                 .map(|children| Front::new(&children, |class| homes.get(class) == Some(&v), par));
@@ -219,7 +219,7 @@ impl Coarse {
         result
     }
 
-    /// Brings what node v leaves to the owner of the node above. Collective.
+    /// Sends the part of node v to the owner of the node above. Collective.
     fn pass_up(&mut self, context: &Context<'_>, v: TreeNodeId, mut part: Option<Part>) {
         let Context { comm, plan, .. } = *context;
         let Some(parent) = plan.tree.nodes[v].parent else {
@@ -318,7 +318,7 @@ mod tests {
         }
     }
 
-    /// The coarse unknowns left to these `classes`, in this order, and their places among all.
+    /// The part on these `classes`, in this order, and their positions among all.
     fn part(classes: &[usize]) -> (Part, Mat<f64>, Vec<usize>) {
         let places: Vec<usize> = classes.iter().flat_map(|&k| UNKNOWNS[k].clone()).collect();
         let n = places.len();

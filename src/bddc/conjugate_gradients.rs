@@ -1,7 +1,7 @@
-//! Conjugate gradients on what clusters share, preconditioned by clusters side by side and the coarse problem.
+//! Conjugate gradients on the clusters' shared unknowns, preconditioned by separate clusters and the coarse problem.
 //!
-//! Every rank holds the vectors of its own clusters. Sums run in the order of clusters, so that ranks make no
-//! difference.
+//! Every rank holds the vectors of its own clusters. Sums run in the order of clusters, so that the result doesn't
+//! depend on the ranks.
 
 use std::collections::BTreeMap;
 
@@ -18,11 +18,11 @@ use crate::vector::dot;
 
 /// Most iterations.
 const MAX_ITERATIONS: usize = 500;
-/// Most iterations with a preconditioner of other matrices.
+/// Most iterations with a preconditioner of earlier matrices.
 const MAX_WITH_STALE: usize = 30;
-/// Iterations after which a preconditioner that can be made better is judged.
+/// Iterations after which a preconditioner that can be improved is judged.
 const TRIAL: usize = 6;
-/// Relative error that is to be reached by then.
+/// Relative error to be reached by then.
 const GOOD: f64 = 0.02;
 
 /// The conjugate gradient method: operator and preconditioner.
@@ -36,22 +36,22 @@ pub struct ConjugateGradients<'a> {
     pub classes: &'a Classes,
     /// The clusters of this rank.
     pub locals: &'a OnMergeRoots<Local>,
-    /// S of every cluster; none of those of other ranks.
+    /// S of every cluster; `None` for those of other ranks.
     pub matrices: &'a Numbered<MergeRootId, Option<&'a PackedSymmetric>>,
     /// The coarse problem.
     pub coarse: &'a Coarse,
-    /// True if the preconditioner is that of other matrices.
+    /// True if the preconditioner is that of earlier matrices.
     pub is_stale: bool,
-    /// True if the preconditioner can be made better.
+    /// True if the preconditioner can be improved.
     pub is_judged: bool,
 }
 
 impl ConjugateGradients<'_> {
-    /// Solves S x = b, of which every cluster has a part, from a `start`, or from 0; returns x, the number of
-    /// iterations and whether x is it. Collective.
+    /// Solves S x = b, where b is a sum over clusters, from a `start`, or from 0; returns x, the number of iterations
+    /// and whether they converged. Collective.
     ///
-    /// It ends where √(rᵀ M r), with M the preconditioner about the error in the energy norm, is less than the
-    /// `tolerance` of that of b.
+    /// Iteration ends where √(rᵀ M r), with the preconditioner M about the error in the energy norm, is less than
+    /// `tolerance` times that of b.
     pub fn solve(
         &self,
         mut b: Vectors,
@@ -70,7 +70,7 @@ impl ConjugateGradients<'_> {
             subtract(&mut of_start, &self.multiply(&start), 1.0);
             let of_start_z = self.precondition(&of_start);
             let of_start_rho = self.dot(&of_start, &of_start_z);
-            // Another load may leave less than what it starts from, as none does.
+            // The solution for another load may be a worse start than 0.
             if of_start_rho < rho {
                 (x, r, z, rho) = (start, of_start, of_start_z, of_start_rho);
             }
@@ -141,7 +141,7 @@ impl ConjugateGradients<'_> {
         z
     }
 
-    /// Replaces what every cluster has by the sum over all that share it. Collective.
+    /// Replaces each cluster's values by the sum over all that share an unknown. Collective.
     fn add_up(&self, v: &mut Vectors) {
         let ranges = |c: MergeRootId, k: usize| {
             let at = self.classes.of_clusters[c].binary_search(&k);
@@ -177,7 +177,7 @@ impl ConjugateGradients<'_> {
         }
     }
 
-    /// x·y, every unknown once, on all ranks. Collective.
+    /// x·y, with each unknown counted once, on all ranks. Collective.
     fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
         let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
         let parts = self.context.comm.route_lists(&to_root, |i| {

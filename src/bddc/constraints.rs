@@ -1,10 +1,10 @@
-//! The coarse unknowns of a class, and how its clusters share a residual there.
+//! The coarse unknowns of a class, and the weights by which its clusters share a residual there.
 //!
-//! With S_FF of every cluster on a class F and S̃ what is left of it on F where all else is free, a jump between the
-//! clusters that scaling makes a mistake of has at least the energy of the parallel sum of all S̃, (Σ S̃⁻¹)⁻¹, and the
-//! mistake has that of all S_FF. What the ratio of the two is large for becomes coarse, rigid motions among it (Mandel
-//! and Sousedík, Comput. Methods Appl. Mech. Engrg 196, 2007; for any number of clusters after Pechstein and Dohrmann,
-//! ETNA 46, 2017; deluxe scaling after Dohrmann and Widlund).
+//! With S_FF of every cluster on a class F and S̃ the Schur complement on F with all else free, a jump between the
+//! clusters that scaling distributes wrongly has at least the energy of the parallel sum of all S̃, (Σ S̃⁻¹)⁻¹, and the
+//! error has that of all S_FF. Modes with a large ratio of the two become coarse, rigid motions among them (Mandel and
+//! Sousedík, Comput. Methods Appl. Mech. Engrg 196, 2007; for any number of clusters after Pechstein and Dohrmann, ETNA
+//! 46, 2017; deluxe scaling after Dohrmann and Widlund).
 
 use faer::Side::Lower;
 use faer::linalg::matmul::matmul;
@@ -18,10 +18,10 @@ use serde::{Deserialize, Serialize};
 use crate::bddc::householder::Householder;
 use crate::schur::trapezoid::NotDefinite;
 
-/// Ratio of the energies above which what has it becomes coarse: about the condition number of what is left.
+/// Ratio of the energies above which modes become coarse: about the remaining condition number.
 const THRESHOLD: f64 = 10.0;
 
-/// A cluster can move although what it shares with others is held.
+/// The error of a cluster that can move although its shared unknowns are held.
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism;
 
@@ -31,28 +31,28 @@ impl From<NotDefinite> for Mechanism {
     }
 }
 
-/// The basis of a class, coarse unknowns first, and the share that a cluster has of what is there.
+/// The basis of a class, coarse unknowns first, and a cluster's share of its residual.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Basis {
     /// Number of coarse unknowns.
     pub coarse: usize,
-    /// The basis; nothing where it is the unknowns of the class.
+    /// The basis; `None` for the unknowns of the class themselves.
     pub q: Option<Householder>,
     share: Share,
 }
 
-/// The share that a cluster has of a residual, and its correction in the sum of all.
+/// The share that a cluster has of a residual, and of a correction in the sum over clusters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum Share {
     All,
     Nothing,
-    /// W = D Q with D as here: of r it has Wᵀ r, and it corrects by W x.
+    /// W = D Q with this diagonal D: its share of r is Wᵀ r, its correction W x.
     Diagonal(#[serde(with = "crate::bytes")] Vec<f64>),
     /// W.
     Part(#[serde(with = "crate::bytes::matrix")] Mat<f64>),
 }
 
-/// The stiffness of a class as a cluster has it.
+/// The stiffness of a class in a cluster.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Side {
     /// The stiffness of each unknown.
@@ -62,14 +62,14 @@ pub enum Side {
         /// S_FF.
         #[serde(with = "crate::bytes::symmetric")]
         s: Mat<f64>,
-        /// S̃⁻¹, where the class is looked into; without unknowns elsewhere.
+        /// S̃⁻¹, if the class is examined for its modes; else empty.
         #[serde(with = "crate::bytes::symmetric")]
         compliance: Mat<f64>,
     },
 }
 
 impl Basis {
-    /// The basis of a class all of whose unknowns are coarse; its first cluster has all of what is there.
+    /// The basis of a class with coarse unknowns only; its first cluster has the whole share.
     pub fn coarse(count: usize, is_first: bool) -> Self {
         Self {
             coarse: count,
@@ -78,12 +78,11 @@ impl Basis {
         }
     }
 
-    /// The basis of a class, for each of the clusters that have these `sides` of it: its rigid `motions` are coarse,
-    /// or what
-    /// the sides say where they are looked into.
+    /// The basis of a class, for each of the clusters that have these `sides` of it: its rigid `motions` are coarse, or
+    /// if the sides are examined, their modes.
     ///
     /// # Errors
-    /// It can move although all else is held.
+    /// The class can move although all else is held.
     pub fn new(sides: &[Side], motions: impl FnOnce() -> Mat<f64>) -> Result<Vec<Self>, Mechanism> {
         let (mut whole, mut diagonals) = (Vec::new(), Vec::new());
         for side in sides {
@@ -124,7 +123,7 @@ impl Basis {
         Ok(whole.iter().map(of).collect())
     }
 
-    /// The correction of the unknowns of the class for one in the basis.
+    /// The correction of the class's unknowns from one in the basis.
     pub fn correct(&self, x: &[f64]) -> Vec<f64> {
         match (&self.share, &self.q) {
             (Share::Nothing, _) => vec![0.0; x.len()],
@@ -168,8 +167,7 @@ fn product(a: MatRef<'_, f64>, x: &[f64]) -> Vec<f64> {
     y
 }
 
-/// The weights of combinations of unknowns that have far more energy where all else is held than where it is free, a
-/// column each.
+/// Weights of modes, one per column, that have far more energy with all other unknowns held than with them free.
 fn adaptive(sides: &[(&Mat<f64>, &Mat<f64>)]) -> Result<Mat<f64>, Mechanism> {
     let n = sides.first().map_or(0, |(s, _)| s.nrows());
     let (mut held, mut free) = (Mat::<f64>::zeros(n, n), Mat::<f64>::zeros(n, n));
@@ -185,7 +183,7 @@ fn adaptive(sides: &[(&Mat<f64>, &Mat<f64>)]) -> Result<Mat<f64>, Mechanism> {
     make_symmetric(&mut free);
     let eigen = free.self_adjoint_eigen(Lower).map_err(|_| Mechanism)?;
     let ratios = eigen.S().column_vector();
-    // Ascending.
+    // The ratios ascend.
     let first = (0..n).take_while(|&i| ratios[i] <= THRESHOLD).count();
     let mut weights = eigen.U().subcols(first, n - first).to_owned();
     solve_upper_triangular_in_place(l.transpose(), weights.as_mut(), Par::Seq);

@@ -1,4 +1,4 @@
-//! A cluster: its unknowns [own | shared], own ones eliminated, and what the preconditioner inverts of it.
+//! A cluster: its unknowns [own | shared] with own ones eliminated, and its part of the preconditioner.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -16,9 +16,9 @@ use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 
-/// Makes both triangles of a symmetric matrix count.
+/// Copies the lower triangle of a symmetric matrix to the upper one.
 fn fill_upper_triangle(s: &mut Mat<f64>) {
-    // Tile by tile, so that rows are written while they are at hand.
+    // Tiles keep the rows that are written in the cache.
     const TILE: usize = 32;
     let n = s.nrows();
     for first in (0..n).step_by(TILE) {
@@ -32,7 +32,7 @@ fn fill_upper_triangle(s: &mut Mat<f64>) {
     }
 }
 
-/// A vector on what clusters share, by cluster.
+/// A vector on the clusters' shared unknowns, by cluster.
 pub type Vectors = OnMergeRoots<Vec<f64>>;
 
 /// The unknowns that a cluster shares with others, class after class.
@@ -42,18 +42,18 @@ pub struct Shared {
     own: Trapezoid<f64>,
     /// The smallest pivot of own unknowns relative to the diagonal entry.
     pub smallest_pivot: f64,
-    /// The spring on each unknown of the cluster; none where nothing has one.
+    /// The spring on each unknown of the cluster; empty if there are none.
     springs: Vec<f64>,
     /// A bound on the round-off of S.
     round_off: f64,
 }
 
 impl Shared {
-    /// A cluster whose unknowns are found at their `placement`, with a `spring`, relative to the diagonal, on what is
-    /// `sprung`, and its S on what is shared.
+    /// A cluster whose unknowns have this `placement`, with a `spring`, relative to the diagonal, on those that are
+    /// `sprung`, and its S on shared unknowns.
     ///
     /// # Errors
-    /// It can move although what it shares is held.
+    /// The cluster can move although its shared unknowns are held.
     pub fn new(
         cluster: &ClusterSchur,
         placement: Placement,
@@ -79,8 +79,8 @@ impl Shared {
         Ok((shared, s))
     }
 
-    /// The Schur complement of each class that `is_chosen`, by its place, with all else that is shared held, and, where
-    /// it `is_looked_into`, with all else free.
+    /// The Schur complement of each class that `is_chosen`, by its index, with all other shared unknowns held and, if
+    /// it `is_looked_into`, with them free.
     pub fn sides(
         &self,
         s: &Mat<f64>,
@@ -89,7 +89,7 @@ impl Shared {
         par: Par,
     ) -> Result<Vec<Option<Side>>, Mechanism> {
         let n = s.nrows();
-        // It may move as a whole, and of some classes it has not all unknowns.
+        // The cluster may move as a whole, and may lack some unknowns of a class.
         let held_by = |share: f64| {
             let mut held = s.clone();
             for range in &self.placement.ranges {
@@ -106,7 +106,7 @@ impl Shared {
         let side = |(at, range): (usize, &Range<usize>)| {
             is_chosen(at).then(|| {
                 let (first, len) = (range.start, range.len());
-                // It may also move where all but this class is held; what does becomes coarse.
+                // The cluster may also move with all but this class held; such modes become coarse.
                 let mut s = s.submatrix(first, first, len, len).to_owned();
                 fill_upper_triangle(&mut s);
                 hold(s.as_mut(), 0..len, MORE_HOLD, self.round_off);
@@ -124,21 +124,21 @@ impl Shared {
     }
 }
 
-/// Share of the stiffest unknown of a cluster that is sure to be more than the round-off of its S.
+/// Share of a cluster's largest stiffness that certainly exceeds the round-off of its S.
 const ROUND_OFF: f64 = 1e-14;
-/// Shares of the largest diagonal entry of which the least is added that round-off leaves definite, where unknowns may be
-/// free.
+/// Shares of the largest diagonal entry, the least of which that makes the matrix definite in spite of round-off is
+/// added where unknowns may be free.
 const HOLDS: [f64; 3] = [1e-11, 1e-9, 1e-7];
-/// Share of a spring that has to be far above round-off.
+/// Share added to a class's stiffness, far above round-off.
 const MORE_HOLD: f64 = 1e-9;
 
-/// Adds a share of the largest entry to those of the diagonal, and what is sure to be more than their round-off.
+/// Adds to the diagonal a share of its largest entry, and a bound on the round-off.
 fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64) {
     let largest = range.clone().fold(0.0, |m: f64, i| m.max(s[(i, i)]));
     range.for_each(|i| s[(i, i)] += share * largest + round_off);
 }
 
-/// The factor of what isn't coarse.
+/// The factor of the unknowns that aren't coarse.
 #[derive(Debug)]
 enum Others {
     Single(Trapezoid<f32>),
@@ -146,7 +146,7 @@ enum Others {
 }
 
 impl Others {
-    /// Factors as precise as this `level` asks for, and the Schur complement that they leave to the coarse unknowns.
+    /// Factors in the precision of this `level`, and the Schur complement on the coarse unknowns.
     fn new(
         s: Mat<f64>,
         count: usize,
@@ -187,7 +187,7 @@ impl Others {
     }
 }
 
-/// A cluster as conjugate gradients see it, and its part of the preconditioner, in the basis of coarse and other
+/// A cluster's operator in conjugate gradients and its part of the preconditioner, in the basis of coarse and other
 /// unknowns of its classes.
 #[derive(Debug)]
 pub struct Local {
@@ -195,16 +195,16 @@ pub struct Local {
     pub shared: Shared,
     /// The basis and the scaling of every class.
     bases: Vec<Basis>,
-    /// Places of [others | coarse].
+    /// Positions of [others | coarse].
     order: Vec<usize>,
     others: Others,
 }
 
 impl Local {
-    /// A cluster with the bases of its classes, as `level` says, and what it leaves to its coarse unknowns.
+    /// A cluster with the bases of its classes, at this `level`, and its Schur complement on coarse unknowns.
     ///
     /// # Errors
-    /// It can move although its coarse unknowns are held.
+    /// The cluster can move although its coarse unknowns are held.
     pub fn new(
         (shared, mut s): (Shared, Mat<f64>),
         bases: Vec<Basis>,
@@ -263,7 +263,7 @@ impl Local {
         &self.bases
     }
 
-    /// Condenses a load on the cluster's unknowns: what stays on the own ones, and the load on the shared ones.
+    /// Condenses a load on the cluster's unknowns: the reduced load on own ones, and the load on shared ones.
     pub fn condense(&self, load: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut f = self.gather(load);
         self.shared.own.forward(&mut f);
@@ -271,7 +271,7 @@ impl Local {
         (f, shared)
     }
 
-    /// The unknowns of the cluster, but for constants, for the shared ones.
+    /// The unknowns of the cluster, without constants, from the shared ones.
     pub fn recover(&self, own: &[f64], shared: &[f64]) -> Vec<f64> {
         let mut x = [own, shared].concat();
         self.shared.own.backward(&mut x);
@@ -279,7 +279,7 @@ impl Local {
         self.shared.placement.terms.iter().map(of).collect()
     }
 
-    /// S x on what is shared, where `s` is that of the cluster's unknowns.
+    /// S x on shared unknowns, with the `s` of all unknowns of the cluster.
     pub fn multiply(&self, s: &PackedSymmetric, x: &[f64]) -> Vec<f64> {
         let x = self.recover(&vec![0.0; self.own()], x);
         let mut y = self.gather(&self.forces(s, &x));
@@ -296,7 +296,7 @@ impl Local {
         y
     }
 
-    /// Number of unknowns that no other cluster has.
+    /// Number of unknowns of this cluster alone.
     pub fn own(&self) -> usize {
         self.shared.own.eliminated()
     }
@@ -310,7 +310,7 @@ impl Local {
         f
     }
 
-    /// The cluster's share of a residual: what stays on the other unknowns, and the load on the coarse ones.
+    /// The cluster's share of a residual: the reduced load on other unknowns, and the load on coarse ones.
     pub fn share(&self, r: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut scaled = vec![0.0; r.len()];
         for (range, basis) in self.shared.placement.ranges.iter().zip(&self.bases) {
@@ -322,7 +322,7 @@ impl Local {
         (load, coarse)
     }
 
-    /// The cluster's share of a correction, where its coarse unknowns are known.
+    /// The cluster's share of a correction, from its coarse unknowns.
     pub fn correct(&self, mut others: Vec<f64>, coarse: &[f64]) -> Vec<f64> {
         others.extend(coarse);
         self.others.backward(&mut others);

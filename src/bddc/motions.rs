@@ -1,4 +1,4 @@
-//! Rigid motions on the unknowns that clusters share.
+//! Rigid motions on the clusters' shared unknowns.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,10 +13,10 @@ use crate::fem::body_frame::BodyFrame;
 use crate::fem::frame::{Frame, node_frames};
 use crate::schur::condensed::InterfaceDof;
 
-/// Part of a motion that counts as none beside the largest one.
+/// Part of a motion, relative to the largest one, below which it counts as dependent.
 const DEPENDENT: f64 = 1e-3;
 
-/// Positions of the nodes that clusters share, and the axes of their unknowns, on all ranks.
+/// Positions of the clusters' shared nodes, and the axes of their unknowns, on all ranks.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SharedNodes {
     dim: usize,
@@ -38,7 +38,7 @@ impl SharedNodes {
                     let frame = frames.get(&node).unwrap_or(&Frame::CARTESIAN);
                     let axes = match (node as usize) < block.body_nodes() {
                         true => frame.axes,
-                        // No motion of bodies moves what lies between them.
+                        // Rigid motions of bodies don't move the nodes between them.
                         false => [[0.0; 3]; 3],
                     };
                     nodes.insert(number, (block.points()[node as usize], axes));
@@ -53,7 +53,7 @@ impl SharedNodes {
         shared
     }
 
-    /// Independent rigid motions of the unknowns of a class, a column each.
+    /// Independent rigid motions of the unknowns of a class, one per column.
     pub fn motions_of(&self, class: &Class) -> Mat<f64> {
         let at = |dof: &InterfaceDof| &self.nodes[&dof.node];
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

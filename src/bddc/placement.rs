@@ -1,4 +1,4 @@
-//! Places of the unknowns of a cluster: [own | shared], what it shares class after class.
+//! Positions of the unknowns of a cluster: [own | shared], shared ones class by class.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -14,11 +14,11 @@ use crate::schur::condensed::InterfaceDof;
 /// The unknowns of a cluster as [own | shared].
 #[derive(Debug)]
 pub struct Placement {
-    /// Each unknown of the cluster in terms of these, but for constants.
+    /// Each unknown of the cluster in terms of these, without constants.
     pub terms: Vec<Vec<(usize, f64)>>,
     /// Number of own ones.
     pub own: usize,
-    /// Places of its classes among those that it shares.
+    /// Ranges of its classes among the shared unknowns.
     pub ranges: Vec<Range<usize>>,
 }
 
@@ -75,7 +75,7 @@ impl Placement {
         self.own + self.ranges.last().map_or(0, |last| last.end)
     }
 
-    /// The stiffness of each class that `is_chosen`, by its place, from the `diagonal` of the cluster.
+    /// The stiffness of each class that `is_chosen`, by its index, from the `diagonal` of the cluster.
     pub fn sides(&self, diagonal: &[f64], is_chosen: impl Fn(usize) -> bool) -> Vec<Option<Side>> {
         let mut of_unknowns = vec![0.0; self.size()];
         for (terms, d) in self.terms.iter().zip(diagonal) {

@@ -1,20 +1,20 @@
-//! Levels of the preconditioner: from cheap ones to those that are good, or that can be made at all.
+//! Levels of the preconditioner, from cheap to good, with springs as a last resort.
 
-/// Classes that are made coarse, and whether the preconditioner is held where round-off keeps it from being definite.
+/// Choice of coarse unknowns, and whether springs hold the preconditioner where round-off keeps it from being definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PreconditionerLevel {
-    /// The rigid motions of classes, of which clusters have shares as their diagonals say, in single precision.
+    /// The rigid motions of classes, with the clusters' shares by their diagonals, in single precision.
     Diagonals,
     /// The rigid motions of classes.
     Motions,
     /// Coarse unknowns chosen by their energies.
     Energies,
-    /// Rigid motions, and all is held by a little.
+    /// Rigid motions, with weak springs on all unknowns.
     Held,
 }
 
 impl PreconditionerLevel {
-    /// The first level. In the plane clusters share so little that all of it can be looked at.
+    /// The first level. In the plane clusters share so few unknowns that their full stiffness is affordable.
     pub fn first(dim: usize) -> Self {
         match dim {
             3 => Self::Diagonals,
@@ -22,7 +22,7 @@ impl PreconditionerLevel {
         }
     }
 
-    /// Shares of diagonal entries of which the first is added that leaves something definite.
+    /// Shares of diagonal entries, the first of which that makes the matrix definite is added.
     pub fn holds(self) -> &'static [f64] {
         match self {
             Self::Held => &[0.0, 1e-13, 1e-11, 1e-9, 1e-7],
@@ -30,7 +30,7 @@ impl PreconditionerLevel {
         }
     }
 
-    /// The next one to be tried.
+    /// The next level to be tried.
     pub fn next(self) -> Option<Self> {
         match self {
             Self::Diagonals | Self::Motions => Some(Self::Energies),

@@ -1,4 +1,4 @@
-//! The solution for a load: clusters condense, conjugate gradients solve for what they share, clusters recover.
+//! The solution for a load: clusters condense, conjugate gradients solve for shared unknowns, clusters recover.
 
 use std::collections::BTreeMap;
 
@@ -20,41 +20,41 @@ use crate::schur::condensed::InterfaceDof;
 pub struct ClusterLoads<'a> {
     /// Loads on the boundaries of clusters, by node.
     pub clusters: &'a OnTreeNodes<Vec<f64>>,
-    /// The values of the closed jumps of every contact group, and of those of its ties behind all that are unknowns (m).
+    /// The values of the closed jumps of every contact group, followed by those of its ties (m).
     pub prescribed: &'a OnGroups<Vec<f64>>,
-    /// The forces on the open ones of every group with friction (N/m); others have none.
+    /// The forces on the open jumps of every group with friction (N/m); other groups have none.
     pub forces: &'a OnGroups<Vec<f64>>,
 }
 
 /// Accuracy to which a solution is iterated.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy<'a> {
-    /// Bound of the error in the energy norm, relative to that of the solution, about.
+    /// Approximate bound of the error in the energy norm, relative to that of the solution.
     pub tolerance: f64,
-    /// The unknowns of every cluster, by its node, in a solution that isn't far.
+    /// The unknowns of every cluster, by its node, in a nearby solution.
     pub start: Option<&'a OnTreeNodes<Vec<f64>>>,
 }
 
 impl Accuracy<'_> {
-    /// Accuracy of about round-off, from zero: with less, a solution is refined more often than not.
+    /// Accuracy of about round-off, from zero: less would require refinement more often than not.
     pub const FULL: Self = Self {
         tolerance: 1e-14,
         start: None,
     };
 }
 
-/// The answer to a load, on this rank.
+/// The response to a load, on this rank.
 #[derive(Debug, Default)]
 pub struct BddcSolution {
     /// The unknowns of every cluster, by its node.
     pub clusters: OnTreeNodes<Vec<f64>>,
-    /// The jumps and forces of every contact group between clusters; no force where open.
+    /// The jumps and forces of every contact group between clusters; 0 force where open.
     pub groups: OnGroups<Iterate>,
     /// The forces at the jumps of their ties.
     pub tied: OnGroups<Vec<f64>>,
-    /// Iterations that it took.
+    /// Number of iterations.
     pub iterations: usize,
-    /// True if they sufficed.
+    /// True if the iteration converged.
     pub is_solved: bool,
 }
 
@@ -124,7 +124,7 @@ impl Bddc {
             .collect()
     }
 
-    /// All unknowns of the clusters of this rank, of their condensed loads, the shared unknowns and the `constants`.
+    /// All unknowns of the clusters of this rank, from condensed loads, shared unknowns and the `constants`.
     fn recovered(
         &self,
         own: &Vectors,
@@ -142,7 +142,7 @@ impl Bddc {
         solved
     }
 
-    /// The shared unknowns for the clusters' parts of a load, the number of iterations and whether they sufficed.
+    /// The shared unknowns for the clusters' parts of a load, the number of iterations and whether they converged.
     /// Collective.
     fn iterate(
         &self,
@@ -170,7 +170,7 @@ impl Bddc {
         gradients.solve(b, start, accuracy.tolerance)
     }
 
-    /// The shared unknowns of clusters whose unknowns, by node, are `known`. Collective.
+    /// The shared unknowns of clusters from `known` unknowns by node. Collective.
     fn start(&self, comm: &Comm, known: &OnTreeNodes<Vec<f64>>, plan: &Plan) -> Vectors {
         let classes = &self.classes.list;
         let ends: Vec<(usize, MergeRootId)> = (classes.iter().enumerate())
@@ -210,8 +210,8 @@ impl Bddc {
         start
     }
 
-    /// Loads on clusters of forces on the jumps of the contact groups of this rank, on all ranks: the first that has
-    /// an unknown, and its place there. Collective.
+    /// Loads on clusters due to forces on the jumps of this rank's contact groups, on all ranks: the first cluster that
+    /// has an unknown, and its index there. Collective.
     fn loads_of(&self, comm: &Comm, forces: &OnGroups<Vec<f64>>) -> Vec<(MergeRootId, usize, f64)> {
         let mut loads = Vec::new();
         comm.gather(
@@ -236,7 +236,7 @@ impl Bddc {
         loads
     }
 
-    /// The constants of tied displacements beside the terms of others, on all ranks. Collective.
+    /// The constants of tied displacements, added to the terms of others, on all ranks. Collective.
     fn constants(&self, comm: &Comm, values: &OnGroups<Vec<f64>>) -> BTreeMap<InterfaceDof, f64> {
         let of_group = |i: usize| {
             let number = self.between[i].number;
@@ -249,8 +249,8 @@ impl Bddc {
         constants
     }
 
-    /// Jumps and forces of the contact groups of this rank, and those of their ties, for the unknowns of clusters and what is
-    /// `unbalanced` there. Collective.
+    /// Jumps and forces of this rank's contact groups, and the forces of their ties, from the unknowns of clusters and
+    /// the `unbalanced` forces there. Collective.
     fn answers(
         &self,
         comm: &Comm,

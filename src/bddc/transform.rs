@@ -1,13 +1,13 @@
-//! S of a cluster for the unknowns that closed contact conditions leave.
+//! S of a cluster on the unknowns left by closed contact conditions.
 
 use faer::Mat;
 
 use crate::schur::symmetric::PackedSymmetric;
 
-/// Most terms of a row of T that are gone through one by one.
+/// Most terms of a row of T that are processed one by one.
 const FEW_TERMS: usize = 8;
 
-/// Tᵀ S T, its lower triangle, of S with `springs` on its diagonal; T has a row of terms for every unknown of S.
+/// The lower triangle of Tᵀ S T, for S with `springs` on its diagonal; T has a row of terms for every unknown of S.
 pub fn transformed(
     s: &PackedSymmetric,
     springs: &[f64],
@@ -15,7 +15,7 @@ pub fn transformed(
     n: usize,
 ) -> Mat<f64> {
     let mut new = Mat::<f64>::zeros(n, n);
-    // Most unknowns stay what they are, but for their places.
+    // Most unknowns only change their positions.
     let place = |terms: &Vec<(usize, f64)>| match terms[..] {
         [(place, 1.0)] => Some(place),
         _ => None,
@@ -28,7 +28,7 @@ pub fn transformed(
         return permuted(s, &places);
     }
     let (of_many, many) = numbers_of_many(terms);
-    // With T of those of many terms, T_D, and the rest, T_F: S_DF T_F + ½ S_DD T_D is what T_Dᵀ multiplies, from both
+    // With the rows of T with many terms, T_D, and the others, T_F, T_Dᵀ multiplies S_DF T_F + ½ S_DD T_D, from both
     // sides.
     let mut s_many = Mat::<f64>::zeros(many, many);
     let mut product = Mat::<f64>::zeros(many, n);
@@ -67,7 +67,7 @@ pub fn transformed(
     new
 }
 
-/// The part of Tᵀ S T that an entry on the diagonal of S makes with the `terms` of its row, added.
+/// Adds the part of Tᵀ S T due to an entry on the diagonal of S with the `terms` of its row.
 fn add_diagonal(new: &mut Mat<f64>, terms: &[(usize, f64)], diagonal: f64) {
     for (at, &(b, d)) in terms.iter().enumerate() {
         new[(b, b)] += d * d * diagonal;
@@ -77,7 +77,7 @@ fn add_diagonal(new: &mut Mat<f64>, terms: &[(usize, f64)], diagonal: f64) {
     }
 }
 
-/// The numbers of the rows with many terms among those, and how many there are.
+/// The numbers of the rows with many terms among such rows, and their count.
 fn numbers_of_many(terms: &[Vec<(usize, f64)>]) -> (Vec<Option<usize>>, usize) {
     let mut many = 0;
     let number = |terms: &Vec<(usize, f64)>| {
@@ -89,8 +89,8 @@ fn numbers_of_many(terms: &[Vec<(usize, f64)>]) -> (Vec<Option<usize>>, usize) {
     (numbers, many)
 }
 
-/// Adds T_Dᵀ (S_DF T_F + ½ S_DD T_D) and its transpose, where `product` is S_DF T_F and `s_many` ½ S_DD; T_D has the rows
-/// of `terms` that have a number in `of_many`.
+/// Adds T_Dᵀ (S_DF T_F + ½ S_DD T_D) and its transpose, where `product` is S_DF T_F and `s_many` is ½ S_DD; T_D has the
+/// rows of `terms` with a number in `of_many`.
 fn add_many(
     new: &mut Mat<f64>,
     terms: &[Vec<(usize, f64)>],
@@ -121,7 +121,7 @@ fn is_permutation(places: &[usize], n: usize) -> bool {
     places.len() == n && is_there.iter().all(|there| *there)
 }
 
-/// S with its unknowns at other `places`, its lower triangle.
+/// The lower triangle of S with its unknowns at the positions `places`.
 fn permuted(s: &PackedSymmetric, places: &[usize]) -> Mat<f64> {
     let mut new = Mat::<f64>::zeros(s.size(), s.size());
     for (j, &b) in places.iter().enumerate() {
@@ -132,7 +132,7 @@ fn permuted(s: &PackedSymmetric, places: &[usize]) -> Mat<f64> {
     new
 }
 
-/// Adds `value` at (a, b) and (b, a), of which the lower one is kept.
+/// Adds `value` at (a, b) and (b, a), of which only the lower one is stored.
 fn add(s: &mut Mat<f64>, a: usize, b: usize, value: f64) {
     let both = if a == b { 2.0 * value } else { value };
     s[(a.max(b), a.min(b))] += both;

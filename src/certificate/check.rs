@@ -1,4 +1,4 @@
-//! The check of a block: what it says of its own part of the solution.
+//! The check of a block: residuals and largest values in its own part of the solution.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -18,24 +18,24 @@ use crate::fem::load::BlockLoads;
 use crate::schur::condensed::InterfaceDof;
 use crate::vector::{axpy, larger, largest};
 
-/// Normal force, relative to the largest in the group, without which a closed contact is about to open.
+/// Normal force, relative to the largest in the group, below which a closed contact is about to open.
 const NO_FORCE: f64 = 1e-12;
 
 /// Sums of loads, contact forces and support reactions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct External {
     pub force: [f64; 3],
-    /// Of absolute values.
+    /// Sum of absolute values of forces.
     pub force_scale: f64,
     pub moment: [f64; 3],
-    /// Of the absolute values of its terms.
+    /// Sum of absolute values of the moments' terms.
     pub moment_scale: f64,
     /// The largest coordinate (m).
     pub reach: f64,
 }
 
 impl External {
-    /// Adds a force that acts at a point; its own scale is counted by the components that it is made of.
+    /// Adds a force that acts at a point, without its scale, which its components are counted for.
     fn add(&mut self, at: [f64; 3], force: [f64; 3]) {
         self.force = advance(self.force, 1.0, force);
         self.moment = advance(self.moment, 1.0, cross(at, force));
@@ -46,7 +46,7 @@ impl External {
         }
     }
 
-    /// Adds what acts on another block.
+    /// Adds the external forces on another block.
     pub fn include(&mut self, other: Self) {
         *self = Self {
             force: advance(self.force, 1.0, other.force),
@@ -68,7 +68,7 @@ pub struct BlockCheck {
 }
 
 impl BlockCheck {
-    /// Checks displacements `u`, node by node; what it shares with others is for them to [check](SharedCheck), too.
+    /// Checks displacements `u`, node by node; the check of shared nodes and unknowns is [another one](SharedCheck).
     pub fn new(
         block: &Block,
         loads: &BlockLoads,
@@ -78,7 +78,7 @@ impl BlockCheck {
         let (mut check, mut shared) = (Self::default(), SharedCheck::default());
         check.most.displacement = largest(&u[..block.dim * block.body_nodes()]);
         check.most.load = balance.largest_load;
-        // Springs may carry at each node what acts there, so that nothing of both is left.
+        // Springs may carry the load at each node, so that both cancel.
         check.most.external = balance.largest_load;
         let prescribed = loads.supports.iter().map(|support| support.value);
         check.most.driven = prescribed.fold(0.0, larger);
@@ -146,13 +146,13 @@ impl BlockCheck {
 }
 
 impl Most {
-    /// Largest violations at the points of a contact `group` with these gaps left and these forces at its conditions, of
-    /// which these are `closed`.
+    /// Largest violations at the points of a contact `group` with these remaining gaps and these forces at its
+    /// conditions, and flags of the `closed` ones.
     pub fn at_points(group: &ContactGroup, gaps: &[f64], forces: &[f64], closed: &[bool]) -> Self {
         let mut most = Self::default();
         for ((&gap, &force), condition) in gaps.iter().zip(forces).zip(group.conditions()) {
             if condition.is_tied {
-                // One that is left to a support has no force, and may have any jump.
+                // A tie that is left to a support has no force, and may have any jump.
                 let jump = if force == 0.0 { 0.0 } else { gap };
                 most.penetration = larger(most.penetration, jump);
                 most.contact_force = larger(most.contact_force, force);
@@ -183,8 +183,8 @@ impl Most {
     }
 }
 
-/// The lesser of slip and of what the force that opposes it lacks of its bound, each over its scale, at the point of a contact
-/// `group` where that is most.
+/// The lesser of slip and the shortfall of the opposing force from its bound, each over its scale, at the point of a
+/// contact `group` where it is largest.
 pub fn not_opposed(
     group: &ContactGroup,
     [gaps, forces]: [&[f64]; 2],
@@ -210,7 +210,7 @@ pub fn not_opposed(
     points.into_iter().map(of_point).fold(0.0, larger)
 }
 
-/// A point whose slips are those of limits where it doesn't stick.
+/// A point with the slips of its limits, 0 where it sticks.
 fn slipped(point: &PointLaw, gaps: &[f64], forces: &[f64], closed: &[bool]) -> PointState {
     point.at(|j| if closed[j] { 0.0 } else { -gaps[j] }, forces, closed)
 }

@@ -7,9 +7,9 @@
 //! ½ (f_n + f)ᵀ Δu + ½ (r_n + r)ᵀ Δu = ΔE + ½ (λ_n + λ)ᵀ B Δu,    E = ½ uᵀ K u
 //! ```
 //!
-//! Dissipated work of friction, λ_tᵀ Δw, has the force at the end. The rest of the work of contacts is an error of finite
-//! increments: forces that change while something slips, and pressure on the way of a gap that opens or closes. It
-//! vanishes as increments become small, but for what an interference fit brings in.
+//! Dissipated work of friction, λ_tᵀ Δw, has the force at the end. The rest of the work of contacts is an error of
+//! finite increments: forces that change during slip, and pressure while a gap opens or closes. It vanishes as
+//! increments become small, except for the energy of an interference fit.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,11 +20,11 @@ use crate::fem::block::Block;
 use crate::fem::load::BlockLoads;
 use crate::vector::{axpy, dot};
 
-/// Smallest error, relative to all terms of forces times displacements, that isn't round-off.
+/// Smallest error beyond round-off, relative to all terms of forces times displacements.
 const NOT_ROUND_OFF: f64 = 1e-12;
 
-/// Balance of energy in a load step, with the mean of the forces at both ends of every increment (J, per
-/// metre of thickness in the plane); in a load step in which bodies or contacts come or go, on the way from unloaded bodies.
+/// Balance of energy in a load step, with the mean of the forces at both ends of every increment (J, per metre of
+/// thickness in the plane); in a load step in which bodies or contacts come or go, from unloaded bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EnergyBalance {
     /// Work of loads.
@@ -33,13 +33,13 @@ pub struct EnergyBalance {
     pub work_of_supports: f64,
     /// Change of the elastic energy ½ uᵀ K u.
     pub elastic_energy: f64,
-    /// Work of contacts: `dissipated_work`, and an error of finite increments beyond it, which vanishes as these
-    /// become small; less than nothing where an interference fit brings energy in.
+    /// Work of contacts: `dissipated_work`, and an error of finite increments, which vanishes as these become small;
+    /// negative where an interference fit brings energy in.
     pub work_of_contacts: f64,
-    /// Difference of the sum of the first two and that of the other two, relative to the largest of the four and of the
-    /// elastic energy.
+    /// Difference between the sum of the first two and that of the other two, relative to the largest of the four and
+    /// of the elastic energy.
     pub imbalance: f64,
-    /// True if that is more than round-off.
+    /// True if the imbalance is more than round-off.
     #[serde(skip)]
     pub is_off: bool,
 }
@@ -51,17 +51,17 @@ pub struct BlockEnergy {
     displacement: Reals,
     /// f, r and Bᵀλ (N per metre of thickness).
     forces: [Reals; 3],
-    /// ½ uᵀ K u; of a block it may have any sign.
+    /// ½ uᵀ K u; a single block's may have any sign.
     elastic: f64,
     /// Σ |terms of forces| |u|.
     terms: f64,
 }
 
-/// Work of f, r and Bᵀλ on a block, its elastic energy before and after, and all terms.
+/// Work of f, r and Bᵀλ on a block, its elastic energy before and after, and the size of all terms.
 pub type BlockWork = [f64; 6];
 
 impl BlockEnergy {
-    /// Of a block with this `balance` at displacements `u`, which are `displacement` with the closing motions of bodies.
+    /// Data of a block with this `balance` at displacements `u`; `displacement` includes the closing motions of bodies.
     pub fn new(
         block: &Block,
         loads: &BlockLoads,
@@ -91,7 +91,7 @@ impl BlockEnergy {
         }
     }
 
-    /// Work done in the increment from the state `before`, that of unloaded bodies if there is none.
+    /// Work in the increment from the state `before`, from unloaded bodies if there is none.
     pub fn work(&self, before: Option<&Self>) -> BlockWork {
         let mut increment = self.displacement.0.clone();
         if let Some(before) = before {
@@ -112,7 +112,7 @@ impl BlockEnergy {
 }
 
 impl EnergyBalance {
-    /// True if all of it are finite numbers.
+    /// True if all are finite numbers.
     pub fn is_finite(&self) -> bool {
         let works = [
             self.work_of_loads,
@@ -141,7 +141,7 @@ impl EnergyBalance {
         }
     }
 
-    /// Balance of an `earlier` increment and this one.
+    /// Balance of an `earlier` increment together with this one.
     pub fn since(self, earlier: Self) -> Self {
         Self {
             work_of_loads: earlier.work_of_loads + self.work_of_loads,

@@ -1,4 +1,4 @@
-//! The largest numbers that a check of the discrete problem comes to.
+//! The largest values in a check of the discrete problem.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,9 +7,9 @@ use crate::vector::larger;
 /// Largest terms in a block, or in several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Most {
-    /// Residual along directions that are free (N/m).
+    /// Residual along free directions (N/m).
     pub residual: f64,
-    /// The terms of such a residual (N/m).
+    /// The terms of a residual (N/m).
     pub scale: f64,
     /// Penetration (m).
     pub penetration: f64,
@@ -27,7 +27,7 @@ pub struct Most {
     pub bound: f64,
     /// Tangential force beyond its bound (N/m).
     pub beyond_bound: f64,
-    /// Way of a point that sticks from where it does (m).
+    /// Displacement of a sticking point from where it sticks (m).
     pub astray: f64,
     /// Slip times the part of the tangential force across it (N).
     pub aside: f64,
@@ -37,12 +37,12 @@ pub struct Most {
     pub driven: f64,
     /// Jump of the displacement across Γ (m).
     pub jump: f64,
-    /// Force that the bodies' closing motions would cause if it weren't rigid (N/m).
+    /// Force that the bodies' closing motions would cause if they weren't rigid (N/m).
     pub rest: f64,
 }
 
 impl Most {
-    /// Of everything the larger of two.
+    /// The larger of two in every value.
     pub fn include(&mut self, other: Self) {
         *self = Self {
             residual: larger(self.residual, other.residual),

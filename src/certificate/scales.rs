@@ -1,4 +1,4 @@
-//! The scales of load steps: what is left of forces and displacements once the load is gone is round-off of those before.
+//! The scales of load steps: forces and displacements left after unloading are round-off of the earlier ones.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use super::most::Most;
 use crate::vector::NOTHING;
 use crate::vector::larger;
 
-/// Part of the largest displacement that counts as much as the whole force of friction: displacements are known better.
+/// Part of the largest displacement that counts like the whole friction force, as displacements are more accurate.
 const SLIP_LIKE_FORCE: f64 = 0.1;
 
 /// The largest scales of some load steps.
@@ -23,7 +23,7 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The scales of a load step in which this was largest.
+    /// The scales of a load step with these largest values.
     pub(super) fn of(most: &Most) -> Self {
         Self {
             terms: most.scale,
@@ -33,7 +33,7 @@ impl Scales {
         }
     }
 
-    /// The larger ones of two.
+    /// The larger scales of two.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -44,11 +44,11 @@ impl Scales {
         }
     }
 
-    /// Puts these in the place of scales of a later load step that are nothing beside them.
+    /// Replaces scales of a later load step that vanish against these.
     pub(super) fn replace_nothing(self, most: &mut Most) {
         if most.displacement < NOTHING * self.displacement {
             most.displacement = self.displacement;
-            // So far it was driven then.
+            // The earlier load step was driven that far.
             most.driven = larger(most.driven, self.displacement);
         }
         if most.scale < NOTHING * self.terms {
@@ -77,7 +77,7 @@ pub struct SlipScales {
 }
 
 impl SlipScales {
-    /// The lesser of a slip (m) and of what a force lacks (N/m).
+    /// The lesser of a slip (m) and of the shortfall of a force (N/m), each over its scale.
     pub(super) fn lesser(self, slip: f64, lacks: f64) -> f64 {
         if lacks <= 0.0 {
             // Without any contact force there is no scale of it either.

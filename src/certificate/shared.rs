@@ -13,19 +13,19 @@ use crate::vector::larger;
 pub struct SharedCheck {
     /// Traces of the block on Γ.
     pub(super) trace_dofs: Vec<InterfaceDof>,
-    /// Residual on them, to be summed over the blocks that share them.
+    /// Residual on these traces, to be summed over the blocks that share them.
     #[serde(with = "crate::bytes")]
     pub(super) residual: Vec<f64>,
     #[serde(with = "crate::bytes")]
     pub(super) scale: Vec<f64>,
-    /// The nodes, and the displacement there.
+    /// The nodes, and their displacements.
     pub(super) nodes: Vec<u32>,
     #[serde(with = "crate::bytes")]
     pub(super) displacement: Vec<f64>,
 }
 
 impl SharedCheck {
-    /// Splits it into `count` parts that have whole nodes, those of a node always in the same one.
+    /// Splits the check into `count` parts by nodes, each node always in the same part.
     pub fn parts(self, count: usize) -> Vec<Self> {
         if count == 1 {
             return vec![self];
@@ -48,8 +48,8 @@ impl SharedCheck {
     }
 }
 
-/// Largest values at the nodes of `checks`, in the order of blocks: the residual and its scale, and the
-/// jump of the displacement.
+/// Largest values at the nodes of `checks`, in the order of blocks: the residual and its scale, and the jump of the
+/// displacement.
 pub fn at_shared_nodes<'a>(checks: impl Iterator<Item = &'a SharedCheck>) -> Most {
     let mut sums: HashMap<InterfaceDof, [f64; 2]> = HashMap::new();
     let mut known: HashMap<u32, &[f64]> = HashMap::new();

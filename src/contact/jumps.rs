@@ -1,20 +1,18 @@
-//! Jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g, and what slips.
+//! Jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g, and slips as tangential jumps.
 //!
-//! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides, less what supports prescribe of it.
-//! Solving that equation for one of its unknowns makes t an unknown in that one's place, so that a pair's
-//! problem has nothing but bounds t ≤ g; t = 0 is the bilateral problem (16). With friction the tangential jumps become
-//! unknowns in the same way. Where more conditions meet than there are directions, what is left of a condition is a
-//! combination of other jumps.
+//! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides, less the part that supports prescribe.
+//! Solving that equation for one of its unknowns replaces this unknown by t, so that a pair's problem has only bounds t
+//! ≤ g; t = 0 is the bilateral problem (16). With friction the tangential jumps become unknowns in the same manner.
+//! Where more conditions meet than there are directions, a condition's remainder is a combination of other jumps.
 
 use std::collections::{BTreeMap, HashMap};
 
-/// Coefficients of unit normals are of order one; what elimination leaves of a condition that
-/// depends on others is round-off.
+/// Coefficients of unit normals are of order one; elimination reduces a condition that depends on others to round-off.
 const ROUND_OFF: f64 = 1e-10;
-/// Share of its largest coefficient below which a condition is nearly parallel to others.
+/// Share of its largest coefficient below which a condition's remainder counts as nearly parallel to others.
 const PARALLEL: f64 = 0.1;
 
-/// Unknowns that a displacement is a sum of once the jumps are unknowns.
+/// Unknowns whose combination a displacement is once the jumps are unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variable {
     /// A component of a node along an axis of its frame.
@@ -47,8 +45,8 @@ impl Sum {
         self.terms.iter().map(coefficient).fold(0.0, f64::max)
     }
 
-    /// This in terms of jumps alone, if it is so but for round-off: of unknown ones, and what the first `tied` ones, which
-    /// are known, add to it.
+    /// The sum in terms of jumps alone, if it contains no more up to round-off: unknown jumps, and the parts of the
+    /// first `tied` jumps, which are known.
     fn of_jumps(&self, tied: usize) -> Option<(JumpOf, Vec<(usize, f64)>)> {
         let (mut terms, mut known) = (Vec::new(), Vec::new());
         for (&variable, &factor) in self.terms.iter().filter(|(_, c)| c.abs() > ROUND_OFF) {
@@ -68,7 +66,7 @@ impl Sum {
         Some((of, known))
     }
 
-    /// Puts `value` in the place of `variable`.
+    /// Replaces `variable` by `value`.
     fn substitute(&mut self, variable: Variable, value: &Self) {
         let Some(factor) = self.terms.remove(&variable) else {
             return;
@@ -79,26 +77,26 @@ impl Sum {
     }
 }
 
-/// Where the jump of a condition is found.
+/// Relation of a condition's jump to the unknown jumps.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JumpOf {
-    /// It is `factor`·t of an unknown jump t, factor > 0. The condition whose unknown that is
-    /// has 1; one that says the same again shares it.
+    /// `factor`·t of an unknown jump t, factor > 0. The condition that defines t has factor 1; an equivalent condition
+    /// shares t.
     Unknown {
         /// Number of the jump.
         number: usize,
         /// Factor.
         factor: f64,
     },
-    /// It is Σ factor·t of several unknown jumps, or a negative multiple of one: numbers and factors.
+    /// Σ factor·t of several unknown jumps, or a negative multiple of one: numbers and factors.
     Combination(Vec<(usize, f64)>),
-    /// Supports prescribe it on both sides, or ties whose jumps make it.
+    /// Prescribed by supports on both sides, or by ties whose jumps it combines.
     Prescribed,
-    /// It is that of a tie, which is known: its number among those.
+    /// The known jump of a tie, by its number among ties.
     Tied(usize),
 }
 
-/// For each of `jumps` the condition that it is the unknown of.
+/// The condition that defines each of these `jumps` as an unknown.
 pub fn defining_conditions(of: &[JumpOf], jumps: usize) -> Vec<usize> {
     let mut defining = vec![0; jumps];
     for (j, of) in of.iter().enumerate().rev() {
@@ -113,7 +111,7 @@ pub fn defining_conditions(of: &[JumpOf], jumps: usize) -> Vec<usize> {
     defining
 }
 
-/// A condition none of whose unknowns may be replaced: its number.
+/// The number of a condition none of whose unknowns may be replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoUnknown(pub usize);
 
@@ -122,30 +120,30 @@ pub struct NoUnknown(pub usize);
 pub struct Jumps {
     /// The unknown that each jump replaces.
     pub pivots: Vec<u32>,
-    /// These unknowns in terms of those that stay.
+    /// The replaced unknowns in terms of the remaining ones.
     pub replaced: BTreeMap<u32, Sum>,
-    /// Where the jump of each condition is found.
+    /// Relation of every condition's jump to the unknown ones.
     pub of: Vec<JumpOf>,
-    /// The unknowns that the jumps of ties replace; in terms of others these come first.
+    /// The unknowns that the jumps of ties replace; these jumps are numbered before all others.
     pub tied: Vec<u32>,
-    /// For each condition the known jumps that are a part of it: their numbers, and factors.
+    /// The known jumps contained in each condition: numbers and factors.
     pub known: BTreeMap<usize, Vec<(usize, f64)>>,
 }
 
-/// Conditions of ties.
+/// Predicate for the conditions of ties.
 pub type IsTied<'a> = &'a dyn Fn(usize) -> bool;
 
-/// A jump of those that have unknowns of their own.
+/// A jump that replaced an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OwnJump {
-    /// An unknown of the contact problem, by its number among these.
+    /// An unknown of the contact problem, by its number among these unknowns.
     Unknown(usize),
     /// Jump of a tie, by its number among ties.
     Tied(usize),
 }
 
 impl Jumps {
-    /// The jump that a variable of that number is.
+    /// The jump of the variable with this number.
     pub fn own(&self, number: u32) -> OwnJump {
         let number = number as usize;
         match number.checked_sub(self.tied.len()) {
@@ -154,7 +152,7 @@ impl Jumps {
         }
     }
 
-    /// The condition that each jump of a tie is that of.
+    /// The condition of each tie's jump.
     pub fn tied_conditions(&self) -> Vec<usize> {
         let mut conditions = vec![0; self.tied.len()];
         for (j, of) in self.of.iter().enumerate() {
@@ -165,7 +163,7 @@ impl Jumps {
         conditions
     }
 
-    /// Takes from the bounds of conditions what known jumps are of their jumps.
+    /// Subtracts the parts of known jumps from the bounds of conditions.
     pub fn subtract_known(&self, bounds: &mut [f64]) {
         let tied = self.tied_conditions();
         let values: Vec<f64> = tied.iter().map(|&j| bounds[j]).collect();
@@ -175,13 +173,13 @@ impl Jumps {
         }
     }
 
-    /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns, first those that are `tied`: in terms of
-    /// their jumps, which are known, others are found.
+    /// Solves each of `rows`, t = b·v, in their order, for one of its unknowns, the `tied` ones first, as the jumps of
+    /// ties are known and may occur in others.
     ///
-    /// `may_go` tells which unknowns may be replaced (not those that others share), `stiffness` how stiff the body is around them: the softer side follows the stiffer one, because
-    /// a stiff side in terms of a soft one is a small difference of large forces. Where some depend
-    /// on others, those that are nearly parallel to others come last: a combination of these would
-    /// have large factors.
+    /// `may_go` tells which unknowns may be replaced (not those that others share), `stiffness` how stiff the body is
+    /// around them: the softer side follows the stiffer one, because a stiff side in terms of a soft one is a small
+    /// difference of large forces. If rows depend on others, the nearly parallel ones come last, as combinations of
+    /// these would have large factors.
     ///
     /// # Errors
     /// The first condition none of whose unknowns may be replaced.
@@ -203,8 +201,7 @@ impl Jumps {
         }
     }
 
-    /// Solves `rows`, those last of which elimination leaves less than a share `least` of their largest
-    /// coefficient.
+    /// Solves `rows`, last those that elimination reduces to less than a share `least` of their largest coefficient.
     fn solve(
         rows: &[JumpRow],
         tied: IsTied<'_>,
@@ -252,7 +249,7 @@ impl Jumps {
         Ok(jumps)
     }
 
-    /// A condition's jump in terms of what isn't replaced so far.
+    /// A condition's jump in terms of the unknowns not replaced so far.
     fn remainder(&self, row: &JumpRow) -> Sum {
         let mut rest = Sum::default();
         for &(v, c) in row {
@@ -266,9 +263,9 @@ impl Jumps {
         rest
     }
 
-    /// Solves t = `rest` for its best unknown, or finds that jumps which are unknowns already
-    /// make it. What the fewest other conditions have is best, `elsewhere` tells how many: there it is replaced, too,
-    /// and where these had to be solved for what others have every condition would end up with the unknowns of all.
+    /// Solves t = `rest` for its best unknown, or expresses it by jumps that are unknowns already. The best unknown
+    /// occurs in the fewest other conditions, which `elsewhere` counts: it is replaced there, too, and conditions
+    /// solved for widely shared unknowns would all end up with the unknowns of all others.
     fn solve_for_one(
         &mut self,
         mut rest: Sum,

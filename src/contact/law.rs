@@ -37,14 +37,14 @@ pub enum PointStatus {
     },
 }
 
-/// The linear law of a tangential force: Σ factor·force + Σ factor·slip = constant, all of limits.
+/// The linear law of a tangential force, with forces and slips of limits: Σ factor·force + Σ factor·slip = constant.
 #[derive(Clone, Debug)]
 pub struct LinearLaw {
-    /// The limit whose force that is.
+    /// The limit whose force the law determines.
     pub limit: usize,
     /// Forces and their factors.
     pub forces: Vec<(usize, f64)>,
-    /// Ways beyond bounds and their factors (N/m).
+    /// Slips and their factors (N/m).
     pub slips: Vec<(usize, f64)>,
     /// The constant (N/m).
     pub constant: f64,
@@ -78,20 +78,20 @@ impl PointState {
     }
 }
 
-/// The part across a direction of a force that is at its bound and has so much `along` it (N/m).
+/// Component of a force at its bound across a direction along which its component is `along` (N/m).
 pub(super) fn rest_of_bound(bound: f64, along: f64) -> f64 {
     let along = along.abs().min(bound);
     ((bound - along) * (bound + along)).sqrt()
 }
 
-/// A point with friction: its limits, and what bounds its force.
+/// The friction law of a point: its limits and the bound of its force.
 #[derive(Clone, Copy, Debug)]
 pub struct PointLaw {
-    /// The limit of its normal jump, where there is one that carries force.
+    /// The limit of its normal jump, if that carries force.
     pub normal: Option<usize>,
     /// The limit of its first tangential jump.
     pub first: usize,
-    /// The limits of its tangential jumps, the second of which may not be one.
+    /// The limits of its tangential jumps; the second one may be missing.
     pub tangents: [Option<usize>; 2],
     /// Slip along the second tangent where supports prescribe it (m).
     pub prescribed: f64,
@@ -102,7 +102,7 @@ pub struct PointLaw {
 }
 
 impl PointLaw {
-    /// The law of the point whose first tangential limit is `tangent`, with this r (N/m); `None` where it is the second.
+    /// The law of the point whose first tangential limit is `tangent`, with this r (N/m); `None` if it is the second.
     pub fn new(tangent: &TangentialLimit, stiffness: f64) -> Option<Self> {
         let (tangents, prescribed) = tangent.of_point()?;
         Some(Self {
@@ -115,7 +115,7 @@ impl PointLaw {
         })
     }
 
-    /// True if the point can slip along one line alone.
+    /// True if the point can slip along a single line only.
     pub fn is_along_a_line(&self) -> bool {
         self.tangents[1].is_none() && self.prescribed == 0.0
     }
@@ -125,7 +125,7 @@ impl PointLaw {
         self.tangents.into_iter().flatten()
     }
 
-    /// The point where limits are so far `beyond` their bounds, under these `forces` and as these are `closed`.
+    /// The state of the point for the violations `beyond` of bounds, these `forces` and the limits that are `closed`.
     pub fn at(&self, beyond: impl Fn(usize) -> f64, forces: &[f64], closed: &[bool]) -> PointState {
         let [first, second] = self.tangents;
         let is_closed = self.is_closed(closed);
@@ -145,12 +145,12 @@ impl PointLaw {
         self.normal.is_some_and(|n| closed[n])
     }
 
-    /// True if it has no force in an open contact, and this one is.
+    /// True if its contact is open and its tangential force therefore vanishes.
     pub fn has_opened(&self, closed: &[bool]) -> bool {
         self.bound.only_closed && !self.is_closed(closed)
     }
 
-    /// ξ_t. Along a prescribed slip the force is what the bound leaves.
+    /// ξ_t. Along a prescribed slip the force is the rest of the bound.
     pub fn reach(&self, at: &PointState) -> [f64; 2] {
         let [along, mut across] = at.force;
         if self.prescribed != 0.0 {
@@ -160,7 +160,7 @@ impl PointLaw {
         [along + r * at.slip[0], across + r * at.slip[1]]
     }
 
-    /// The status there: sticking up to b + `slack`.
+    /// The status in this state: sticking up to b + `slack`.
     pub fn status(&self, at: &PointState, slack: f64) -> PointStatus {
         let (xi, bound) = (self.reach(at), at.bound);
         let size = xi[0].hypot(xi[1]);
@@ -174,15 +174,15 @@ impl PointLaw {
         }
     }
 
-    /// The linear laws of its tangential forces with this status, where its contact is closed or not: with b = c + μ λ and
-    /// whatever r > 0
+    /// The linear laws of its tangential forces with this status in a closed or an open contact: with b = c + μ λ and
+    /// any r > 0
     ///
     /// ```text
     /// e (eᵀ λ_t − b) + w (P λ_t − κ P s) = 0,    w = r / (r + κ)
     /// ```
     ///
-    /// and e λ in the place of the first part where the contact is about to open. w keeps what they miss as large as forces
-    /// are. None where it doesn't slip.
+    /// with e λ instead of the first term where the contact is about to open. w keeps residuals as large as forces.
+    /// Empty where the point doesn't slip.
     pub fn linear(&self, status: &PointStatus, is_closed: bool) -> Vec<LinearLaw> {
         let (e, turning, parts) = match *status {
             PointStatus::Slips { direction, turning } => (direction, turning, false),
@@ -195,7 +195,7 @@ impl PointLaw {
             false => self.bound.line(is_closed),
         };
         let weight = self.stiffness / (self.stiffness + turning);
-        // Where the other force isn't an unknown, the law of this one stands alone.
+        // The law of one force stands alone where the other isn't an unknown.
         let alone = self.tangents[1].is_none();
         let equation = |(k, limit): (usize, Option<usize>)| {
             let share = e[k] * if alone && !parts { weight } else { 1.0 };
@@ -228,7 +228,7 @@ impl PointLaw {
         tangents.filter_map(equation).collect()
     }
 
-    /// κ (N/m), 0 where nothing can slip but along one line.
+    /// κ (N/m), 0 for a point that can slip along a single line only.
     pub fn turning(&self, stiffness: f64) -> f64 {
         match self.is_along_a_line() {
             true => 0.0,

@@ -1,5 +1,5 @@
-//! The laws of all points of a contact problem, or of a contact group: what every limit should do at an iterate, and what
-//! it misses.
+//! The contact laws of a contact problem, or of a contact group: the status every limit should have at an iterate, and
+//! its residual.
 
 use std::mem::discriminant;
 
@@ -10,14 +10,14 @@ use super::friction::Status;
 use super::law::{PointLaw, PointState, PointStatus};
 use super::limits::TangentialLimit;
 
-/// Slips that turn about in a row of steps from which on a point's r is lowered, and the part of it that is left.
+/// Slip reversals from which on a point's r is lowered, and the factor it is lowered by.
 const TURNS: usize = 3;
 const SOFTER: f64 = 0.1;
 
-/// The laws of all limits.
+/// The contact laws of all limits.
 #[derive(Clone, Debug)]
 pub struct ContactLaws<'a> {
-    /// g, then d (m): where limits are closed, or stick.
+    /// g, then d (m): the jumps of limits that are closed or stick.
     pub bounds: &'a [f64],
     /// D.
     pub rows: &'a DependentConstraints,
@@ -27,35 +27,35 @@ pub struct ContactLaws<'a> {
     pub is_tangential: Vec<bool>,
     /// r of every limit (N/m).
     pub stiffness: Vec<f64>,
-    /// Number of full steps in which the slip of every point has turned about.
+    /// Full steps so far in which the slip of each point reversed.
     turns: Vec<usize>,
 }
 
 /// The statuses of all limits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statuses {
-    /// Closed limits, of those that aren't tangential.
+    /// Flags of the closed limits, tangential ones excepted.
     pub closed: Vec<bool>,
-    /// The points with friction.
+    /// The tangential statuses of points with friction.
     pub points: Vec<PointStatus>,
-    /// The past of every point in the search.
+    /// The history of every point in the search.
     pub past: Vec<Past>,
 }
 
-/// The past of a point whose cohesion vanishes as it opens.
+/// The history in the search of a point whose cohesion vanishes as it opens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Past {
     /// Never open since the search began.
     Closed,
-    /// Open once: where it would open again it parts first.
+    /// Opened once: it parts first if it is to open again.
     Opened,
-    /// Beyond its cohesion as it parted, and not open since: where it parts and is beyond it again, neither sticking nor
-    /// slipping is right, and it opens.
+    /// Force above the cohesion as it parted, and not open since: if it parts and exceeds the cohesion again, neither
+    /// sticking nor slipping is right, and it opens.
     Exceeded,
 }
 
 impl Past {
-    /// The past after a step in which a point had the first status and should have the second.
+    /// The history after a step in which a point had the first status and should have the second.
     fn after(self, was: PointStatus, right: PointStatus) -> Self {
         match (was, right) {
             (_, PointStatus::Open) => Self::Opened,
@@ -77,15 +77,15 @@ pub struct Iterate {
 /// Residual of the contact laws at an iterate.
 #[derive(Clone, Debug)]
 pub struct LawResidual {
-    /// Statuses that all limits should have there.
+    /// The statuses that all limits should have there.
     pub statuses: Statuses,
-    /// The limits whose status is wrong, where those before are known.
+    /// Limits with a wrong status, where the previous statuses are known.
     pub wrong: Vec<usize>,
-    /// Σ x²/r of what every limit misses of its law, as a force x.
+    /// Σ x²/r over the residuals x of all limits, as forces.
     pub squares: f64,
     /// Σ λ²/r of the forces.
     pub forces: f64,
-    /// The largest of what they miss, relative to the scales of forces, where these are known.
+    /// The largest residual relative to the scales of forces, where these are known.
     pub missed: f64,
 }
 
@@ -104,7 +104,7 @@ impl<'a> ContactLaws<'a> {
             let Some(([_, second], _)) = tangent.of_point() else {
                 continue;
             };
-            // The same along both tangents, however they are turned.
+            // The friction law must not depend on how the tangents are turned, so r is equal along both.
             let mean = second.map_or(stiffness[tangent.limit], |other| {
                 0.5 * (stiffness[tangent.limit] + stiffness[other])
             });
@@ -133,13 +133,13 @@ impl<'a> ContactLaws<'a> {
         value - self.bounds[i]
     }
 
-    /// A point at an iterate where these limits are `closed`.
+    /// The state of a point at an iterate with these limits `closed`.
     pub fn point(&self, point: &PointLaw, at: &Iterate, closed: &[bool]) -> PointState {
         point.at(|i| self.beyond(i, at), &at.forces, closed)
     }
 
-    /// The status of point k whose cohesion vanishes as it opens, where it parted `before` or would open once more; `None`
-    /// where the statuses `now` are right.
+    /// The status of point k with a cohesion that vanishes on opening, if it parted `before` or would open once more;
+    /// `None` where the statuses `now` are right.
     fn parting(
         &self,
         k: usize,
@@ -191,7 +191,7 @@ impl<'a> ContactLaws<'a> {
         .filter(|_| before.closed[n])
     }
 
-    /// Known jumps where limits have these statuses: closed, or sticking.
+    /// Flags of the limits whose jump is known under these statuses: closed or sticking ones.
     pub fn known(&self, statuses: &Statuses) -> Vec<bool> {
         let mut known = statuses.closed.clone();
         for (point, status) in self.points.iter().zip(&statuses.points) {
@@ -202,7 +202,7 @@ impl<'a> ContactLaws<'a> {
         known
     }
 
-    /// The statuses of limits with these `status` at an iterate.
+    /// Statuses at an iterate that correspond to the `status` of every limit.
     pub fn begin(&self, status: &[Status], at: &Iterate) -> Statuses {
         let closed: Vec<bool> = status.iter().map(|status| status.is_closed()).collect();
         let of_point = |point: &PointLaw| {
@@ -238,7 +238,7 @@ impl<'a> ContactLaws<'a> {
         }
     }
 
-    /// Puts the statuses of another load step in the place of `own`, but those of slips that supports prescribe.
+    /// Replaces the statuses `own` by those of another load step, except at slips that supports prescribe.
     pub fn take_over(&self, known: &Statuses, own: &mut Statuses) {
         if known.closed.len() != own.closed.len() || known.points.len() != own.points.len() {
             return;
@@ -255,8 +255,8 @@ impl<'a> ContactLaws<'a> {
         }
     }
 
-    /// Residual of the contact laws at an iterate; limits keep the statuses `before` within a share `stays` of the scales of forces
-    /// that stand beside them.
+    /// Residual of the contact laws at an iterate; a limit keeps its status `before` within `stays` times its scale of
+    /// forces.
     pub fn residual(
         &self,
         at: &Iterate,
@@ -317,8 +317,8 @@ impl<'a> ContactLaws<'a> {
         }
     }
 
-    /// Lowers r of points whose slip turns about again and again between the statuses of steps: |λ_t + r s| ≤ b, where they
-    /// would stick, is too narrow for them where they are much stiffer than what moves them.
+    /// Lowers r of points whose slip reverses from step to step: |λ_t + r s| ≤ b, the set in which they would stick, is
+    /// too narrow for points much stiffer than the bodies that move them.
     pub fn soften(&mut self, before: &Statuses, now: &Statuses) {
         let statuses = before.points.iter().zip(&now.points);
         let points = self.points.iter_mut().zip(&mut self.turns);
@@ -345,7 +345,7 @@ impl<'a> ContactLaws<'a> {
         all.map(|(x, r)| x * x / r).sum()
     }
 
-    /// The limits whose statuses differ, the first tangential one of a point.
+    /// Limits whose statuses differ, a point with friction by its first tangential one.
     fn wrong(&self, before: &Statuses, now: &Statuses) -> Vec<usize> {
         let closed = before.closed.iter().zip(&now.closed).enumerate();
         let normals = closed.filter(|(_, (a, b))| a != b).map(|(i, _)| i);
@@ -359,7 +359,7 @@ impl<'a> ContactLaws<'a> {
             .collect()
     }
 
-    /// Violation of its law by every limit, as a force (N/m).
+    /// Residual of every limit's law, as a force (N/m).
     pub fn missed(&self, at: &Iterate, statuses: &Statuses) -> Vec<f64> {
         let normal = |i: usize| match statuses.closed[i] {
             true => -self.stiffness[i] * self.beyond(i, at),

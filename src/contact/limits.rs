@@ -11,26 +11,26 @@ use super::status::{FixedStatus, LimitState};
 use super::tangent::{ForceBound, TangentialCondition};
 pub use super::tangent::{OtherTangent, TangentialLimit};
 
-/// A slip, relative to the displacements that are prescribed, that is none.
+/// Slip, relative to the prescribed displacements, below which it counts as zero.
 const ROUND_OFF: f64 = 1e-14;
 
-/// A tangential jump that supports prescribe on both sides: its force moves nothing.
+/// A tangential jump that supports prescribe on both sides, so that its force moves nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct PrescribedSlip {
-    /// The condition, and the normal one of its point.
+    /// The condition, and the normal condition of its point.
     condition: usize,
     normal: usize,
     /// Bound of its force.
     bound: ForceBound,
-    /// The slip in the load step (m), and that along the other tangent of the point if it is prescribed, too.
+    /// The slip in the load step (m), and the one along the point's other tangent if that is prescribed, too.
     slip: f64,
     beside: f64,
-    /// The condition along the other tangent if supports leave that free.
+    /// The condition along the other tangent if supports leave that one free.
     other: Option<usize>,
 }
 
 impl PrescribedSlip {
-    /// The force that opposes it, where those of other conditions are known.
+    /// The force that opposes the slip, given the forces of other conditions.
     fn force(&self, forces: &[f64]) -> f64 {
         let normal = forces[self.normal];
         let bound = self.bound.at(normal, normal > 0.0);
@@ -46,14 +46,14 @@ impl PrescribedSlip {
 /// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
-    /// g of every normal jump, the tightest of its conditions, then d of every dependent one (m).
+    /// g of every normal jump, the tightest of its conditions, then d of every dependent condition (m).
     #[serde(with = "crate::bytes")]
     pub bounds: Vec<f64>,
     /// D.
     pub rows: DependentConstraints,
-    /// Condition of each bound, and its factor.
+    /// The condition that sets each bound, and its factor.
     tightest: Vec<(usize, f64)>,
-    /// The condition that each normal jump is the unknown of.
+    /// The condition that defines each normal jump as an unknown.
     pub defining: Vec<usize>,
     /// Number of conditions.
     pub conditions: usize,
@@ -62,13 +62,13 @@ pub struct Limits {
     /// The limits of tangential jumps, ascending.
     pub tangents: Vec<TangentialLimit>,
     prescribed_slips: Vec<PrescribedSlip>,
-    /// The conditions of ties and their jumps (m), of one group alone.
+    /// The conditions of ties and their jumps (m), in a single group only.
     pub tied: Vec<(usize, f64)>,
 }
 
 impl Limits {
-    /// The bounds on `jumps` unknowns that conditions with these `gaps` make, the last of which are the tangential
-    /// ones of `friction`; `scale` bounds the displacements that are prescribed.
+    /// Bounds on `jumps` unknowns from conditions with these `gaps`, the tangential ones of `friction` last; `scale`
+    /// bounds the prescribed displacements.
     pub fn new(
         jumps: usize,
         of: &[JumpOf],
@@ -109,7 +109,8 @@ impl Limits {
         limits
     }
 
-    /// The bounds of conditions with these `gaps`: of a normal jump the tightest, of each dependent one its own.
+    /// Adds the bounds of conditions with these `gaps`: the tightest one for a normal jump, one each for dependent
+    /// conditions.
     fn add_bounds(&mut self, of: &[JumpOf], gaps: &[f64], friction: &[TangentialCondition]) {
         let is_tangential = |j: usize| {
             let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
@@ -117,7 +118,7 @@ impl Limits {
         };
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
             match of {
-                // A tangential jump is no bound for others, nor they for it.
+                // A tangential jump doesn't bound other jumps, nor do these bound it.
                 &JumpOf::Unknown { number, factor }
                     if (is_tangential(j) || is_tangential(self.defining[number]))
                         && self.defining[number] != j =>
@@ -143,7 +144,7 @@ impl Limits {
         }
     }
 
-    /// The limits of these tangential conditions, of which some slips are `prescribed`.
+    /// The limits of these tangential conditions, some of whose slips are `prescribed`.
     fn tangents_of(
         &self,
         friction: &[TangentialCondition],
@@ -177,7 +178,7 @@ impl Limits {
         tangents
     }
 
-    /// The condition that each limit is.
+    /// The condition of each limit.
     pub fn conditions_of_limits(&self) -> Vec<usize> {
         self.tightest
             .iter()
@@ -205,14 +206,14 @@ impl Limits {
         gaps
     }
 
-    /// True if limit i is that of a tangential jump.
+    /// True if limit i bounds a tangential jump.
     pub fn is_tangential(&self, i: usize) -> bool {
         let found = (self.tangents).binary_search_by_key(&i, |tangent| tangent.limit);
         found.is_ok()
     }
 
-    /// The limits of several groups as those of one pair, whose normal jumps, linearly dependent constraints and
-    /// conditions follow each other in the same order.
+    /// The limits of several groups joined into one pair; normal jumps, linearly dependent constraints and conditions
+    /// are numbered consecutively in the order of groups.
     pub fn join(groups: &[Self]) -> Self {
         let mut all = Self::default();
         let mut dependent = (Vec::new(), Vec::new());
@@ -252,14 +253,14 @@ impl Limits {
         all
     }
 
-    /// Forces of the limits for those of all conditions.
+    /// Forces of the limits from those of all conditions.
     pub fn of_limits(&self, forces: &[f64]) -> Vec<f64> {
         let tightest = self.tightest.iter();
         let of_limit = tightest.map(|&(condition, factor)| factor * forces[condition]);
         of_limit.collect()
     }
 
-    /// Forces of all conditions for those of the limits.
+    /// Forces of all conditions from those of the limits.
     pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.conditions];
         for (force, &(condition, factor)) in of_limits.iter().zip(&self.tightest) {
@@ -271,14 +272,14 @@ impl Limits {
         forces
     }
 
-    /// Puts the forces at the jumps of ties where their conditions are.
+    /// Copies the forces at the jumps of ties to their conditions.
     pub fn put_tied(&self, of_jumps: &[f64], forces: &mut [f64]) {
         for (&(condition, _), force) in self.tied.iter().zip(of_jumps) {
             forces[condition] = *force;
         }
     }
 
-    /// Conditions that are closed where the limits are; tangential ones that stick are.
+    /// Flags of the conditions whose limits are closed, or stick if tangential.
     pub fn closed(&self, limits: impl IntoIterator<Item = bool>) -> Vec<bool> {
         let mut closed = vec![false; self.conditions];
         for (&(condition, _), is_closed) in self.tightest.iter().zip(limits) {
@@ -290,7 +291,7 @@ impl Limits {
         closed
     }
 
-    /// The states of the limits where those of all conditions are these.
+    /// The states of the limits from those of all conditions.
     pub fn states(&self, conditions: &[LimitState]) -> Vec<LimitState> {
         let of_condition = |&(condition, factor): &(usize, f64)| {
             let LimitState { force, gap, status } = conditions[condition];
@@ -303,7 +304,7 @@ impl Limits {
         self.tightest.iter().map(of_condition).collect()
     }
 
-    /// The limits in the linear problem that has these `conditions`.
+    /// The statuses of limits in the linear problem from those of its `conditions`.
     pub fn fixed(&self, conditions: &[FixedStatus]) -> Vec<FixedStatus> {
         let of_condition = |&(condition, factor): &(usize, f64)| match conditions[condition] {
             FixedStatus::Closed { lacks } => FixedStatus::Closed {
@@ -315,7 +316,7 @@ impl Limits {
     }
 }
 
-/// The conditions of ties and their jumps, in the order of these.
+/// The conditions of ties with their jumps, in the order of the jumps' numbers.
 fn tied(of: &[JumpOf], gaps: &[f64]) -> Vec<(usize, f64)> {
     let mut tied: Vec<(usize, (usize, f64))> = Vec::new();
     for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
@@ -327,7 +328,7 @@ fn tied(of: &[JumpOf], gaps: &[f64]) -> Vec<(usize, f64)> {
     tied.into_iter().map(|(_, of_jump)| of_jump).collect()
 }
 
-/// Tangential conditions, each with the number of the other one of its point, which stands beside it.
+/// Tangential conditions, each with the number of its point's other tangential condition.
 fn with_other(
     friction: &[TangentialCondition],
 ) -> impl Iterator<Item = (&TangentialCondition, Option<usize>)> {

@@ -1,9 +1,9 @@
-//! Semismooth Newton on the laws of contact: a status for every limit makes the problem linear, the solution of that says
-//! which statuses are wrong.
+//! Semismooth Newton on the contact laws: statuses of all limits make the problem linear, and its solution shows which
+//! of them are wrong.
 //!
-//! All wrong statuses change at once. What is missed of the laws, in the norm of energies, is the merit of a step, which is
-//! halved as long as it doesn't lessen that; where no part does, the best is taken: all iterates keep λ = c − H t − Dᵀ μ, so
-//! a part of a step needs no further solve.
+//! All wrong statuses change at once. The residual of the laws in the energy norm is the merit function, and a step is
+//! halved until it reduces that; if no fraction does, the best one is taken. All iterates fulfil λ = c − H t − Dᵀ μ, so
+//! a fraction of a step needs no further solve.
 //!
 //! S. Hüeber, G. Stadler, B. Wohlmuth, *A primal-dual active set algorithm for three-dimensional contact problems with
 //! Coulomb friction*, SIAM J. Sci. Comput. 30 (2008).
@@ -15,21 +15,21 @@ use super::law::PointStatus;
 use super::laws::{ContactLaws, Iterate, LawResidual, Past, Statuses};
 use crate::vector::larger;
 
-/// Part of a step that is too small.
+/// Smallest fraction of a step.
 const SMALLEST: f64 = 1e-3;
-/// Part of the merit, for every part of a step, by which that has to lessen it.
+/// Relative reduction of the merit function that is required per fraction of a step.
 const LESSENS: f64 = 1e-4;
 
-/// An operator that answers for given statuses. Its methods are collective.
+/// An operator that solves the linear problem of given statuses. Its methods are collective.
 pub trait ContactOperator {
-    /// Why there is no answer: some part of the scene moves freely, or a signal has asked the run to stop.
+    /// Reason for a failure: some part of the scene moves freely, or a signal has asked the run to stop.
     type Error;
 
-    /// The jumps and forces at which the equations of these statuses hold, near an iterate; rough ones where the solver is
-    /// iterative and that is enough.
+    /// Jumps and forces that solve the equations of these statuses, near an iterate; approximate ones where the solver
+    /// is iterative and they suffice.
     ///
     /// # Errors
-    /// There is no answer.
+    /// The linear problem has no solution, or the run is to stop.
     fn step(
         &mut self,
         from: &OnGroups<Iterate>,
@@ -37,7 +37,7 @@ pub trait ContactOperator {
         accuracy: StepAccuracy,
     ) -> Result<OnGroups<Iterate>, Self::Error>;
 
-    /// The iterate `part` of the way from one to another.
+    /// The iterate at the fraction `part` of a step between two iterates.
     fn between(
         &self,
         from: &OnGroups<Iterate>,
@@ -55,22 +55,22 @@ pub trait ContactOperator {
     ) {
     }
 
-    /// The terms that the force of every limit is a sum of (N/m).
+    /// Scale of the terms whose sum is the force of every limit (N/m).
     fn force_scales(&self, at: &OnGroups<Iterate>) -> OnGroups<Vec<f64>>;
 
-    /// Share of these scales up to which a limit keeps its status.
+    /// Fraction of these scales within which a limit keeps its status.
     fn slack(&self) -> f64;
 
     /// The residual of all groups on all ranks.
     fn total(&self, residuals: &OnGroups<LawResidual>) -> TotalResidual;
 
-    /// The norm of energies of the forces that act before anything moves, or infinity where it isn't known.
+    /// Energy norm of the forces that act before anything moves, or infinity where it isn't known.
     fn acting(&self) -> f64;
 
-    /// Accuracy of the step that follows one with this residual.
+    /// Accuracy of the step after one with this residual.
     fn accuracy(&self, total: &TotalResidual) -> StepAccuracy;
 
-    /// Takes note of a step.
+    /// Records a step.
     ///
     /// # Errors
     /// A signal has asked the run to stop.
@@ -80,7 +80,7 @@ pub trait ContactOperator {
 /// Accuracy of a step's solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepAccuracy {
-    /// As accurate as what is missed of the laws, relative to the largest force, lets be of use.
+    /// As accurate as is useful with this residual of the laws, relative to the largest force.
     Rough(f64),
     /// To round-off.
     Full,
@@ -89,17 +89,17 @@ pub enum StepAccuracy {
 /// The residual of the laws of all groups on all ranks.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct TotalResidual {
-    /// Σ x²/r of what limits miss, then its square root.
+    /// Σ x²/r over the residuals x of limits, then its square root.
     pub merit: f64,
     /// Σ λ²/r of the forces, then its square root.
     pub forces: f64,
-    /// The largest, relative to the scales of forces.
+    /// The largest residual relative to the scales of forces.
     pub missed: f64,
     /// Number of closed normal jumps.
     pub active: usize,
     /// Number of wrong statuses.
     pub wrong: usize,
-    /// True if a point parts, so that the merit doesn't measure a part of a step.
+    /// True if a point parts, so that the merit function can't judge a fraction of a step.
     pub parts: bool,
 }
 
@@ -114,7 +114,7 @@ impl TotalResidual {
         parts: false,
     };
 
-    /// Adds that of another group.
+    /// Adds the residual of another group.
     pub fn include(&mut self, other: Self) {
         self.merit += other.merit;
         self.forces += other.forces;
@@ -125,12 +125,12 @@ impl TotalResidual {
     }
 }
 
-/// A step.
+/// A Newton step.
 #[derive(Clone, Copy, Debug)]
 pub struct NewtonStep {
     /// The residual at its end.
     pub total: TotalResidual,
-    /// Number of statuses that changed before it; the first has none.
+    /// Number of statuses that changed before it; `None` for the first step.
     pub changed: Option<usize>,
 }
 
@@ -139,38 +139,38 @@ pub struct NewtonStep {
 pub struct NewtonSettings {
     /// Most steps.
     pub most: usize,
-    /// Most steps in a row without a smaller merit.
+    /// Most steps in a row that don't reduce the merit function.
     pub patience: usize,
-    /// Residual of the laws that is accepted, relative to the scales of forces.
+    /// Accepted residual of the laws, relative to the scales of forces.
     pub tolerance: f64,
-    /// The same where steps make it no smaller and no status is wrong.
+    /// Accepted residual where steps no longer reduce it and no status is wrong.
     pub acceptable: f64,
-    /// Round-off of the residual, for which no step is made once the tolerance is met.
+    /// Round-off of the residual: no further step is made below it once the tolerance is met.
     pub round_off: f64,
-    /// The merit, relative to what acts, above which forces are no measure: what slides away has small ones beside the terms
-    /// of its way.
+    /// Merit relative to the acting forces above which force scales are no measure: a body that slides away has forces
+    /// small against the terms of its displacement.
     pub law: f64,
-    /// True if r is lowered where slips turn about again and again: not by steps that are rough.
+    /// True if r is lowered where slips keep reversing; not in approximate steps.
     pub softens: bool,
 }
 
-/// Where Newton's method ends.
+/// The end of Newton's method.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// Jumps and forces.
     pub at: OnGroups<Iterate>,
-    /// The statuses whose equations these fulfil.
+    /// The statuses whose equations they fulfil.
     pub statuses: OnGroups<Statuses>,
-    /// Residual of the laws, relative to the scales of forces; infinite where the method doesn't converge.
+    /// Residual of the laws, relative to the scales of forces; infinite if the method doesn't converge.
     pub missed: f64,
     /// Linear systems solved.
     pub steps: usize,
 }
 
-/// Newton's method from an iterate, by the equations of `statuses` first. Collective.
+/// Newton's method from an iterate, the first step with the equations of `statuses`. Collective.
 ///
 /// # Errors
-/// The operator has no answer.
+/// The operator's.
 pub fn newton<O: ContactOperator>(
     operator: &mut O,
     laws: &OnGroups<ContactLaws<'_>>,
@@ -302,7 +302,7 @@ pub fn look<O: ContactOperator>(
     (residuals, total)
 }
 
-/// The part of the way from an iterate to a `target` that lessens this merit, or the one with the least if none does. Collective.
+/// The fraction of a step to `target` that reduces the merit, or else the one with the least merit. Collective.
 fn part_of_way<O: ContactOperator>(
     operator: &O,
     laws: &OnGroups<ContactLaws<'_>>,
@@ -337,7 +337,7 @@ fn part_of_way<O: ContactOperator>(
 }
 
 impl LawResidual {
-    /// That of one group.
+    /// The residual of a single group.
     pub fn of_group(&self) -> TotalResidual {
         let Statuses { closed, points, .. } = &self.statuses;
         let parts = |status: &PointStatus| matches!(status, PointStatus::Parts { .. });

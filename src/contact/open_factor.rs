@@ -9,27 +9,26 @@ use super::active_equalities::ActiveEqualities;
 use super::dependent::DependentConstraints;
 use crate::vector::axpy;
 
-/// Pivot relative to its diagonal entry below which H is taken as singular.
+/// Pivot, relative to its diagonal entry, below which H is taken as singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
-/// Diagonal entry relative to the stiffness it is condensed from below which it is round-off.
+/// Diagonal entry, relative to the stiffness it is condensed from, below which it is round-off.
 const SINGULAR_DIAGONAL: f64 = 1e-14;
-/// Stiffness of the springs that make H definite where it isn't, relative to its diagonal, from
-/// the softest on.
+/// Stiffness of the springs that make a singular H definite, relative to its diagonal, in the order of trial.
 const SPRINGS: [f64; 4] = [1e-12, 1e-10, 1e-8, 1e-6];
-/// Most refinements of a solution that springs have bent.
+/// Most refinements of a solution that springs have falsified.
 const MAX_REFINEMENTS: usize = 40;
 
 /// The Cholesky factor of H_NN on the open conditions N.
 ///
-/// H is singular where a motion opens gaps without resistance. Springs make it definite then, and
-/// refinement takes their forces off again: what drives the motion decides how far it goes, and
-/// where nothing drives it, it stays where it is. Closed linearly dependent constraints leave fewer directions:
-/// H_NN is that of the open normal jumps that they leave independent.
+/// H is singular where a motion opens gaps without resistance. Springs make it definite then, and refinement removes
+/// their forces again: the load along the motion decides how far it goes, and without a load it stays at rest. Closed
+/// linearly dependent constraints leave fewer directions: H_NN is that of the open normal jumps that they leave
+/// independent.
 #[derive(Debug)]
 pub struct OpenFactor {
     /// The open normal jumps, ascending.
     pub open: Vec<usize>,
-    /// Equalities between them by the closed linearly dependent constraints.
+    /// Equalities between the open normal jumps from the closed linearly dependent constraints.
     pub equalities: ActiveEqualities,
     /// The open normal jumps that no equality eliminates, ascending; empty where there is no equality.
     independent: Vec<usize>,
@@ -40,8 +39,8 @@ pub struct OpenFactor {
 }
 
 impl OpenFactor {
-    /// Factorizes H_NN; `diagonal` is the diagonal of the matrix that H is condensed from, `open`
-    /// has a flag for every normal jump and one for each of `rows`.
+    /// Factorizes H_NN; `diagonal` is the diagonal of the matrix that H is condensed from, `open` has a flag for every
+    /// normal jump and one for each of `rows`.
     pub fn new(
         h: MatRef<'_, f64>,
         diagonal: &[f64],
@@ -87,8 +86,8 @@ impl OpenFactor {
         }
     }
 
-    /// x ← H_NN⁻¹ x, `x` the entries of the open normal jumps; with equalities it is T (Tᵀ H_NN T)⁻¹ Tᵀ x
-    /// for the T by which the independent ones move all.
+    /// x ← H_NN⁻¹ x, `x` the entries of the open normal jumps; with equalities T (Tᵀ H_NN T)⁻¹ Tᵀ x, where T maps the
+    /// independent jumps to all.
     pub fn solve(&self, x: &mut [f64]) {
         if self.equalities.equalities.is_empty() {
             self.solve_independent(x);
@@ -131,7 +130,7 @@ impl OpenFactor {
                     *left -= h * x;
                 }
             }
-            // What resists nowhere leaves the springs' force as it is.
+            // Loads along motions without resistance stay with the springs, whatever refinement does.
             let size = left.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
             if size == 0.0 || size > 0.9 * last || size.is_nan() {
                 break;
@@ -152,7 +151,7 @@ fn gather(h: MatRef<'_, f64>, open: &[usize], h_nn: &mut Mat<f64>) {
     }
 }
 
-/// Tᵀ H_NN T on the `independent` normal jumps, and the `diagonal` of the open ones seen from there.
+/// Tᵀ H_NN T on the `independent` normal jumps, and the `diagonal` of the open ones transformed likewise.
 fn eliminated(
     h: MatRef<'_, f64>,
     diagonal: &[f64],
@@ -192,7 +191,7 @@ fn eliminated(
     (h_nn, diagonal)
 }
 
-/// Scale of an entry of H's diagonal.
+/// Scale of an entry on H's diagonal.
 pub fn scale_of(entry: f64, diagonal: f64) -> f64 {
     if entry > SINGULAR_DIAGONAL * diagonal {
         entry
@@ -201,7 +200,7 @@ pub fn scale_of(entry: f64, diagonal: f64) -> f64 {
     }
 }
 
-/// The factor of H + `spring` · diag(`scale`); `None` where that is singular.
+/// The factor of H + `spring` · diag(`scale`); `None` if that is singular.
 pub fn factorize(h: MatRef<'_, f64>, scale: &[f64], spring: f64) -> Option<Llt<f64>> {
     let mut sum = h.to_owned();
     for (j, scale) in scale.iter().enumerate() {

@@ -16,8 +16,7 @@ use super::patch::LastPatch;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::multiply_add;
 
-/// Subdomains in contact, with what else is merged with them, condensed onto their normal jumps t and
-/// their traces U on Γ.
+/// Subdomains in contact, with any others merged into them, condensed onto normal jumps t and traces U on Γ.
 #[derive(Clone, Debug)]
 pub struct ContactPair {
     /// S on [t | U], both triangles.
@@ -29,7 +28,7 @@ pub struct ContactPair {
     state: PairState,
 }
 
-/// Where the last evaluation of a pair left it, and where the next one begins.
+/// The state of a pair after its last evaluation, from which the next one begins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairState {
     /// The status of every jump, then of every linearly dependent constraint.
@@ -46,13 +45,13 @@ pub struct PairResponse {
     /// Scale of the terms that each reaction is a sum of.
     #[serde(with = "crate::bytes")]
     pub scale: Vec<f64>,
-    /// g − t: what every normal jump has left, then d − D t (m); 0 where closed.
+    /// g − t of every normal jump, then d − D t (m); 0 where closed.
     #[serde(with = "crate::bytes")]
     pub gaps: Vec<f64>,
     /// t (m).
     #[serde(with = "crate::bytes")]
     pub jumps: Vec<f64>,
-    /// c − H t: what contact forces hold where closed, round-off where open (N/m).
+    /// c − H t: the contact force where closed, round-off where open (N/m).
     #[serde(with = "crate::bytes")]
     pub contact_residual: Vec<f64>,
     /// Scale of the terms that each contact residual is a sum of.
@@ -62,11 +61,11 @@ pub struct PairResponse {
     pub status: Vec<Status>,
     /// Number of normal jumps and linearly dependent constraints that are closed.
     pub active: usize,
-    /// Limits whose status changed, against what was expected or the last evaluation.
+    /// Limits whose status changed from the expected one, or else from that of the last evaluation.
     pub changed: usize,
     /// Linear systems solved.
     pub steps: usize,
-    /// True if more than Newton's method was needed.
+    /// True if Newton's method alone didn't suffice.
     pub fell_back: bool,
     /// True if the small problem converged.
     pub converged: bool,
@@ -74,7 +73,7 @@ pub struct PairResponse {
 
 impl ContactPair {
     /// A pair under a condensed `load`, on normal jumps and traces, whose normal jumps lie within `limits`. It begins
-    /// where the load step `before` left it, else bilaterally; both triangles of S are filled.
+    /// in its state after the load step `before`, else bilaterally; both triangles of S are filled.
     pub fn new(
         condensed: Rc<Condensed>,
         limits: Limits,
@@ -94,7 +93,7 @@ impl ContactPair {
         }
     }
 
-    /// Where it is after the last evaluation.
+    /// The state after the last evaluation.
     pub fn into_state(self) -> PairState {
         self.state
     }
@@ -109,7 +108,7 @@ impl ContactPair {
         &self.state.contact.jumps
     }
 
-    /// Force of every condition in the last evaluation, and whether it was closed.
+    /// Force of every condition in the last evaluation, and flags of the closed ones.
     pub fn conditions(&self) -> (Vec<f64>, Vec<bool>) {
         (
             self.limits.forces(&self.state.contact.forces),
@@ -133,8 +132,8 @@ impl ContactPair {
         &self.limits
     }
 
-    /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy.
-    /// The search begins at the statuses `expected`, else at those of last time; what slips with friction begins at the expected change of the jumps.
+    /// Evaluates S_kl(U) = S_ΓΓ U + S_Γt t(U) − f_Γ, where t(U) within the limits minimizes the pair's energy. The
+    /// search begins at the statuses `expected`, else at the last; with friction at the expected change of jumps.
     pub fn evaluate(
         &mut self,
         u: &[f64],
@@ -225,8 +224,8 @@ impl ContactPair {
         (reaction, scale)
     }
 
-    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the open normal jumps N of the last evaluation, and the
-    /// slipping ones, whose friction is held.
+    /// S_kl'(U) x = S_ΓΓ x − S_ΓN H_NN⁻¹ S_NΓ x with the normal jumps N open in the last evaluation and the slipping
+    /// jumps, whose friction is held constant.
     pub fn derivative(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         multiply_add(self.condensed.bilateral(), x, &mut y);
@@ -251,8 +250,8 @@ impl ContactPair {
     }
 }
 
-/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d where there is such: the part of S_kl
-/// that the root needs to solve for all pairs at once.
+/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d if there are dependent rows: the part of S_kl that the
+/// root needs to solve for all pairs at once.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CondensedContact {
     /// H, on the normal jumps (Pa).
@@ -266,11 +265,11 @@ pub struct CondensedContact {
     pub diagonal: Vec<f64>,
     /// D.
     pub rows: DependentConstraints,
-    /// The condition that each normal jump is the unknown of.
+    /// The condition that defines each normal jump as an unknown.
     pub defining: Vec<usize>,
     /// The limits of tangential jumps.
     pub tangents: Vec<TangentialLimit>,
-    /// The condition that each limit is.
+    /// The condition of each limit.
     pub conditions: Vec<usize>,
 }
 
@@ -306,7 +305,7 @@ mod tests {
         (1.0 + 12.9898 * i as f64).sin()
     }
 
-    /// Three conditions and four traces of any stiffness.
+    /// A pair of three conditions and four traces, with arbitrary stiffness.
     fn pair() -> ContactPair {
         let (jumps, n) = (GAPS.len(), 7);
         let root = Mat::from_fn(n, n, |i, j| number(n * i + j));
@@ -328,7 +327,7 @@ mod tests {
         ContactPair::new(Rc::new(condensed), limits, load, None)
     }
 
-    /// Traces that open and close contacts in many ways.
+    /// Traces that open and close contacts in many combinations.
     fn traces() -> impl Iterator<Item = Vec<f64>> {
         (0..100).map(|k| (0..4).map(|i| 2.0 * number(1000 + 4 * k + i)).collect())
     }
@@ -365,7 +364,7 @@ mod tests {
                 .map(|(u, d)| u + step * d)
                 .collect();
             let after = pair.evaluate(&there, None);
-            // Between two kinks the answers are linear.
+            // Responses are linear between two kinks only.
             if before.status != after.status {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! H condensed onto the jumps of a patch, the open ones left out.
+//! H condensed onto the jumps of a patch; all other jumps are open and eliminated.
 //!
 //! > H̃ = H_pp − H_po H_oo⁻¹ H_op
 
@@ -18,9 +18,9 @@ pub const LARGE: f64 = 0.7;
 /// Contact problem that is condensed onto a patch.
 #[derive(Debug)]
 pub struct CondensedPatch {
-    /// The jumps, ascending.
+    /// The jumps of the patch, ascending.
     pub jumps: Vec<usize>,
-    /// All others.
+    /// The open jumps outside the patch.
     pub open: Vec<usize>,
     /// H_oo = L Lᵀ.
     pub factor: Llt<f64>,
@@ -28,12 +28,12 @@ pub struct CondensedPatch {
     pub h: Mat<f64>,
 }
 
-/// The last patch of problems with the same H, from which the next one begins.
+/// The last patch for the same H, on which the next problem is tried first.
 #[derive(Clone, Debug, Default)]
 pub struct LastPatch(RefCell<Option<Rc<CondensedPatch>>>);
 
 impl CondensedPatch {
-    /// H condensed onto these `jumps`; `None` where they are too many or the bodies move freely as they hold them.
+    /// H condensed onto these `jumps`; `None` if there are too many, or if holding them leaves the bodies free to move.
     fn new(contact: &ContactProblem<'_>, jumps: Vec<usize>) -> Option<Self> {
         let ContactProblem { h, diagonal, .. } = *contact;
         if jumps.len() as f64 > LARGE * diagonal.len() as f64 {
@@ -61,13 +61,13 @@ impl CondensedPatch {
 }
 
 impl LastPatch {
-    /// Forgets it, so that the next problem is solved as if it were the first one.
+    /// Discards the patch, so that the next problem is solved like the first one.
     pub fn forget(&self) {
         self.0.take();
     }
 
-    /// H condensed onto these `jumps`, as it is known already or made anew; `None` where they are too many or the bodies
-    /// move freely as they hold them.
+    /// H condensed onto these `jumps`, the known matrix or a new one; `None` if there are too many, or if holding them
+    /// leaves the bodies free to move.
     pub fn condensed(
         &self,
         contact: &ContactProblem<'_>,

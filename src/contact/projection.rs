@@ -1,4 +1,4 @@
-//! The nearest jumps within limits of which some depend on others.
+//! Projection of jumps onto limits some of which depend on others.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use super::active_set::ContactProblem;
 use super::dependent::DependentConstraints;
 use crate::vector::largest;
 
-/// Moves those `jumps` of a group that its dependent `rows` have, which follow them, to the nearest ones within these
-/// `bounds`, and closes or opens their limits as that says; how many.
+/// Moves those `jumps` of a group that occur in its dependent `rows` to the nearest ones within these `bounds`, and
+/// closes or opens their limits accordingly; returns how many changed. Values of the rows stand behind the jumps.
 pub fn project(
     rows: &DependentConstraints,
     bounds: &[f64],
@@ -57,7 +57,7 @@ pub fn project(
     changed
 }
 
-/// The nearest of these `own` jumps within their bounds and those of some rows: min ½ |t − t₀|².
+/// Projection of these `own` jumps onto their bounds and those of some rows: min ½ |t − t₀|².
 fn nearest(
     rows: &DependentConstraints,
     (own, of_part): (&[usize], &[usize]),
@@ -95,7 +95,7 @@ fn nearest(
 mod tests {
     use super::*;
 
-    /// Two jumps below 0 whose sum is to be below −1, and one that no row has.
+    /// Two jumps below 0 whose sum is to be below −1, and one that occurs in no row.
     #[test]
     fn jumps_go_to_the_nearest_within_limits() {
         let mut rows = DependentConstraints::default();

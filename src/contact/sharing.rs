@@ -1,5 +1,5 @@
-//! Forces of closed limits that depend on each other: of all that balance the same loads the least ones, so that limits
-//! share what one of them could carry.
+//! Forces of linearly dependent closed limits: the smallest among all that balance the same loads, so that limits share
+//! what one of them could carry alone.
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
@@ -7,17 +7,17 @@ use faer::{Mat, Side};
 use super::active_equalities::ActiveEqualities;
 use super::dependent::{DependentConstraints, Terms};
 
-/// The ways in which forces of closed limits act without effect.
+/// Self-equilibrated combinations of forces of closed limits.
 #[derive(Clone, Debug, Default)]
 pub struct ForceSharing {
-    /// N: combinations of forces whose sum is none, one for each redundant row.
+    /// N: combinations of forces with zero resultant on every jump, one for each redundant row.
     idle: Vec<Terms>,
     /// The factor of NᵀN.
     gram: Option<Llt<f64>>,
 }
 
 impl ForceSharing {
-    /// The forces of a group with these dependent `rows`, of which the redundant ones among the `equalities` are `open` here.
+    /// The combinations in a group with these dependent `rows`; redundant ones among the `equalities` are `open` here.
     pub fn new(rows: &DependentConstraints, open: &[bool], equalities: &ActiveEqualities) -> Self {
         let first = open.len() - rows.len();
         let idle = equalities.redundant.iter().filter_map(|&j| {
@@ -41,7 +41,7 @@ impl ForceSharing {
         }
     }
 
-    /// Makes the `forces` of all limits the least ones with the same effect.
+    /// Replaces the `forces` of all limits by the smallest ones with the same effect.
     pub fn share(&self, forces: &mut [f64]) {
         let Some(gram) = &self.gram else { return };
         let along = |terms: &Terms| terms.iter().map(|&(i, c)| c * forces[i]).sum::<f64>();
@@ -59,8 +59,8 @@ impl ForceSharing {
 mod tests {
     use super::*;
 
-    /// Two rows, of which the second follows from the jumps and the first: forces keep what they do on every jump, and no
-    /// forces that do nothing are left.
+    /// Two rows, the second of which follows from the jumps and the first: forces keep their effect on every jump, and
+    /// no self-equilibrated part is left.
     #[test]
     fn shared_forces_have_the_same_effect_and_are_the_least() {
         let mut rows = DependentConstraints::default();

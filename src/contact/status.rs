@@ -5,23 +5,23 @@ use serde::{Deserialize, Serialize};
 /// The status of a limit in the linear problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
-    /// Nothing acts: a normal jump below its bound, a tangential one of an open contact.
+    /// No force: a normal jump below its bound, or a tangential one of an open contact.
     Open,
     /// At its bound: closed, or sticking.
     #[default]
     Closed,
     /// Slipping in the direction of its tangent, under λ_t = b.
     Forward,
-    /// Slipping against it, under λ_t = −b.
+    /// Slipping against the direction of its tangent, under λ_t = −b.
     Backward,
     /// Slipping along a direction in space.
     Slipping,
-    /// Slipping while its contact is about to open: without pressure, under what is left of the cohesion.
+    /// Slipping while its contact is about to open: without pressure, under the rest of the cohesion.
     Parting,
 }
 
 impl Status {
-    /// Open or closed.
+    /// Open or closed, by this flag.
     pub fn new(open: bool) -> Self {
         match open {
             true => Self::Open,
@@ -43,7 +43,7 @@ impl Status {
         self == Self::Closed
     }
 
-    /// The sign of the force under which it slips, 0 where it doesn't.
+    /// The sign of the force under which it slips, 0 if it doesn't.
     pub(super) fn sign(self) -> f64 {
         match self {
             Self::Forward => 1.0,
@@ -53,21 +53,21 @@ impl Status {
     }
 }
 
-/// A limit or a condition in the linear problem of a change where all keep their statuses.
+/// The status of a limit or a condition in the linear problem of a change in which all keep their statuses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FixedStatus {
-    /// Nothing acts.
+    /// No force.
     Open,
-    /// Closed: the jump changes by what it lacks of its bound.
+    /// Closed: the jump changes by its distance to the bound.
     Closed {
-        /// Missing part of the bound (m).
+        /// The distance to the bound (m).
         lacks: f64,
     },
-    /// Slipping: the force changes with the bound of its point, and turns with the slip.
+    /// Slipping: the force changes with the bound of its point and turns with the slip.
     Slips {
-        /// Part of the bound.
+        /// Ratio of the force to the bound.
         share: f64,
-        /// κ (N/m), which makes a force of the slip across that direction.
+        /// κ (N/m), force per slip across the direction.
         turning: f64,
     },
     /// Slipping along a line while its contact is about to open, without pressure.
@@ -75,7 +75,7 @@ pub enum FixedStatus {
 }
 
 impl FixedStatus {
-    /// Open, or closed without a change of its jump.
+    /// Open, or closed without a change of its jump, by this flag.
     pub fn new(open: bool) -> Self {
         match open {
             true => Self::Open,
@@ -88,7 +88,7 @@ impl FixedStatus {
         matches!(self, Self::Closed { .. })
     }
 
-    /// Missing part of its bound where it is closed (m).
+    /// Distance to the bound if it is closed (m), else 0.
     pub fn lacks(&self) -> f64 {
         match *self {
             Self::Closed { lacks } => lacks,
@@ -96,7 +96,7 @@ impl FixedStatus {
         }
     }
 
-    /// Part of the bound of its point, and κ (N/m), where it slips.
+    /// Ratio of the force to the bound of its point, and κ (N/m), if it slips.
     pub fn slip(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Slips { share, turning } => Some([share, turning]),
@@ -105,12 +105,12 @@ impl FixedStatus {
     }
 }
 
-/// State of a limit or a condition: of a load step so far, from which its law is solved anew, and then.
+/// State of a limit or a condition, before its law is solved anew or after that.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitState {
     /// The force (N/m).
     pub force: f64,
-    /// The gap that is left, g − t, or the way back to where it stuck (m).
+    /// The remaining gap, g − t, or for a tangential one the slip with its sign reversed (m).
     pub gap: f64,
     /// The status.
     pub status: Status,

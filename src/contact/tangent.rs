@@ -1,4 +1,4 @@
-//! Tangential conditions: what they are of a contact point, and the bound of their force.
+//! Tangential conditions of contact points, and the bounds of their forces.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ impl ForceBound {
         }
     }
 
-    /// The bound in the scale of energies, where the forces of its point are divided by these scales, the normal one first.
+    /// The bound in the scale of energies: the forces of its point are divided by these scales, the normal one first.
     pub fn scaled(&self, normal: Option<f64>, tangential: f64) -> Self {
         Self {
             coefficient: normal.map_or(0.0, |normal| self.coefficient * normal / tangential),
@@ -31,7 +31,7 @@ impl ForceBound {
         }
     }
 
-    /// The bound as a line over the normal force: its value without one (N/m), and its slope.
+    /// The bound as a linear function of the normal force: its value at none (N/m), and its slope.
     pub fn line(&self, is_closed: bool) -> [f64; 2] {
         match is_closed {
             true => [self.cohesion, self.coefficient],
@@ -40,7 +40,7 @@ impl ForceBound {
     }
 }
 
-/// A tangential condition, its number and that of its point's normal one, and what bounds its force.
+/// A tangential condition: its number, that of its point's normal condition, and the bound of its force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialCondition {
     /// The number among the conditions.
@@ -51,12 +51,12 @@ pub struct TangentialCondition {
     pub bound: ForceBound,
 }
 
-/// Friction condition: the tangential jump sticks at the bound of `limit` while |λ_t| is within that of its force.
+/// Friction condition: the tangential jump sticks at the bound of `limit` while |λ_t| is within the bound of its force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TangentialLimit {
     /// Number among the limits.
     pub limit: usize,
-    /// The limit on the normal jump of its point, where there is one that carries force.
+    /// The limit on the normal jump of its point, if that carries force.
     pub normal: Option<usize>,
     /// Bound of its force.
     pub bound: ForceBound,
@@ -64,21 +64,21 @@ pub struct TangentialLimit {
     pub other: OtherTangent,
 }
 
-/// Slip of a point along the other one of its tangents.
+/// Slip of a point along its other tangent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum OtherTangent {
     /// No slip: the plane has but one tangent, or supports let nothing move along the other.
     #[default]
     Nothing,
-    /// This limit.
+    /// The slip of this limit.
     Limit(usize),
     /// A slip in the load step that supports prescribe (m).
     Prescribed(f64),
 }
 
 impl TangentialLimit {
-    /// The tangential limits of its point, the second of which may not be one, and the slip that supports prescribe along
-    /// the second (m); `None` where it is the second itself.
+    /// The tangential limits of its point, the second of which may be missing, and the slip that supports prescribe
+    /// along the second tangent (m); `None` if this is the second limit.
     pub fn of_point(&self) -> Option<([Option<usize>; 2], f64)> {
         let (second, prescribed) = match self.other {
             OtherTangent::Limit(other) if other < self.limit => return None,
@@ -89,7 +89,7 @@ impl TangentialLimit {
         Some(([Some(self.limit), second], prescribed))
     }
 
-    /// The same where limits are numbered otherwise.
+    /// The condition with limits renumbered.
     #[must_use]
     pub fn renamed(&self, number: impl Fn(usize) -> usize) -> Self {
         Self {

@@ -1,19 +1,20 @@
 //! Quantities of the solution, and their derivatives by the transposed problem of the accepted active set.
 //!
-//! With closed conditions c and slipping tangents s, whose forces follow λ_s = M λ_c + Q s + φ, a change of the solution obeys
+//! With closed conditions c and slipping tangents s, with forces λ_s = M λ_c + Q s + φ, a change of the solution obeys
 //!
 //! ```text
 //! K du + B_cᵀ dλ_c + B_sᵀ dλ_s = df − dK u,    B_c du = dg,    D du = dv
 //! ```
 //!
-//! with D the rows of supports, whose forces are ρ. For a quantity with the derivatives a, b and r in u, λ and ρ the transposed problem
+//! with the rows D of supports and their forces ρ. A quantity's derivatives a, b, r in u, λ, ρ load the transposed
+//! problem
 //!
 //! ```text
 //! K w + B_cᵀ ν + B_sᵀ Q τ' + Dᵀ η = a,    B_c w = b_c − Mᵀ τ',    D w = −r,    τ' = B_s w − b_s
 //! ```
 //!
-//! makes its derivative w·(df − dK u) + ν·dg + η·dv − τ'·dφ for all parameters at once. M = μ e and, in space, Q = κ (I − e eᵀ).
-//! Slipping points are not symmetric: M stands in the conditions here, where it stands in the forces there.
+//! whose solution gives the derivative w·(df − dK u) + ν·dg + η·dv − τ'·dφ for all parameters at once. M = μ e and, in
+//! space, Q = κ (I − e eᵀ). Slipping points are not symmetric: M is in the conditions here, in the forces there.
 
 mod crack_tip;
 mod derivatives;
@@ -44,14 +45,14 @@ use crate::fem::quantity::{Derivative, Quantities, QuantityValue};
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 
-/// Difference of both sides of the law of reciprocity, relative to the sum of its terms, from which on derivatives are none.
+/// Reciprocity error, relative to the sum of its terms, from which on derivatives are rejected.
 const RECIPROCITY: f64 = 1e-7;
-/// The same that is good enough, and how often a transposed problem is solved more exactly where it isn't.
+/// Reciprocity error that is good enough, and the most refinements of a transposed problem above it.
 const GOOD: f64 = 1e-10;
 const REFINEMENTS: usize = 3;
 
-/// The quantities that the scene asks for, if this `moment` is the end of a load step; with derivatives where the slips are known
-/// with which it began. Collective.
+/// The quantities that the scene asks for, if this load point is the end of a load step; with derivatives if the slips
+/// with which it began are known. Collective.
 pub fn quantities_at(
     moment: LoadPoint,
     fixed: &FixedActiveSet<'_>,
@@ -82,7 +83,7 @@ pub fn quantities_at(
     quantities(solved, without.map(Into::into))
 }
 
-/// The quantities of a solution, with their derivatives unless it is said why there are none, which the root knows. Collective.
+/// The quantities of a solution, with derivatives unless the root knows a reason `without` them. Collective.
 fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
     let context = &solved.fixed.context;
     let catalog = context.catalog;
@@ -136,8 +137,7 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
 /// A solved load step, a functional of it, and K u of its materials.
 type Parts<'a> = (Solved<'a>, &'a Functional, &'a MaterialForces);
 
-/// The solution of the transposed problem of a functional, and by how much it misses the law of reciprocity, which the root
-/// knows. Collective.
+/// The solution of the transposed problem of a functional, and its reciprocity error, which the root knows. Collective.
 fn solve(parts: Parts<'_>, problem: &TransposedProblem<'_>) -> (Transposed, f64) {
     let mut state = problem.solve();
     let mut off = f64::INFINITY;

@@ -1,4 +1,4 @@
-//! The contact points at which a solution breaks the laws of contact most.
+//! The contact points at which a solution violates the laws of contact most.
 
 use contact_dd_partition::id::PairId;
 
@@ -8,12 +8,12 @@ use crate::fem::contact_group::ContactGroup;
 use crate::sweep::SweepOutcome;
 use crate::vector::largest;
 
-/// Points that are named at most; more are counted.
+/// Most points that are named; further ones are counted.
 const MOST: usize = 20;
 /// Violation of a law that counts as round-off, relative to the largest contact force.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The contact points that miss their law most, or where none does whose status cycles, in words; on the root. Collective.
+/// The contact points that violate their laws most, else those whose status cycles, in words; on the root. Collective.
 pub fn names_against_law(
     context: &Context<'_>,
     solution: &DiscreteSolution,
@@ -33,7 +33,7 @@ pub fn names_against_law(
     points.into_iter().map(|j| context.point_name(j)).collect()
 }
 
-/// The contact points that miss their laws, by their number among all, the worst first; on the root. Collective.
+/// The contact points that violate their laws, by their number among all, the worst first; on the root. Collective.
 fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec<u32> {
     let plan = context.plan;
     let (mut all, mut force) = (Vec::new(), 0.0_f64);
@@ -59,8 +59,8 @@ fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec
     all.into_iter().map(|(point, _)| point).collect()
 }
 
-/// Violations of the laws by the points of a group, as forces (N/m): λ − max(0, λ − r gap), and along the tangents
-/// λ_t − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
+/// Violations of the laws by the points of a group, as forces (N/m): λ − max(0, λ − r gap), and along the tangents λ_t
+/// − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
 fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
     let (gaps, forces) = (&solution.gaps, &solution.forces);
     let normal = |j: usize| {

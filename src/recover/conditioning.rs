@@ -8,17 +8,16 @@ use crate::contact::status::FixedStatus;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
-/// Accuracy of the inverse iteration where it is iterated for.
+/// Accuracy of the inverse iteration with an iterative solver.
 const ACCURACY: f64 = 3e-2;
 
-/// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its
-/// contacts fixed as they are, D its diagonal: round-off makes a relative error of about
-/// κ · 10⁻¹⁶ in displacements.
+/// Estimates κ = λ_max / λ_min of A = D^(−1/2) K D^(−1/2), K the stiffness of the whole scene with its contacts fixed
+/// as they are, D its diagonal: round-off makes a relative error of about κ · 10⁻¹⁶ in displacements.
 ///
-/// By one step of inverse iteration: the Rayleigh quotient of x = A⁻¹ s is at least λ_min, and little more unless s
-/// has next to nothing of its mode. s is random, a part of it the same all over a block, of which the smooth
-/// modes that are softest have most. λ_max is at most the number of unknowns of a cell. Collective; the root gets the
-/// estimate, `None` where it can't be made.
+/// One step of inverse iteration: the Rayleigh quotient of x = A⁻¹ s is at least λ_min, and little more unless s has
+/// next to nothing of its mode. s is random, with a part constant over each block, which the smooth and therefore
+/// softest modes contain most of. λ_max is at most the number of unknowns of a cell. Collective; the root gets the
+/// estimate, or `None` where it can't be made.
 pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Option<f64> {
     let able = fixed.root.is_some_and(|root| root.can_solve());
     if !fixed.context.comm.decide(able) {
@@ -39,7 +38,7 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     let answer = fixed.solve(loads.clone(), held.collect(), &BTreeMap::new(), ACCURACY);
     let answer = answer.blocks;
 
-    // xᵀ D x and xᵀ K x, summed block by block so that ranks make no difference.
+    // xᵀ D x and xᵀ K x, summed block by block so that the result doesn't depend on the ranks.
     let mut largest = 0;
     let (mut sum, mut energy) = (0.0, 0.0);
     fixed.context.comm.gather(
@@ -68,7 +67,7 @@ fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: BlockId) -> &'a [f64] {
     block.map_or(&[], |block| &block.diagonal)
 }
 
-/// The most unknowns that a cell of block b has.
+/// The largest number of unknowns of a cell in block b.
 fn largest_cell(fixed: &FixedActiveSet<'_>, b: BlockId) -> usize {
     fixed.context.blocks.get(&b).map_or(0, |block| {
         let nodes = block.cells().map(|cell| cell.kind.nodes()).max();
@@ -76,7 +75,7 @@ fn largest_cell(fixed: &FixedActiveSet<'_>, b: BlockId) -> usize {
     })
 }
 
-/// 1 or −1, as good as by chance and always the same, so that no mode is missed by symmetry.
+/// Reproducible pseudo-random 1 or −1, so that no mode is missed by symmetry.
 fn sign(block: BlockId, unknown: usize) -> f64 {
     let mixed = (block.index() as u64 + 1)
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)

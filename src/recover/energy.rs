@@ -7,7 +7,7 @@ use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 
 /// Energies of the blocks of this rank for the next increment, by their number, and on the root the balance of this one
-/// after `before`; nothing without friction. Collective.
+/// after `before`; empty without friction. Collective.
 pub fn energies(
     fixed: &FixedActiveSet<'_>,
     solution: &Solution,

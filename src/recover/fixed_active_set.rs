@@ -1,4 +1,4 @@
-//! The linear problem of the whole scene with the active set fixed as it is, open or closed.
+//! The linear problem of the whole scene with the active set fixed: conditions stay open or closed.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ use crate::tree::slip_law::SlipLaw;
 use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
 
-/// Best relative accuracy to which slip forces follow the pressure.
+/// Best relative accuracy to which slip forces are adapted to the pressure.
 const FOLLOWED: f64 = 1e-4;
 
 /// The part of the problem of the fixed active set that a rank holds.
@@ -43,29 +43,29 @@ pub struct FixedActiveSet<'a> {
     pub step: &'a StepProblem<'a>,
     /// The longest closing motion of a body (m).
     pub closing_motions: f64,
-    /// Motions that are free whatever the contacts do; springs at pins hold them.
+    /// Motions that are free whatever the contacts do; springs at pins constrain them.
     pub free: Motions<'a>,
     /// Parts that the root alone holds.
     pub root: Option<FixedActiveSetRoot<'a>>,
-    /// The fronts above all contact, where they are eliminated for every active set anew.
+    /// The fronts above all contact, if they are eliminated anew for every active set.
     pub fronts: Option<ActiveSetOfStep<'a>>,
-    /// The nodes of the hierarchy on which loads act and of which solutions are wanted, as [`Factors`] have them.
+    /// The nodes of the hierarchy that carry loads or whose solutions are needed, as in [`Factors`].
     pub only: Option<&'a Numbered<TreeNodeId, bool>>,
 }
 
-/// The fronts of the active set that was found last, and the limits of every contact group of this rank.
+/// The fronts of the last active set, and the limits of every contact group of this rank.
 pub type ActiveSetOfStep<'a> = (&'a RefCell<ActiveSetFronts>, &'a OnGroups<Limits>);
 
 /// Parts that the root alone holds.
 #[derive(Clone, Copy)]
 pub struct FixedActiveSetRoot<'a> {
-    /// Numbering of Γ and the interface problem, where there is one.
+    /// Numbering of Γ and the interface problem, if there is one.
     pub interface: Option<(&'a Numbering, &'a InterfaceProblem<'a>)>,
-    /// True if the solution is refined: the active sets are right, or nothing changed them any more.
+    /// True if the solution is refined: the active sets are right, or no longer change.
     pub is_refined: bool,
     /// True if statuses of contacts with friction cycle.
     pub cycles: bool,
-    /// True if loads that are round-off of the displacements move what nothing resists.
+    /// True if loads at round-off of the displacements move bodies that nothing resists.
     pub moves: bool,
 }
 
@@ -73,8 +73,8 @@ pub struct FixedActiveSetRoot<'a> {
 pub type FixedStatuses = OnGroups<Vec<FixedStatus>>;
 
 impl FixedActiveSetRoot<'_> {
-    /// True if loads can be solved for: without an interface problem, or where the pairs' normal jumps can be
-    /// solved for at once.
+    /// True if loads can be solved for: without an interface problem, or if the normal jumps of all pairs can be solved
+    /// for at once.
     pub fn can_solve(&self) -> bool {
         (self.interface).is_none_or(|(_, problem)| CoupledContact::new(problem).is_some())
     }
@@ -143,9 +143,9 @@ impl<'a> FixedActiveSet<'a> {
         ))
     }
 
-    /// The change that `loads` on the unknowns of the blocks of this rank, and those on the others', make where
-    /// `conditions` keep their statuses; what slips under these `forces` of conditions, by contact group, follows what
-    /// presses, in their directions; an iterative solver goes as far as the `tolerance`. Collective.
+    /// The change due to `loads` on the unknowns of this rank's blocks, and of the others', if `conditions` keep their
+    /// statuses; friction of points that slip under these `forces` of conditions, by contact group, follows the
+    /// pressure in its direction; `tolerance` is that of an iterative solver. Collective.
     pub fn solve(
         &self,
         loads: OnBlocks<Vec<f64>>,
@@ -193,7 +193,7 @@ impl<'a> FixedActiveSet<'a> {
         self.step.tied.iter().map(of_group).collect()
     }
 
-    /// The same by the fronts of a fixed active set. Collective.
+    /// The change by the fronts of a fixed active set. Collective.
     fn solve_by_fronts(
         &self,
         (fronts, limits): ActiveSetOfStep<'_>,
@@ -220,7 +220,7 @@ impl<'a> FixedActiveSet<'a> {
         }
         let mut fronts = fronts.borrow_mut();
         let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws, false) else {
-            // The contacts that are left hold nothing: no change is better than any.
+            // The remaining contacts hold nothing: no change is the best answer.
             return Change::default();
         };
         let condensed = factors.condense(loads, &tied);
@@ -248,7 +248,7 @@ impl<'a> FixedActiveSet<'a> {
         Change { blocks, forces }
     }
 
-    /// The statuses of the limits of every cluster in contact of this rank, for those of its conditions.
+    /// The statuses of the limits of every cluster in contact of this rank from those of its conditions.
     fn limits(&self, conditions: OnPairs<Vec<FixedStatus>>) -> OnPairs<Vec<FixedStatus>> {
         let mut limits = BTreeMap::new();
         for (p, of_cluster) in conditions {
@@ -260,7 +260,7 @@ impl<'a> FixedActiveSet<'a> {
     }
 }
 
-/// Puts the forces at the jumps of ties among those of all conditions, by contact group.
+/// Copies the forces at the jumps of ties to those of all conditions, by contact group.
 pub fn put_tied(forces: &mut OnGroups<Vec<f64>>, of_jumps: &OnGroups<Vec<f64>>, tied: &TiedJumps) {
     for (g, of_jumps) in of_jumps {
         if let Some(forces) = forces.get_mut(g) {
@@ -271,7 +271,7 @@ pub fn put_tied(forces: &mut OnGroups<Vec<f64>>, of_jumps: &OnGroups<Vec<f64>>, 
     }
 }
 
-/// Solves for what acts, and for slips where any follow laws. Collective.
+/// Solves for the loads, and for slip forces where any follow laws. Collective.
 fn follow(
     fronts: &mut ActiveSetFronts,
     problem: &SlipProblem<'_>,

@@ -1,22 +1,22 @@
 //! Contact constraints of a group in the linear problem of a fixed active set, and the change of its solution.
 //!
-//! A point that slips in a plane has λ_t = b e. With the slip s, whatever r > 0 and ξ = λ_t + r s, Newton's method has
+//! A point that slips in a plane has λ_t = b e. With the slip s, any r > 0 and ξ = λ_t + r s, Newton's method has
 //!
 //! ```text
 //! e = ξ/|ξ|,    λ_t = b e + κ P s,    P = I − e eᵀ,    κ = r b/(|ξ| − b)
 //! ```
 //!
-//! at the next place, where κ P s is what is left of its direction.
+//! at the next iterate, where κ P s is the remaining error of its direction.
 
 use crate::contact::law::{PointLaw, PointState, PointStatus};
 use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
 
-/// Angle between force and slip, about, beyond which the slip is too small to tell its direction.
+/// Approximate angle between force and slip beyond which the slip is too small to determine its direction.
 const TOLD: f64 = 0.1;
 
-/// The conditions of a group in the linear problem; the forces of what slips in a plane become those that its slip says.
+/// The conditions of a group in the linear problem; forces of points that slip in a plane are aligned with their slips.
 pub fn conditions(
     group: &ContactGroup,
     solution: &mut GroupSolution,
@@ -59,8 +59,8 @@ pub fn conditions(
     conditions
 }
 
-/// e and κ of a point that slips along both tangents, under a force that becomes b e + κ P s; as it is, with κ = 0, where the
-/// slip doesn't tell.
+/// e and κ of a point that slips along both tangents, whose force becomes b e + κ P s; if the slip doesn't determine
+/// the direction, the force stays and κ = 0.
 fn turned(solution: &mut GroupSolution, point: &PointLaw, here: PointState) -> ([f64; 2], f64) {
     let PointState { slip, force, bound } = here;
     if let PointStatus::Slips {
@@ -80,7 +80,7 @@ fn turned(solution: &mut GroupSolution, point: &PointLaw, here: PointState) -> (
     (force.map(|force| force / here.size()), 0.0)
 }
 
-/// Changes the forces of a contact group, whose conditions have these statuses: none but a tie's holds its sides together, and
+/// Changes the forces of a contact group whose conditions have these statuses: only a tie's may be tensile, and
 /// friction stays at its bound.
 pub fn change_forces(
     group: &ContactGroup,
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::recover::group_solution::tests::{COULOMB, group, pressed};
 
-    /// A force of constant size b along the slip s turns by b/|s| times what comes across.
+    /// A force of constant size b along the slip s turns by b/|s| times the slip's change across it.
     #[test]
     fn a_force_turns_with_the_slip_as_one_of_constant_size() {
         let (group, slip) = (group(COULOMB), [-3e-3, -4e-3]);

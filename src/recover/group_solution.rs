@@ -1,4 +1,4 @@
-//! The solution at the conditions of a contact group, and what the laws of contact want to be otherwise there.
+//! The solution at the conditions of a contact group, and its corrections by the laws of contact.
 
 use crate::contact::law::{PointLaw, PointState};
 use crate::contact::status::{LimitState, Status};
@@ -12,12 +12,12 @@ pub struct GroupSolution {
     pub forces: Vec<f64>,
     /// Closed conditions; a tangential one is closed where the sides stick.
     pub closed: Vec<bool>,
-    /// The gap that is left at every condition, g − B u; the way back to where the sides stuck (m).
+    /// The remaining gap at every condition, g − B u; for tangential ones the slip with its sign reversed (m).
     pub gaps: Vec<f64>,
 }
 
 impl GroupSolution {
-    /// A point with friction.
+    /// The state of a point with friction.
     pub fn point(&self, law: &PointLaw) -> PointState {
         law.at(|j| -self.gaps[j], &self.forces, &self.closed)
     }
@@ -51,7 +51,7 @@ impl GroupSolution {
         states
     }
 
-    /// Takes the forces of conditions that aren't ties, and which are closed.
+    /// Sets forces and closed flags of all conditions but ties.
     pub fn take(&mut self, group: &ContactGroup, known: Vec<(f64, bool)>) {
         let all = self.forces.iter_mut().zip(&mut self.closed).zip(known);
         for (((force, closed), known), condition) in all.zip(group.conditions()) {
@@ -61,7 +61,7 @@ impl GroupSolution {
         }
     }
 
-    /// Takes from tangential forces their excess over the bounds.
+    /// Reduces tangential forces to their bounds.
     pub fn keep_to_bounds(&mut self, group: &ContactGroup) {
         for point in group.point_laws() {
             let here = self.point(&point);
@@ -72,8 +72,8 @@ impl GroupSolution {
         }
     }
 
-    /// Opens normal conditions that are closed without a force and closes those that are open with an overlap; returns
-    /// whether there was any.
+    /// Opens normal conditions that are closed without a force and closes open ones with an overlap; returns whether
+    /// there was any.
     pub fn open_or_close(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
         let unilateral = group.points.iter().enumerate();
@@ -90,7 +90,7 @@ impl GroupSolution {
         changed
     }
 
-    /// Takes their friction away from points that have opened.
+    /// Removes the friction of points that have opened.
     pub fn release_opened(&mut self, group: &ContactGroup) {
         for point in group.point_laws() {
             if point.has_opened(&self.closed) {
@@ -102,8 +102,8 @@ impl GroupSolution {
         }
     }
 
-    /// Lets points slip that stick under more than their bound, and stick that slip under a force that drives them. One that
-    /// slips without a force, which it lost with its pressure, gets the one that it has by the law. Returns whether any changed.
+    /// Lets points slip that stick beyond their bound, and stick that slip under a force that drives them. A slipping
+    /// point without a force, lost with its pressure, gets the one of its law. Returns whether any changed.
     pub fn stick_or_slip(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
         for point in group.point_laws() {

@@ -12,25 +12,25 @@ use crate::plan::Plan;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedActiveSetRoot};
 use crate::schur::local::CondensedLoad;
 
-/// Question of the owner of a cluster to the root.
+/// Request of a cluster's owner to the root.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct ClusterQuestion<S> {
-    /// The state of its limits, where it is in contact.
+    /// The state of its limits, if it is in contact.
     limits: Option<Vec<S>>,
     /// The load, on normal jumps and traces.
     #[serde(with = "crate::bytes")]
     load: Vec<f64>,
 }
 
-/// The change of a cluster where it is in contact, and that of the unknowns on the boundary of its node.
+/// The change of a cluster if it is in contact, and of the unknowns on the boundary of its node.
 type ClusterAnswer<L> = (Option<PairChange<L>>, Reals);
 
 /// The load on Γ, and on the normal jumps of every pair.
 pub type InterfaceLoad<'a> = (&'a [f64], &'a [Vec<f64>]);
 
 impl FixedActiveSet<'_> {
-    /// Brings the loads and limits of clusters to the root, where `solve` finds the change of U and of all pairs, and back the
-    /// changes of clusters in contact and the unknowns on the boundary of every cluster's node. Collective.
+    /// Sends the loads and limits of clusters to the root, where `solve` finds the change of U and of all pairs, and
+    /// returns the changes of clusters in contact and the unknowns on the boundary of every cluster's node. Collective.
     pub fn solve_interface<S, L>(
         &self,
         limits: &OnPairs<Vec<S>>,

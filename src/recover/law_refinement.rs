@@ -1,13 +1,13 @@
-//! Iterative refinement of the contact problem itself: the laws are solved anew, for the change of jumps and forces that what
-//! is left unbalanced asks for.
+//! Iterative refinement of the contact problem itself: the laws are solved anew for the change of jumps and forces that
+//! balances the residual.
 //!
 //! ```text
 //! λ + δλ = λ + r − H δt,    0 ≤ λ + δλ ⊥ g − t − δt ≥ 0,    friction likewise
 //! ```
 //!
-//! r is the residual of the full discrete problem, condensed onto the jumps. Round-off is relative to the terms of the change
-//! here, where in the sweeps it is relative to H t: forces far below those that bodies are deformed by, as of friction that
-//! alone holds a stiff body on a soft one, are known to their last digits.
+//! r is the residual of the full discrete problem, condensed onto the jumps. Round-off is relative to the terms of the
+//! change here, but relative to H t in the sweeps: forces far below those that deform the bodies, such as friction that
+//! alone holds a stiff body on a soft one, become accurate to their last digits.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -19,12 +19,12 @@ use crate::interface::coupled::{CoupledContact, PairChange};
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses, put_tied};
 use crate::recover::{DiscreteSolution, GroupSolution};
 
-/// Numbers on all unknowns of every block of this rank.
+/// Vectors on all unknowns of every block of this rank.
 type OnUnknowns = OnBlocks<Vec<f64>>;
 
 impl FixedActiveSet<'_> {
-    /// The solution whose contact laws are solved for anew from `before`, under these `loads` that it leaves on the unknowns of
-    /// the blocks; `None` where the laws have no solution there, or the root can't solve for all pairs at once. Collective.
+    /// The solution with its contact laws solved anew from `before`, under these unbalanced `loads` on the blocks'
+    /// unknowns; `None` if the laws have no solution there, or the root can't solve for all pairs at once. Collective.
     pub fn solve_laws(
         &self,
         before: &DiscreteSolution,
@@ -82,7 +82,7 @@ impl FixedActiveSet<'_> {
         interface.is_some_and(|(_, problem)| CoupledContact::new(problem).is_some())
     }
 
-    /// The forces of all conditions of clusters in contact, and which are closed, where their limits are so.
+    /// The forces of all conditions of clusters in contact, and which are closed, from the states of their limits.
     fn conditions_of(&self, changes: OnPairs<PairChange<LimitState>>) -> OnPairs<Vec<(f64, bool)>> {
         let of_cluster = |(p, then): (PairId, PairChange<LimitState>)| {
             let limits = self.step.pairs.get(&p)?.limits();
@@ -94,8 +94,8 @@ impl FixedActiveSet<'_> {
         changes.into_iter().filter_map(of_cluster).collect()
     }
 
-    /// Takes slips back: closed points stick where they were, their forces whatever that asks for, as the solution moves under
-    /// these `loads`. Collective.
+    /// Undoes slips: closed points return to where they stuck, with whatever forces that takes, as the solution moves
+    /// under these `loads`. Collective.
     pub fn hold_slips(&self, solution: &mut DiscreteSolution, loads: OnUnknowns) {
         for (&g, of_group) in &mut solution.groups {
             for point in self.context.groups[&g].point_laws() {
@@ -117,7 +117,7 @@ impl FixedActiveSet<'_> {
     }
 }
 
-/// The statuses of all conditions where those that are closed are held at their bounds.
+/// The statuses of all conditions with the closed ones held at their bounds.
 fn held(solution: &DiscreteSolution) -> FixedStatuses {
     let of_group = |of_group: &GroupSolution| {
         let status = |(&lacks, &closed): (&f64, &bool)| match closed {

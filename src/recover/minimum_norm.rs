@@ -1,4 +1,4 @@
-//! Settling rigid motions that nothing resists: the solution's part along them is taken out.
+//! Minimum-norm solution: the component of the solution along unresisted rigid motions is removed.
 
 use std::ops::Range;
 
@@ -19,17 +19,16 @@ use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::released_modes::{ConditionState, ReleasedModes};
 use crate::vector::largest as largest_entry;
 
-/// A contact force, relative to the terms of the equilibrium at its nodes, that is round-off.
+/// Contact force, relative to the terms of the equilibrium at its nodes, below which it is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// A gap, relative to the largest displacement before and after bodies were moved, that is open.
+/// Gap, relative to the largest displacement before and after the move of bodies, above which it is open.
 const OPENED: f64 = 1e-13;
 
-/// Most corrections of what a move leaves unbalanced by its round-off; each moves bodies again, by less.
+/// Most corrections of the round-off that a move leaves unbalanced; each moves bodies again, by less.
 const CORRECTIONS: usize = 2;
 
-/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free
-/// whatever the contacts do, in the Euclidean sense over the nodes of the bodies that take part.
-/// Collective.
+/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free whatever the contacts
+/// do, in the Euclidean sense over the nodes of the bodies that take part. Collective.
 pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let blocks = solution.blocks.iter_mut();
     let displacement = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
@@ -42,18 +41,18 @@ pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolu
 /// Outcome of the minimum-norm solution for released modes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MinimumNorm {
-    /// True if there were more than those that are free whatever the contacts do; on all ranks.
+    /// True if there were modes beyond those that are free whatever the contacts do; on all ranks.
     pub has_released_modes: bool,
     /// True if loads work along motions that nothing in the solution resists; on the root.
     pub is_driven: bool,
-    /// Conditions that opened by it; on the root.
+    /// Number of conditions that opened through it; on the root.
     pub opened: usize,
     /// Warnings to the user; on the root.
     pub warnings: Vec<String>,
 }
 
 impl MinimumNorm {
-    /// Says what became of it: whether the nearer position is `taken`.
+    /// Adds to the warnings whether the minimum-norm solution is `taken`.
     fn conclude(&mut self, taken: bool) {
         let end = match taken {
             true => "the minimum-norm solution is returned",
@@ -69,9 +68,8 @@ impl MinimumNorm {
     }
 }
 
-/// Of all positions that contact forces leave the bodies, gives them the one of least displacement,
-/// the closing motion included, unless its `certificate` is a worse one; conditions that open by it are
-/// open. Collective.
+/// Moves the bodies, among all positions that contact forces leave them, to that of least displacement, including the
+/// closing motion, unless the `certificate` gets worse; conditions that open through it are open. Collective.
 pub fn take_minimum_norm(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
@@ -89,8 +87,8 @@ pub fn take_minimum_norm(
         return minimum_norm;
     }
     for _ in 0..CORRECTIONS {
-        // What drives these motions can't be balanced by any displacement, so that corrections leave it out; how far
-        // they go makes no difference.
+        // No displacement can balance loads along these motions, so that corrections leave them out; the length of
+        // these motions makes no difference.
         let of_released = FixedActiveSet {
             root: fixed.root.map(|root| FixedActiveSetRoot {
                 moves: true,
@@ -115,7 +113,7 @@ pub fn take_minimum_norm(
     minimum_norm
 }
 
-/// Gives the bodies the position of least displacement, whatever its certificate, and returns the motions that are free in
+/// Moves the bodies to the position of least displacement, whatever its certificate, and returns the motions free in
 /// it. Collective.
 fn move_nearer(
     fixed: &FixedActiveSet<'_>,
@@ -171,7 +169,7 @@ fn move_nearer(
     (list, minimum_norm)
 }
 
-/// Takes the forces away from conditions, by their number among those of all groups, which the root knows. Collective.
+/// Zeroes the forces of conditions, by their number among those of all groups, which the root knows. Collective.
 fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut DiscreteSolution) {
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     let mut ranges: Numbered<GroupId, Range<usize>> = Numbered::default();

@@ -10,12 +10,12 @@ use crate::rigid::free_motion::FreeMotion;
 use crate::rigid::projection::{BodyProducts, MotionProducts};
 use crate::vector::axpy;
 
-/// Kind of a field on nodes that several blocks share: the share of it that each of them has.
+/// Kind of a field on nodes that several blocks share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
-    /// Every one knows all of it, as of a displacement.
+    /// Every block has the full value, as of a displacement.
     Shared,
-    /// Every one has a part, as of the forces that elements exert; the parts add up.
+    /// Every block has a part, as of the forces that elements exert; the parts add up.
     Summed,
 }
 
@@ -29,8 +29,8 @@ pub struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies
-    /// that take part. Collective.
+    /// Makes a field orthogonal to every motion, in the Euclidean sense over the nodes of the bodies that take part.
+    /// Collective.
     pub fn project(&self, context: &Context<'_>, kind: Field, fields: OnBlocks<&mut Vec<f64>>) {
         if self.list.is_empty() {
             return;
@@ -42,7 +42,7 @@ impl<'a> Motions<'a> {
         self.take_out(context, kind, &coefficients, fields);
     }
 
-    /// Their products with each other and with a field, on the root. Collective.
+    /// The products of motions with each other and with a field, on the root. Collective.
     pub fn products(
         &self,
         context: &Context<'_>,
@@ -125,7 +125,7 @@ impl<'a> Motions<'a> {
     }
 }
 
-/// The lowest block at every node that several have.
+/// The lowest block at every node of several blocks.
 fn first_blocks(catalog: &Catalog) -> Vec<BlockId> {
     let mut first = vec![BlockId::new(usize::MAX); catalog.interface_nodes];
     for (b, nodes) in (0..).map(BlockId::new).zip(&catalog.interface) {
@@ -137,7 +137,7 @@ fn first_blocks(catalog: &Catalog) -> Vec<BlockId> {
     first
 }
 
-/// Nodes of block b that no lower one has.
+/// Nodes of block b that belong to no lower one.
 fn first_in(block: &Block, b: BlockId, first_of: &[BlockId]) -> Vec<bool> {
     let mut is_first = vec![true; block.nodes()];
     for on in &block.subdomain.interface {

@@ -1,4 +1,4 @@
-//! Penetration where no condition holds the sides apart: at the nodes of the side that has none.
+//! Penetration at nodes without a contact condition: those of the other side.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +10,11 @@ use crate::context::Context;
 use crate::fem::resultants::{ContactResultant, Probed};
 use crate::vector::largest;
 
-/// Part of the largest displacement up to which nodes touch.
+/// Gap, relative to the largest displacement, up to which nodes count as touching.
 const TOUCHING: f64 = 0.01;
 
-/// Looks at displacements, node by node on every block, at the probes of all contacts, and writes down on the root what
-/// is found. Collective.
+/// Evaluates displacements, node by node on every block, at the probes of all contacts, and records the penetrations on
+/// the root. Collective.
 pub fn probe(
     context: &Context<'_>,
     displacement: &OnBlocks<Vec<f64>>,
@@ -29,7 +29,7 @@ pub fn probe(
     if catalog.probes.is_empty() {
         return;
     }
-    // What each block has of the jumps.
+    // The part of each block in the jumps.
     let mut of_block: OnBlocks<Vec<(u32, u32, f64)>> = BTreeMap::new();
     for (row, probe) in (0..).zip(&catalog.probes) {
         for (at, weight) in &probe.entries {

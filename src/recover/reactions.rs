@@ -1,4 +1,4 @@
-//! Reactions: what supports carry.
+//! Reactions: forces of supports.
 
 use contact_dd_partition::id::{BlockId, OnBlocks};
 
@@ -7,8 +7,8 @@ use crate::fem::springs::spring_forces;
 use crate::recover::BlockSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
-/// Reactions on the bodies of every condition that prescribes displacements; on the root they are those
-/// of the whole solution. Collective.
+/// Reactions on the bodies of every condition that prescribes displacements; on the root they are those of the whole
+/// solution. Collective.
 pub fn reactions(fixed: &FixedActiveSet<'_>, solutions: &OnBlocks<BlockSolution>) -> Vec<Reaction> {
     let names = fixed.context.catalog.supports.iter();
     let mut reactions: Vec<Reaction> = names

@@ -1,5 +1,5 @@
-//! Iterative refinement with the factors at hand: the full discrete problem's residual is solved
-//! for with the active set fixed, wherever the certificate falls short.
+//! Iterative refinement with the available factors: the full discrete problem's residual is solved for with the active
+//! set fixed, wherever the certificate falls short.
 
 use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
 
@@ -16,29 +16,29 @@ use crate::sweep::AGAINST_FRICTION;
 
 /// Equilibrium and penetration above which a solution is refined.
 const LIMIT: f64 = 4e-15;
-/// Equilibrium relative to the load above which a solution is refined: bodies that move much farther than they
-/// deform have forces that are less than their displacements promise.
+/// Equilibrium relative to the load above which a solution is refined: forces in bodies that move much farther than
+/// they deform are smaller than their displacements suggest.
 const LIMIT_OF_LOAD: f64 = 1e-11;
 /// Violation of the law of friction above which a solution is refined.
 const LIMIT_OF_FRICTION: f64 = 1e-14;
-/// Violation of the law of friction above which what sticks and slips is corrected: well above round-off, well below
-/// what isn't accepted as an answer.
+/// Violation of the law of friction above which sticking and slipping are corrected: well above round-off, well below
+/// the error that is rejected.
 const ASTRAY: f64 = 1e-12;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
-/// Accuracy of a correction where it is iterated for.
+/// Accuracy of a correction by an iterative solver.
 const CORRECTION: f64 = 1e-6;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
-/// The same with friction, whose forces follow what presses, and turn in space.
+/// Most refinements with friction, whose forces follow the pressure, and turn in space.
 const MAX_REFINEMENTS_OF_SLIPS: usize = 8;
-/// Most refinements in which the laws of contact are solved for anew.
+/// Most refinements in which the laws of contact are solved anew.
 const MAX_REFINEMENTS_OF_LAWS: usize = 5;
-/// Most corrections of what sticks and slips.
+/// Most corrections of sticking and slipping.
 const MAX_CORRECTIONS: usize = 20;
 
-/// Refines `solution` until the certificate holds or gets no better, and returns it; on the root
-/// it is that of the whole solution. Collective.
+/// Refines `solution` until the certificate holds or no longer improves, and returns it; on the root for the whole
+/// solution. Collective.
 pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Certificate {
     let mut best = check(fixed, solution);
     let most = match fixed.context.catalog.has_friction() {
@@ -69,8 +69,8 @@ pub fn refine(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) -> Ce
     best
 }
 
-/// Solves the laws of contact anew for what a solution leaves unbalanced, as long as its certificate falls short and gets
-/// better, and returns it; where that doesn't get there with friction, from where nothing slips, too. Collective.
+/// Solves the laws of contact anew for a solution's unbalanced forces, as long as its certificate falls short and
+/// improves, and returns it; if that fails with friction, it starts again from a state without slip. Collective.
 pub fn refine_laws(
     fixed: &FixedActiveSet<'_>,
     solution: &mut DiscreteSolution,
@@ -81,7 +81,7 @@ pub fn refine_laws(
         return best;
     }
     laws_from(fixed, solution, &mut best);
-    // What cycles from where it was does so from elsewhere, too.
+    // A cycle from the present state recurs from other ones, too.
     let tries_again = fixed.root.is_some_and(|root| !root.cycles) && breaks_laws(&best);
     if fixed.context.catalog.has_friction() && decide(fixed, tries_again) {
         let mut stuck = solution.clone();
@@ -102,7 +102,7 @@ pub fn refine_laws(
     best
 }
 
-/// Solves the laws of contact anew, and refines, as long as the certificate falls short and gets better. Collective.
+/// Solves the laws of contact anew, and refines, as long as the certificate falls short and improves. Collective.
 fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: &mut Certificate) {
     for _ in 0..MAX_REFINEMENTS_OF_LAWS {
         if !decide(fixed, breaks_laws(best)) {
@@ -121,20 +121,20 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
     }
 }
 
-/// True if a solution isn't the best that is to be had.
+/// True if a solution violates balance or the laws of contact by more than is good enough.
 fn breaks_laws(certificate: &Certificate) -> bool {
     short_of_laws(certificate) > GOOD
 }
 
-/// Violation of balance and of the laws of contact by a solution, in the measure of equilibrium.
+/// Violation of balance and of the laws of contact by a solution, on the scale of equilibrium.
 fn short_of_laws(certificate: &Certificate) -> f64 {
     worst(certificate).max(certificate.friction * (GOOD / ASTRAY))
 }
 
-/// Corrects statuses against the laws of contact, as forces are known better after refinement than the sweeps know them,
-/// and refines anew, until they are fulfilled; where that isn't found, nothing is changed: what sticks and what slips
-/// against friction, and where the certificate falls short, what is closed without a force or
-/// open with an overlap, both less than the sweeps see. Collective.
+/// Corrects statuses against the laws of contact, as forces are more accurate after refinement than in the sweeps, and
+/// refines anew, until the laws are fulfilled; if they never are, nothing changes. Corrected are sticking and slipping
+/// against friction and, if the certificate falls short, limits closed without a force or open with an overlap, both
+/// too small for the sweeps. Collective.
 pub fn correct_statuses(
     fixed: &FixedActiveSet<'_>,
     solution: &mut DiscreteSolution,
@@ -165,7 +165,7 @@ pub fn correct_statuses(
     if let Some(next) = &mut corrected
         && decide(fixed, after.friction > AGAINST_FRICTION)
     {
-        // Where round-off of what balances is more than the law leaves undecided, forces keep to their bounds.
+        // Forces keep to their bounds where the round-off of balance exceeds the law's tolerance.
         for (g, of_group) in &mut next.groups {
             of_group.keep_to_bounds(&fixed.context.groups[g]);
         }
@@ -183,7 +183,8 @@ pub fn correct_statuses(
     }
 }
 
-/// Puts a `nearer` solution, refined, in the place of `solution` unless its certificate is a worse one, and returns the certificate and whether it did. Collective.
+/// Replaces `solution` by a `nearer` one, refined, unless its certificate is worse; returns the certificate and whether
+/// it did. Collective.
 pub fn replace_if_as_good(
     fixed: &FixedActiveSet<'_>,
     solution: &mut DiscreteSolution,
@@ -200,7 +201,7 @@ pub fn replace_if_as_good(
     }
 }
 
-/// True if a solution keeps the law of friction as well as another one, or well enough.
+/// True if a solution fulfils the law of friction as well as another one, or well enough.
 fn keeps_law(after: &Certificate, before: &Certificate) -> bool {
     after.friction <= before.friction.max(AGAINST_FRICTION)
 }
@@ -217,17 +218,17 @@ fn decide(fixed: &FixedActiveSet<'_>, decision: bool) -> bool {
     fixed.context.comm.decide(able && decision)
 }
 
-/// Corrects a solution by what it leaves unbalanced, where that can be solved for, whatever its certificate is then. Collective.
+/// Corrects a solution by its unbalanced forces, if possible, whatever its certificate is then. Collective.
 pub fn correct_once(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     if decide(fixed, true) {
         correct(fixed, solution);
     }
 }
 
-/// Adds the solution of the linear problem whose load is what `solution` leaves unbalanced. What of it
-/// drives a free motion no displacement can balance: it is round-off, of loads and of stiffnesses that
-/// are 0 along the motion but for theirs. It is left on all nodes that move, where it is least; the
-/// springs at the motions' pins would bear it each at one node.
+/// Adds the solution of the linear problem under the unbalanced forces of `solution`. No displacement can balance their
+/// part along a free motion: it is round-off, of loads and of stiffnesses that are 0 along the motion but for theirs.
+/// It is left spread over all nodes that move, where it is least; the springs at the motions' pins would concentrate it
+/// at single nodes.
 fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let context = &fixed.context;
     let prescribed: OnGroups<Vec<bool>> = (solution.groups.keys())
@@ -261,7 +262,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     solution.share(&fixed.context, &fixed.step.loads);
 }
 
-/// The forces that a solution leaves unbalanced on the unknowns of the blocks of this rank, but those that drive free motions. Collective.
+/// The unbalanced forces of a solution on this rank's unknowns, without those along free motions. Collective.
 fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBlocks<Vec<f64>> {
     let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
     let mut residuals: OnBlocks<Vec<f64>> = solution.blocks.iter().filter_map(residual).collect();
@@ -276,7 +277,7 @@ fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBloc
     residuals.into_iter().filter_map(on_unknowns).collect()
 }
 
-/// Conditions of contact group g whose jumps supports prescribe; in the plane friction doesn't ask.
+/// Flags of contact group g's conditions whose jumps supports prescribe; in the plane friction doesn't need them.
 fn prescribed(context: &Context<'_>, g: GroupId) -> Vec<bool> {
     let group = &context.groups[&g];
     let of = match context.catalog.dim == 3 && !group.friction().is_empty() {

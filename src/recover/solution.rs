@@ -1,4 +1,4 @@
-//! The solution of a load step on the blocks of this rank, and what it says of itself.
+//! The solution of a load step on the blocks of this rank, with its checks and derived results.
 
 use contact_dd_partition::id::{BlockId, OnBlocks};
 
@@ -26,13 +26,13 @@ use crate::rigid::body_analysis::with_closing_motions;
 pub struct Solution {
     /// Displacement without the bodies' closing motions, contact forces and closed points.
     pub discrete: DiscreteSolution,
-    /// Displacement with it, node by node (m).
+    /// Displacement with the closing motions, node by node (m).
     pub displacement: OnBlocks<Vec<f64>>,
     /// Stresses, unless they are left out.
     pub stress: Option<OnBlocks<Stress>>,
     /// The check of the full discrete problem; on the root.
     pub certificate: Certificate,
-    /// The condition number; on the root, where it can be made.
+    /// The condition number; on the root, if it can be estimated.
     pub condition: Option<f64>,
     /// Outcome of released modes.
     pub minimum_norm: MinimumNorm,
@@ -57,8 +57,8 @@ impl Solution {
         self.certificate.is_a_number() && estimate.error.is_finite() && estimate.energy.is_finite()
     }
 
-    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked
-    /// for, those of load step `stress_of`. Collective.
+    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked for,
+    /// those of load step `stress_of`. Collective.
     pub fn new(
         fixed: &FixedActiveSet<'_>,
         analysis: &RigidBodyAnalysis,
@@ -77,7 +77,7 @@ impl Solution {
             Some(_) => correct_statuses(fixed, &mut discrete, certificate),
         };
         let minimum_norm = take_minimum_norm(fixed, analysis, &mut discrete, &mut certificate);
-        // A released mode has no stiffness that could be compared.
+        // A released mode has no stiffness, so that there is no condition number.
         let condition = match minimum_norm.has_released_modes {
             true => None,
             false => condition_number(fixed, &discrete),

@@ -1,4 +1,4 @@
-//! The check of a solution: its certificate, of what ranks find on their blocks, at contact points and at shared nodes.
+//! The check of a solution: its certificate, from the checks of ranks on blocks, at contact points and at shared nodes.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +35,7 @@ pub fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certifi
             to.push((b, part));
         }
     }
-    // Nodes are checked by ranks in turn, in the order of blocks.
+    // Ranks check the shared nodes in turn, in the order of blocks.
     let mut shared = comm.exchange(parts).concat();
     shared.sort_by_key(|&(b, _)| b);
     let shared = at_shared_nodes(shared.iter().map(|(_, check)| check));
@@ -65,7 +65,7 @@ pub fn check(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> Certifi
     certificate
 }
 
-/// The largest of what was checked elsewhere on this rank and at its contact points.
+/// The largest values in the checks of this rank at contact points and elsewhere.
 fn at_contact_points(
     fixed: &FixedActiveSet<'_>,
     solution: &DiscreteSolution,
@@ -81,7 +81,7 @@ fn at_contact_points(
     most
 }
 
-/// The largest slip that friction doesn't oppose, relative to these `scales`, which the root knows; on the root. Collective.
+/// The largest slip not opposed by friction, relative to these `scales`, which the root knows; on the root. Collective.
 fn unopposed_slip(
     fixed: &FixedActiveSet<'_>,
     solution: &DiscreteSolution,

@@ -11,10 +11,10 @@ use crate::fem::interaction_integral::{Integrals, TipDisc};
 use crate::fem::stress_intensity::StressIntensity;
 use crate::recover::BlockSolution;
 
-/// Checks that the near fields are known of every crack tip that a quantity is of.
+/// Checks that the near fields are known for every crack tip of a quantity.
 ///
 /// # Errors
-/// A material whose fields aren't.
+/// A material without known near fields.
 pub fn check_quantities(catalog: &Catalog) -> Result<(), Failure> {
     for quantity in &catalog.quantities {
         let is_of_tip = matches!(
@@ -39,8 +39,8 @@ pub fn check_quantities(catalog: &Catalog) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The stress intensity factors of all crack tips in load step `step`, on the root; tips of absent bodies and in materials
-/// without near fields have none. Collective.
+/// The stress intensity factors of all crack tips in load step `step`, on the root; tips of absent bodies and in
+/// materials without near fields have none. Collective.
 pub fn stress_intensities(
     context: &Context<'_>,
     solutions: &OnBlocks<BlockSolution>,

@@ -1,5 +1,5 @@
-//! Stresses and the estimate of the mesh's error: what blocks know in parts of nodes on Γ goes to all
-//! ranks that share them.
+//! Stresses and the estimate of the mesh's error: parts that blocks have of nodal values on Γ go to all ranks that
+//! share the nodes.
 
 use std::collections::BTreeSet;
 
@@ -22,9 +22,9 @@ use crate::recover::BlockSolution;
 /// The stresses of a block.
 #[derive(Clone, Debug)]
 pub struct Stress {
-    /// Of every cell (Pa).
+    /// Stress in every cell (Pa).
     pub cells: Vec<[f64; 6]>,
-    /// Recovered at nodes (Pa).
+    /// Stress recovered at nodes (Pa).
     pub nodes: Vec<[f64; 6]>,
     /// Estimated error of every cell.
     pub errors: Vec<CellError>,
@@ -32,7 +32,7 @@ pub struct Stress {
     pub largest_strain: LargestStrain,
 }
 
-/// A nodal quantity on Γ in one material of which each block has a part.
+/// A nodal quantity on Γ in one material that is a sum over blocks.
 trait Part: Clone + Serialize + DeserializeOwned {
     /// Adds another part.
     fn add(&mut self, other: &Self);
@@ -44,7 +44,7 @@ impl Part for PatchSum {
     }
 }
 
-/// A sum of polynomials and how many these are.
+/// A sum of polynomials and their number.
 impl Part for (Polynomial, f64) {
     fn add(&mut self, other: &Self) {
         self.0.add(1.0, &other.0);
@@ -61,7 +61,7 @@ pub fn stresses(
     plan: &Plan,
     step: usize,
 ) -> OnBlocks<Stress> {
-    // Fresh memory for every block would cost more than what is done with it.
+    // Fresh memory for every block would cost more than the computation.
     let mut patches = Vec::new();
     let found = solutions.iter().filter_map(|(b, solution)| {
         let block = blocks.get(b)?;
@@ -116,7 +116,7 @@ fn add(stresses: &mut [[f64; 6]], initial: &[[f64; 6]]) {
     }
 }
 
-/// The way of parts to all ranks that share a node.
+/// Exchange of parts among all ranks that share a node.
 struct Exchange<'a> {
     comm: &'a Comm,
     /// The ranks that share every node on Γ, ascending.
@@ -151,8 +151,8 @@ impl<'a> Exchange<'a> {
         }
     }
 
-    /// Sums up what `parts` gives for places on the interface of every block, and hands the sums
-    /// to `set`. Sums run in the order of blocks, whoever owns them. Collective.
+    /// Sums the `parts` at interface nodes of every block, and hands the sums to `set`. Sums run in the order of
+    /// blocks, whatever rank owns them. Collective.
     fn sum<P: Part>(
         &self,
         stresses: &mut OnBlocks<(&Block, BlockStress)>,
@@ -213,7 +213,7 @@ impl<'a> Exchange<'a> {
     }
 }
 
-/// The estimate for all cells, on the root. Collective.
+/// The estimate over all cells, on the root. Collective.
 pub fn error_estimate(comm: &Comm, stresses: &OnBlocks<Stress>, plan: &Plan) -> CellError {
     let mut total = CellError::default();
     comm.gather(

@@ -1,7 +1,6 @@
-//! The active set: which conditions are closed, found by steps that fix it.
+//! The active set: the closed conditions, found by steps that each fix it.
 //!
-//! λ ≥ 0 where closed, t ≤ g where open. A step that finds conditions that say otherwise changes
-//! some of them.
+//! λ ≥ 0 where closed, t ≤ g where open. A step whose solution violates these conditions changes the status of some.
 
 use std::collections::BTreeMap;
 
@@ -21,26 +20,26 @@ use crate::tree::update::{ActiveSetUpdate, Descent};
 /// The wrong statuses of the active set.
 #[derive(Clone, Debug, Default)]
 struct Faults {
-    /// Normal jumps by group that should be open and are closed, or the other way round.
+    /// Normal jumps by group that are closed and should be open, or vice versa.
     wrong: OnGroups<Vec<usize>>,
-    /// Number on all ranks.
+    /// Number of wrong statuses on all ranks.
     count: usize,
-    /// Closed ones on all ranks.
+    /// Number of closed conditions on all ranks.
     active: usize,
     /// The largest tension or penetration, relative to the largest force or jump.
     largest: f64,
 }
 
-/// Open conditions, and the solution with them.
+/// Flags of open conditions, and the solution with them.
 pub(super) struct Settled {
     pub open: OnGroups<Vec<bool>>,
     pub solution: ActiveSetSolution,
-    /// True if nothing is wrong.
+    /// True if no status is wrong.
     pub is_right: bool,
 }
 
-/// Finds the active set of a `problem` in which all tangential conditions stick, from one that is `open` at first, or the one
-/// after `most` steps. Collective.
+/// Finds the active set of a `problem` with all tangential conditions sticking, from the conditions that are `open` at
+/// first; after `most` steps the last one. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -103,7 +102,7 @@ pub(super) fn settle(
     }
 }
 
-/// Opens and closes what is wrong; where a limit follows from closed ones, it closes in the place of one of them.
+/// Flips wrong statuses; a limit that depends on closed ones closes in exchange for one of them.
 fn flip(laws: &ContactLaws<'_>, wrong: &[usize], at: &Iterate, open: &mut [bool]) {
     for &j in wrong {
         match open[j] {
@@ -122,15 +121,15 @@ struct Search<'a> {
     fronts: &'a mut ActiveSetFronts,
     /// The solution of the last step.
     last: Option<ActiveSetSolution>,
-    /// The largest tension or penetration in it.
+    /// The largest tension or penetration in that solution.
     wrong_by: f64,
     /// True if springs of earlier active sets were taken away.
     is_released: bool,
 }
 
 impl Search<'_> {
-    /// The solution where these conditions are `open`, and what it says of them; of an iterative solver no more accurate, by
-    /// this `share`, than the active set is right, until that seems to be. Collective.
+    /// The solution with these conditions `open`, and its wrong statuses; an iterative solver's tolerance is this
+    /// `share` of the active set's error until that set seems right. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.
@@ -160,7 +159,7 @@ impl Search<'_> {
         Ok((solution, faults))
     }
 
-    /// The same with this `tolerance` of an iterative solver, from an earlier solution. Collective.
+    /// The solution of a step with this `tolerance` of an iterative solver, from an earlier one. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.
@@ -187,7 +186,7 @@ impl Search<'_> {
     }
 }
 
-/// The largest force and jump of a solution, or bound, on all ranks. Collective.
+/// The largest force of a solution, and the largest jump or bound, on all ranks. Collective.
 fn scales(comm: &Comm, solution: &ActiveSetSolution, bounds: &OnGroups<Vec<f64>>) -> [f64; 2] {
     let is_finite = |x: &&f64| x.is_finite();
     let forces = solution.at.values().flat_map(|at| &at.forces);
@@ -200,7 +199,7 @@ fn scales(comm: &Comm, solution: &ActiveSetSolution, bounds: &OnGroups<Vec<f64>>
 }
 
 impl Faults {
-    /// The wrong statuses, by more than `least`, where the conditions that are `open` led to this solution. Collective.
+    /// Statuses wrong by more than `least` in the solution with these conditions `open`. Collective.
     fn of(
         problem: &TreeProblem<'_>,
         solution: &ActiveSetSolution,

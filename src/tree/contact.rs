@@ -1,10 +1,9 @@
 //! The contact problem of a load step, solved by Newton's method on the laws of contact
 //! ([`newton`](crate::contact::newton)) with the tree as its operator, or the tree and BDDC.
 //!
-//! A jump is known where it is closed or sticks; where it slips its force follows its law. Where Newton's method gets no
-//! further, it begins anew at the solution of the convex problem in which nothing slips. That and the problem without friction
-//! are solved by updates of the active set, which take fewer steps than Newton's method with its
-//! line search.
+//! A jump is known where it is closed or sticks; where it slips its force follows its law. If Newton's method stalls,
+//! it starts again from the solution of the convex problem without slip. That problem and the one without friction are
+//! solved by updates of the active set, which take fewer steps than Newton's method with its line search.
 
 use std::collections::BTreeMap;
 
@@ -26,10 +25,10 @@ use crate::tree::solution::ActiveSetSolution;
 
 /// Most steps.
 const MAX_STEPS: usize = 400;
-/// Most steps in a row without a smaller merit.
+/// Most steps in a row that don't reduce the merit.
 const PATIENCE: usize = 20;
-/// Residual of the laws that is accepted, relative to the largest force, where steps make it no smaller: the rest is round-off,
-/// which refinement takes off.
+/// Accepted residual of the laws, relative to the largest force, where steps no longer reduce it: the rest is
+/// round-off, which refinement removes.
 const ACCEPTABLE: f64 = 1e-7;
 
 /// The solution of the contact problem in the tree, on this rank.
@@ -39,13 +38,13 @@ pub struct TreeContact {
     pub conditions: OnGroups<Vec<(f64, bool)>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: OnTreeNodes<Vec<f64>>,
-    /// The statuses of all limits of every contact group, from which the next load step begins; none where they aren't right.
+    /// The statuses of all limits of every contact group, the start of the next load step; empty if they aren't right.
     pub statuses: OnGroups<Statuses>,
     /// Course of the sweeps; the same on all ranks but for times.
     pub outcome: SweepOutcome,
 }
 
-/// The start, all at rest, with these normal jumps open and all else closed and sticking.
+/// The start at rest, with these normal jumps open and all other limits closed and sticking.
 fn begin(
     laws: &OnGroups<ContactLaws<'_>>,
     open: &OnGroups<Vec<bool>>,
@@ -63,8 +62,8 @@ fn begin(
     (start, statuses)
 }
 
-/// Finds what every contact point does under `loads` on the boundaries of the clusters, within the `limits` of every
-/// contact group of this rank, from the statuses of the load step `before`, else from where all are closed and stick. Collective.
+/// Solves for all contact points under `loads` on the boundaries of the clusters, within the `limits` of every contact
+/// group of this rank, from the statuses of the load step `before`, else from all closed and sticking. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -113,9 +112,9 @@ fn without_friction(
     Ok((found, settled.solution))
 }
 
-/// The solution with friction, by Newton's method. Where that gets no further, it begins anew where those are closed that
-/// press while everything sticks along tangents, open or closed: a convex problem, in which no body is without a hold because
-/// contacts open that are far from each other. Collective.
+/// The solution with friction, by Newton's method. If that stalls, it starts again with the conditions closed that are
+/// compressed while everything sticks along tangents, open or closed: a convex problem, in which no body comes loose
+/// because contacts far from each other open. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
@@ -158,7 +157,7 @@ fn with_friction(
     }
 }
 
-/// The solution: forces at the conditions, unknowns at the clusters, and how that went. Collective.
+/// The solution: forces at the conditions, unknowns at the clusters, and the outcome. Collective.
 fn conclude(
     problem: &TreeProblem<'_>,
     found: Found,
@@ -199,7 +198,7 @@ fn conclude(
     })
 }
 
-/// The force of every condition of group g, and whether it is closed or sticks.
+/// The force of every condition of group g, and flags of those that are closed or stick.
 fn conditions(
     limits: &Limits,
     laws: &ContactLaws<'_>,
@@ -226,7 +225,7 @@ fn not_finite(sweep: usize) -> SweepStatus {
     ))
 }
 
-/// Counts what the steps took, at their end.
+/// Adds the work of the steps to the outcome, at their end.
 fn end(outcome: &mut SweepOutcome) {
     let steps = outcome.records.len();
     outcome.active_set_iterations = steps;

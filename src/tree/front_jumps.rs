@@ -6,8 +6,8 @@
 //! τ = t_p + Σ c t = Σ share·(d − D_C g_C)
 //! ```
 //!
-//! over other open jumps t. The front has τ in the place of t_p: a jump that is closed like any other. What balances at it
-//! is what the row and others hold of the force there.
+//! over other open jumps t. The front replaces t_p by τ, a closed jump like any other. The balance at τ is the force
+//! there of this row and others.
 
 use std::borrow::Cow;
 
@@ -17,21 +17,21 @@ use crate::contact::laws::Iterate;
 use crate::contact::sharing::ForceSharing;
 use crate::schur::substitution::Replaced;
 
-/// The jumps of a group with its closed rows in the place of open jumps.
+/// The jumps of a group in which closed rows replace open jumps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrontJumps {
     /// D.
     rows: DependentConstraints,
     /// Open limits.
     pub open: Vec<bool>,
-    /// The closed rows that say more than the closed jumps.
+    /// The closed rows that are independent of closed jumps.
     equalities: ActiveEqualities,
-    /// The shares of other jumps in closed rows that follow from independent ones.
+    /// The shares of other limits' forces in dependent closed rows.
     sharing: ForceSharing,
 }
 
 impl FrontJumps {
-    /// The jumps of a group with these dependent `rows`, of whose limits some are `open`.
+    /// The jumps of a group with these dependent `rows` and flags of `open` limits.
     pub fn new(rows: &DependentConstraints, open: &[bool]) -> Self {
         let equalities = ActiveEqualities::new(rows, open);
         let mut independent = open.to_vec();
@@ -48,7 +48,7 @@ impl FrontJumps {
         }
     }
 
-    /// Jumps that are open in the front.
+    /// Flags of the jumps that are open in the front.
     pub fn open_in_front(&self) -> Vec<bool> {
         let mut open = self.open[..self.open.len() - self.rows.len()].to_vec();
         for equality in &self.equalities.equalities {
@@ -57,7 +57,7 @@ impl FrontJumps {
         open
     }
 
-    /// The displacements that jumps `replaced`, in terms of those of the front.
+    /// The displacements that jumps `replaced`, in terms of the front's jumps.
     pub fn replaced<'r>(&self, replaced: &'r [Replaced]) -> Cow<'r, [Replaced]> {
         if self.equalities.equalities.is_empty() {
             return Cow::Borrowed(replaced);
@@ -78,7 +78,7 @@ impl FrontJumps {
         Cow::Owned(replaced)
     }
 
-    /// The values of the jumps that are closed in the front, where those of all closed limits are `prescribed` (m).
+    /// The values of the jumps closed in the front, given the `prescribed` ones of all closed limits (m).
     pub fn closed_values(&self, prescribed: &[f64]) -> Vec<f64> {
         let open = self.open_in_front();
         let both = prescribed.iter().zip(&self.open).take(open.len());
@@ -91,7 +91,7 @@ impl FrontJumps {
             .collect()
     }
 
-    /// The forces on the jumps that are open in the front, for those on open limits (N/m).
+    /// The forces on the jumps open in the front, given those on open limits (N/m).
     pub fn open_forces(&self, of_limits: &[f64]) -> Vec<f64> {
         let mut forces = self.given(of_limits);
         for equality in &self.equalities.equalities {
@@ -105,7 +105,7 @@ impl FrontJumps {
             .collect()
     }
 
-    /// The forces on every jump of given ones on open limits (N/m).
+    /// The forces on every jump due to given ones on open limits (N/m).
     fn given(&self, of_limits: &[f64]) -> Vec<f64> {
         let m = self.open.len() - self.rows.len();
         let is_open = |(force, open): (&f64, &bool)| if *open { *force } else { 0.0 };
@@ -120,8 +120,8 @@ impl FrontJumps {
         forces
     }
 
-    /// The jumps and forces of all limits, none where these are open, for the jumps of the front and what balances at those
-    /// closed there, while open limits carry given forces.
+    /// The jumps and forces of all limits, 0 on open ones, from the jumps of the front and the balance at its closed
+    /// ones, with given forces on open limits.
     pub fn answer(&self, mut jumps: Vec<f64>, balance: Vec<f64>, of_limits: &[f64]) -> Iterate {
         let mut forces = balance;
         if self.rows.is_empty() {

@@ -20,24 +20,24 @@ use crate::schur::merge::{Merge, Spare};
 use crate::schur::substitution::Replaced;
 use crate::tree::front_jumps::FrontJumps;
 
-/// The spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely without
-/// the contacts that are open: the next active set closes what stops it.
+/// Spring on an open normal jump, relative to its diagonal, where some part of the scene moves freely unless open
+/// contacts hold it: the next active set closes those that stop it.
 const SPRING: f64 = 1e-9;
 
-/// The least pivot between clusters, relative to its diagonal entry, that isn't of round-off.
+/// Least pivot between clusters, relative to its diagonal entry, above round-off.
 const NO_PIVOT: f64 = 1e-12;
 
-/// A front whose own normal jumps are open or closed.
+/// A front with a fixed status of its own normal jumps.
 #[derive(Debug)]
 pub(super) struct ActiveSetFront {
     pub(super) merge: Merge,
-    /// S of the closed ones against them and what is kept, a column each from the diagonal on.
+    /// S of the closed jumps against themselves and the kept unknowns, a column each from the diagonal on.
     pub(super) held: Mat<f64>,
-    /// Jumps of the front, and which limits of them are open.
+    /// Jumps of the front, with flags of its open limits.
     pub(super) jumps: FrontJumps,
 }
 
-/// The fronts of this rank above all contact, and what they are merged from.
+/// The fronts of this rank above all contact, and the matrices that they are merged from.
 #[derive(Debug)]
 pub struct ActiveSetFronts {
     /// The nodes of the hierarchy above all clusters, children before parents, on all ranks the same.
@@ -45,7 +45,7 @@ pub struct ActiveSetFronts {
     pub(super) fronts: OnTreeNodes<ActiveSetFront>,
     /// S of clusters and fronts, at the owner of the node that they are merged into.
     merged: OnTreeNodes<Condensed>,
-    /// S of those that nothing here is above.
+    /// S of the roots among them.
     pub(super) merge_roots: OnTreeNodes<ClusterSchur>,
     replaced: OnTreeNodes<Vec<Replaced>>,
     /// The dependent rows of every contact group of this rank.
@@ -54,17 +54,17 @@ pub struct ActiveSetFronts {
     spare: Spare,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
     pub smallest_pivot: f64,
-    /// Number of loads that they were solved for.
+    /// Number of solves.
     pub solves: usize,
-    /// Iterative solver between the nodes that nothing here is above, where these aren't the roots of the hierarchy.
+    /// Iterative solver between these roots, if they aren't the roots of the hierarchy.
     pub(super) bddc: Option<Bddc>,
 }
 
 impl ActiveSetFronts {
-    /// Fronts over the `clusters` of this rank, by their place among all; none is factorized yet. Collective.
+    /// Fronts over the `clusters` of this rank, by their index among all; none is factorized yet. Collective.
     ///
     /// # Errors
-    /// A contact point that nothing can be replaced for.
+    /// A contact point without an unknown that can be replaced.
     pub fn new(
         condensation: &Condensation<'_>,
         mut clusters: OnClusters<Condensed>,
@@ -108,13 +108,13 @@ impl ActiveSetFronts {
         Ok(fronts)
     }
 
-    /// True if what slips is to be held: springs hold what is open, as something moves without them, and friction in
-    /// space depends on how far that goes.
+    /// True if slipping points have to be held: springs hold open contacts, as something moves without them, and
+    /// friction in space depends on the length of that motion.
     pub fn has_to_hold(&self, context: &Context<'_>) -> bool {
         self.spring > 0.0 && context.catalog.dim == 3 && context.catalog.has_friction()
     }
 
-    /// Closes those of the slipping `limits` of group g that don't follow from what isn't `open`.
+    /// Closes the slipping `limits` of group g, except those determined by limits that aren't `open`.
     pub(super) fn hold(&self, g: GroupId, limits: impl Iterator<Item = usize>, open: &mut [bool]) {
         let rows = &self.rows[&g];
         for t in limits {
@@ -124,13 +124,13 @@ impl ActiveSetFronts {
         }
     }
 
-    /// Number of coarse unknowns of the iterative interface solver, where there is one; 0 but on the root.
+    /// Number of coarse unknowns of the iterative interface solver, if there is one; 0 except on the root.
     pub fn coarse_dofs(&self) -> Option<usize> {
         self.bddc.as_ref().map(|bddc| bddc.coarse_dofs)
     }
 
-    /// Eliminates again whatever is above a contact group that isn't `open` as it was; all at first. Collective;
-    /// `open` says it of the groups of this rank.
+    /// Eliminates again all fronts above contact groups whose `open` flags changed; at first all. `open` has the groups
+    /// of this rank. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -143,7 +143,7 @@ impl ActiveSetFronts {
         self.make(context, open, is_known, false)
     }
 
-    /// Makes the preconditioner that of the active set, where there is one that isn't. Collective.
+    /// Renews a preconditioner of an earlier active set for the present one. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -158,8 +158,7 @@ impl ActiveSetFronts {
         }
     }
 
-    /// Makes a preconditioner better that is too bad: that of the active set, else one that looks into what clusters
-    /// share. Collective.
+    /// Improves an insufficient preconditioner: it is renewed for the active set, else its level is raised. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -188,7 +187,7 @@ impl ActiveSetFronts {
         self.factorize(context, open, false, true)
     }
 
-    /// Takes the springs of earlier active sets away where this one needs none; returns whether it did. Collective.
+    /// Removes the springs of earlier active sets if this one needs none; returns whether it did. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -205,7 +204,7 @@ impl ActiveSetFronts {
         Ok(self.spring == 0.0)
     }
 
-    /// True if what the iterative interface solver holds without springs may be held by round-off alone. Collective.
+    /// True if the iterative interface solver's matrix without springs may be definite by round-off only. Collective.
     fn nearly_moves(&self, context: &Context<'_>) -> bool {
         let comm = context.comm;
         let pivot = self.bddc.as_ref().map(Bddc::smallest_pivot);
@@ -214,7 +213,7 @@ impl ActiveSetFronts {
         comm.decide(is_small)
     }
 
-    /// Eliminates what is touched, and makes the preconditioner between clusters. Collective.
+    /// Eliminates the touched fronts, and makes the preconditioner between clusters. Collective.
     fn factorize(
         &mut self,
         context: &Context<'_>,
@@ -234,7 +233,7 @@ impl ActiveSetFronts {
             None => Bddc::new(context, &self.merge_roots)?,
         };
         let renewed = renewed || !is_known;
-        // What was made before, with another preconditioner, can't move, nor can what springs hold.
+        // Matrices that an earlier preconditioner was made of have no mechanism, nor have those with springs.
         let is_sound = self.spring > 0.0 || !touched.values().contains(&true) && !bddc.is_stale();
         let mut fixed = bddc.fix(
             context,

@@ -1,5 +1,5 @@
-//! The tree of fronts as an operator of Newton's method on the laws of contact: it answers for statuses by eliminating again
-//! what is above those that changed, and for slip forces by GMRES over its answers.
+//! The tree of fronts as an operator of Newton's method on the contact laws: it solves for given statuses by
+//! eliminating again all fronts above changed ones, and for slip forces by GMRES over such solves.
 
 use contact_dd_partition::id::{GroupId, OnGroups};
 
@@ -19,25 +19,25 @@ use crate::vector::between;
 
 /// Round-off, relative to the largest force or displacement.
 pub(super) const ROUND_OFF: f64 = 1e-12;
-/// Residual that is accepted where directions of slip turn, relative to the scales of forces, for the next step to be exact.
+/// Residual, relative to the scales of forces, below which the next step is exact although slip directions turn.
 const NEARLY: f64 = 1e-5;
-/// Share of the stiffness at a point, times the displacements, in the scale of forces: their round-off is relative to it.
+/// Share of a point's stiffness times displacements in the scale of forces, whose round-off is relative to it.
 const STIFFNESS_SHARE: f64 = 1e-3;
 
-/// The operator.
+/// The tree of fronts as an operator.
 pub(super) struct TreeOperator<'a, 's, 'o> {
     problem: &'a TreeProblem<'a>,
     fronts: &'a mut ActiveSetFronts,
     steps: &'s mut Steps<'o>,
-    /// The last answer; the same on all ranks whether there was one, of which some have no clusters.
+    /// The last solution; all ranks have one or none does, although some have no clusters.
     pub solution: Option<ActiveSetSolution>,
-    /// True if what slips is held at its slip, without which something moves.
+    /// True if slips are prescribed, as something moves otherwise.
     is_held: bool,
-    /// True if springs of earlier statuses were taken away.
+    /// True if springs of earlier statuses were removed.
     is_released: bool,
-    /// True if directions of slip turn with it.
+    /// True if directions of slip turn with the slip.
     turns: bool,
-    /// Round-off of the last answer, relative to the largest force.
+    /// Round-off of the last solution, relative to the largest force.
     accuracy: f64,
 }
 
@@ -51,7 +51,7 @@ fn slip_laws(laws: &ContactLaws<'_>, statuses: &Statuses) -> Vec<SlipLaw> {
 }
 
 impl<'a, 's, 'o> TreeOperator<'a, 's, 'o> {
-    /// That of a `problem`, which counts its `steps`.
+    /// The operator of a `problem`, which counts its `steps`.
     pub fn new(
         problem: &'a TreeProblem<'a>,
         fronts: &'a mut ActiveSetFronts,
@@ -89,7 +89,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             (g, known.iter().map(|known| !known).collect())
         };
         let mut open = statuses.iter().map(open).collect();
-        // What slips is held from then on, as its directions turn with springs.
+        // Slips remain prescribed from then on, as their directions turn with springs.
         self.is_held = fix(context, self.fronts, &mut open, &laws, self.is_held)?;
         let finest = match self.fronts.coarse_dofs() {
             Some(_) => Accuracy::FULL.tolerance,
@@ -163,7 +163,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             .iter()
             .flat_map(|last| last.boundaries.values());
         let displaced = comm.largest(boundaries.flatten());
-        // Of a rough answer no more than of an exact one.
+        // An approximate solution gets no larger share than an exact one.
         let share = STIFFNESS_SHARE * (ROUND_OFF / self.accuracy) * displaced;
         let of_group = |&g: &GroupId| {
             let own = self.problem.stiffest[&g].iter();

@@ -1,4 +1,4 @@
-//! The contact problem of a load step, and the steps that are made towards its solution.
+//! The contact problem of a load step, and the steps towards its solution.
 
 use std::time::Instant;
 
@@ -18,9 +18,9 @@ pub(super) struct TreeProblem<'a> {
     pub context: &'a Context<'a>,
     /// The limits of every contact group.
     pub limits: &'a OnGroups<Limits>,
-    /// Their laws.
+    /// The laws of these limits.
     pub laws: OnGroups<ContactLaws<'a>>,
-    /// The stiffness that the round-off of the force of every limit is relative to (N/m).
+    /// The stiffness to which the round-off of every limit's force is relative (N/m).
     pub stiffest: OnGroups<Vec<f64>>,
     /// Prescribed values of closed jumps and of ties (m).
     pub bounds: OnGroups<Vec<f64>>,
@@ -54,7 +54,7 @@ impl<'a> TreeProblem<'a> {
             let stiffest = of_points(ContactGroup::largest_stiffness_at);
             problem.laws.insert(g, of_group);
             problem.stiffest.insert(g, stiffest);
-            // Those of ties come behind.
+            // The bounds of ties follow those of limits.
             let bounds = limits.bounds.iter().copied();
             let of_ties = limits.tied.iter().map(|&(_, jump)| jump);
             problem.bounds.insert(g, bounds.chain(of_ties).collect());
@@ -62,7 +62,7 @@ impl<'a> TreeProblem<'a> {
         problem
     }
 
-    /// No open limit.
+    /// Flags of no open limit.
     pub fn all_closed(&self) -> OnGroups<Vec<bool>> {
         let all = self.limits.iter();
         all.map(|(&g, limits)| (g, vec![false; limits.bounds.len()]))
@@ -86,7 +86,7 @@ pub(super) struct Steps<'o> {
 }
 
 impl<'o> Steps<'o> {
-    /// None yet, of which an `observer` is told.
+    /// No steps yet; the `observer` is told of each.
     pub fn new(observer: &'o mut dyn FnMut(&SweepRecord)) -> Self {
         Self {
             began: Instant::now(),
@@ -95,13 +95,13 @@ impl<'o> Steps<'o> {
         }
     }
 
-    /// Their number.
+    /// Number of steps.
     pub fn count(&self) -> usize {
         self.outcome.records.len()
     }
 
-    /// Takes note of a step after which a `residual` is left and so many limits are `active`, before which so many `changed`;
-    /// an iterative solver took these `iterations`.
+    /// Records a step with the `residual` after it, the number of `active` limits, the number that `changed` before it,
+    /// and the `iterations` of an iterative solver.
     pub fn record(
         &mut self,
         (residual, active, changed): (f64, usize, Option<usize>),
@@ -124,10 +124,10 @@ impl<'o> Steps<'o> {
         (self.observer)(&record);
     }
 
-    /// Goes on unless a signal has asked the run to stop. Collective.
+    /// Continues unless a signal has asked the run to stop. Collective.
     ///
     /// # Errors
-    /// A signal did.
+    /// A signal has.
     pub fn go_on(&self, context: &Context<'_>) -> Result<(), Failure> {
         match context.comm.is_any_asked_to_stop() {
             false => Ok(()),

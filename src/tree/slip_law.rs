@@ -1,11 +1,11 @@
-//! A slipping point whose force follows what presses, and turns with the slip.
+//! A slipping point whose force follows the pressure, and turns with the slip.
 
 use crate::contact::law::{LinearLaw, PointLaw, PointState, PointStatus};
 use crate::contact::limits::{Limits, TangentialLimit};
 use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
 
-/// Part of its bound below which a force that slips isn't at it: the contact is about to open.
+/// Part of its bound below which a slipping force is off it: the contact is about to open.
 pub const AT_BOUND: f64 = 1.0 - 1e-9;
 
 /// A slipping point.
@@ -14,7 +14,7 @@ pub struct SlipLaw {
     point: PointLaw,
     /// True if its contact is closed.
     is_closed: bool,
-    /// True if that is about to open.
+    /// True if the contact is about to open.
     parts: bool,
     /// e.
     direction: [f64; 2],
@@ -24,7 +24,7 @@ pub struct SlipLaw {
 }
 
 impl SlipLaw {
-    /// The law of a point with this status, whose normal jump is closed or not; `None` where it doesn't slip.
+    /// The law of a point with this status in a closed or open contact; `None` if it doesn't slip.
     pub fn new(point: &PointLaw, status: &PointStatus, is_closed: bool) -> Option<Self> {
         let (direction, turning, parts) = match *status {
             PointStatus::Slips { direction, turning } => (direction, turning, false),
@@ -41,9 +41,9 @@ impl SlipLaw {
         })
     }
 
-    /// The laws of the points of a `group` within `limits` that slip as these statuses of limits say, under these `forces`
-    /// of their conditions; the constant part of the bound is what these lack of it, and where they lack more than round-off
-    /// the contact is about to open.
+    /// The laws of the points of a `group` within `limits` that slip by these statuses of limits, under these `forces`
+    /// of their conditions; the constant part of the bound is the distance of forces to it, and where that is more than
+    /// round-off the contact is about to open.
     pub fn of_slipping(
         group: &ContactGroup,
         limits: &Limits,
@@ -78,7 +78,7 @@ impl SlipLaw {
         limits.tangents.iter().filter_map(law).collect()
     }
 
-    /// Adds to `missed` what the `forces` of limits miss with these slips; of a change, without what is constant.
+    /// Adds to `missed` the law's residual for these `forces` and slips of limits, for a change without the constant.
     pub fn add_missed(
         &self,
         forces: &[f64],
@@ -99,7 +99,7 @@ impl SlipLaw {
         self.turning
     }
 
-    /// The force of the point under this pressure (N/m) where its slip is along e.
+    /// The force of the point under this pressure (N/m) for a slip along e.
     pub fn set_force(&self, forces: &[f64], own: &mut [f64]) {
         let e = self.direction;
         let known = self.point.tangents.map(|t| t.map_or(0.0, |t| forces[t]));
@@ -113,14 +113,14 @@ impl SlipLaw {
         }
     }
 
-    /// The forces that would make these slips at a point as stiff as it is.
+    /// The forces that would cause these slips against the point's own stiffness.
     pub fn set_holding(&self, slip: impl Fn(usize) -> f64, forces: &mut [f64]) {
         for t in self.limits() {
             forces[t] = self.point.stiffness * slip(t);
         }
     }
 
-    /// Adds to `slips` those that `forces` on the jumps of the point would make if it were as stiff as it is.
+    /// Adds to `slips` those that `forces` on the jumps of the point would cause against its own stiffness.
     pub fn add_slips(&self, forces: &[f64], slips: &mut [f64]) {
         for t in self.limits() {
             slips[t] += forces[t] / self.point.stiffness;
@@ -155,7 +155,7 @@ mod tests {
         POINT.at(|t| slips[t - 1], &forces, &[true; 3])
     }
 
-    /// λ_t − b ξ/|ξ|, what the law itself misses.
+    /// λ_t − b ξ/|ξ|, the residual of the nonlinear law.
     fn natural_map(forces: [f64; 3], slips: [f64; 2]) -> [f64; 2] {
         let here = at(forces, slips);
         let xi = POINT.reach(&here);

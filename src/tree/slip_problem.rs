@@ -1,9 +1,9 @@
-//! The linear problem of points that slip while the active set is fixed: forces and slips that follow their laws.
+//! The linear problem of slipping points with a fixed active set: forces and slips that follow their laws.
 //!
-//! GMRES solves it (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986): a product is a solution of the fronts of the active set
-//! for forces at the slipping points and nothing else. Where friction alone keeps bodies from moving on, these forces would
-//! move them without end: there what slips is held at its slip, as what sticks is held where it is, and slips are the
-//! unknowns; that takes more products. What slips as closed limits make it isn't held, and its force is the unknown.
+//! GMRES solves it (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986): a product is a solution of the fronts of the
+//! active set under forces at the slipping points alone. Where only friction keeps bodies from moving on, these forces
+//! would move them without limit: there slips are prescribed, as sticking is, and are the unknowns, which takes more
+//! products. Slips determined by closed limits aren't prescribed; their forces are the unknowns.
 
 use std::collections::BTreeMap;
 
@@ -22,25 +22,26 @@ use crate::vector::{axpy, dot};
 
 /// Most rounds.
 const ROUNDS: usize = 2;
-/// Part of what a round before missed that is no less.
+/// Ratio of a round's residual to the last one above which it stalls.
 const STALLS: f64 = 0.5;
-/// Reduction of the residual by GMRES, at least and at most, and beyond what is enough.
+/// Least and largest reduction of the residual by GMRES, and the margin below the required accuracy.
 const REDUCTION: [f64; 2] = [1e-1, 1e-6];
 const MARGIN: f64 = 0.3;
 /// Most products.
 const PRODUCTS: usize = 40;
-/// Tolerance of the first product beside what GMRES is to reach. The nearer that is, the less a product matters: later
-/// ones may be as much less exact (Bouras and Frayssé, SIAM J. Matrix Anal. Appl. 26, 2005).
+/// Tolerance of the first product relative to the goal of GMRES. The nearer that goal, the less a product matters:
+/// later ones may be less exact in proportion (Bouras and Frayssé, SIAM J. Matrix Anal. Appl. 26, 2005).
 const PRODUCT: f64 = 0.3;
-/// Tolerance of a product at most.
+/// Largest tolerance of a product.
 const LEAST_EXACT: f64 = 1e-2;
 
-/// A number for every jump of the contact groups of this rank.
+/// A vector on the jumps of the contact groups of this rank.
 pub type OnJumps = OnGroups<Vec<f64>>;
 /// The laws of the slipping points of every contact group of this rank.
 pub type Laws = OnGroups<Vec<SlipLaw>>;
 
-/// Fixes what is `open`, of which what slips by `laws` is held if it was or has to be, and returns whether it is. Collective.
+/// Fixes the statuses with these `open`, holding points that slip by `laws` if they were or have to be, and returns
+/// whether they are. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely.
@@ -72,26 +73,26 @@ pub fn fix(
     Ok(true)
 }
 
-/// The loads and laws that a fixed active set is solved for with.
+/// The loads and laws of a problem with a fixed active set.
 #[derive(Clone, Copy)]
 pub struct SlipProblem<'a> {
     /// The context of the run.
     pub context: &'a Context<'a>,
-    /// Open jumps, by contact group of this rank; those that slip are unless they are held.
+    /// Flags of open jumps, by contact group of this rank; slipping ones are open unless held.
     pub open: &'a OnGroups<Vec<bool>>,
-    /// True if what slips is held, unless its slip follows from what is closed.
+    /// True if slips are prescribed, except those determined by closed limits.
     pub is_held: bool,
     /// Loads on the boundaries of clusters, by node.
     pub clusters: &'a OnTreeNodes<Vec<f64>>,
-    /// The values of the closed jumps of every group, and of those that slip before they do (m).
+    /// The values of the closed jumps of every group, and the stick positions of slipping ones (m).
     pub prescribed: &'a OnJumps,
     /// The laws of the slipping points.
     pub laws: &'a Laws,
 }
 
 impl SlipProblem<'_> {
-    /// The solution of a load with these forces on what slips, or the slips that such forces would make at points as stiff as
-    /// these are, with an iterative solver as `accuracy` says. Collective.
+    /// The response to a load with these forces at slipping points, or with the slips that these cause against the
+    /// points' own stiffness; `accuracy` is that of an iterative solver. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.
@@ -121,7 +122,7 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// These forces on open friction conditions.
+    /// The part of these forces on open friction conditions.
     fn on_open(&self, forces: &OnJumps) -> OnJumps {
         let of_group = |(&g, forces): (&GroupId, &Vec<f64>)| {
             let both = forces.iter().zip(&self.open[&g]);
@@ -131,7 +132,7 @@ impl SlipProblem<'_> {
         forces.iter().map(of_group).collect()
     }
 
-    /// The forces from which a solution begins near these iterates.
+    /// Start values of the forces near these iterates.
     pub fn first(&self, laws: &OnGroups<ContactLaws<'_>>, from: &OnGroups<Iterate>) -> OnJumps {
         let of_group = |(&g, from): (&GroupId, &Iterate)| {
             let mut forces = vec![0.0; from.jumps.len()];
@@ -148,8 +149,8 @@ impl SlipProblem<'_> {
         from.iter().map(of_group).collect()
     }
 
-    /// The solution that follows the laws, but for a part `accuracy` of the largest force, as far as rounds of GMRES make what
-    /// is missed less; from `forces` and an earlier solution, of the same on all ranks. Collective.
+    /// The solution that follows the laws to an `accuracy` relative to the largest force, as far as rounds of GMRES
+    /// reduce the residual; from `forces` and an earlier solution, if all ranks have one. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.
@@ -193,7 +194,7 @@ impl SlipProblem<'_> {
         Ok(solution)
     }
 
-    /// The residual of the laws at the forces of a solution, where `slip` tells the slip of a jump of a group.
+    /// The residual of the laws at the forces of a solution with the slips `slip` of each group's jumps.
     fn missed(
         &self,
         solution: &ActiveSetSolution,
@@ -210,8 +211,8 @@ impl SlipProblem<'_> {
         solution.at.iter().map(of_group).collect()
     }
 
-    /// The change of forces that takes back what is `missed` of the laws, but for a part `reduction`, and the iterations
-    /// that it took. Collective.
+    /// The change of forces that cancels the residual `missed` of the laws to a relative accuracy `reduction`, and the
+    /// number of iterations. Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely.
@@ -265,7 +266,7 @@ impl SlipProblem<'_> {
         Ok((sum, iterations))
     }
 
-    /// The slips that forces would make at points as stiff as these are (m).
+    /// The slips that forces would cause against the points' own stiffness (m).
     fn slips(&self, forces: &OnJumps) -> OnJumps {
         let of_group = |(&g, forces): (&GroupId, &Vec<f64>)| {
             let mut slips = vec![0.0; forces.len()];
@@ -277,7 +278,7 @@ impl SlipProblem<'_> {
         forces.iter().map(of_group).collect()
     }
 
-    /// Change of the residual of slipping points' law with these forces. Collective.
+    /// Change of the residual of slipping points' laws due to these forces. Collective.
     fn product(
         &self,
         fronts: &mut ActiveSetFronts,
@@ -312,7 +313,7 @@ impl SlipProblem<'_> {
     }
 }
 
-/// Adds other numbers to those of every jump.
+/// Adds another vector on jumps.
 fn add(to: &mut OnJumps, others: &OnJumps) {
     for (g, to) in to {
         if let Some(others) = others.get(g) {
@@ -321,7 +322,7 @@ fn add(to: &mut OnJumps, others: &OnJumps) {
     }
 }
 
-/// 0 in the place of every number.
+/// Vectors of the same lengths, all 0.
 fn zeros<K: Copy + Ord>(of: &BTreeMap<K, Vec<f64>>) -> BTreeMap<K, Vec<f64>> {
     let all = of.iter();
     all.map(|(&k, values)| (k, vec![0.0; values.len()]))

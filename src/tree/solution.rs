@@ -17,25 +17,25 @@ use crate::vector::{axpy, dot};
 /// The condensed loads of the fronts of this rank, and the values of their closed jumps.
 type CondensedLoads = OnTreeNodes<(CondensedLoad, Vec<f64>)>;
 
-/// The answer to a load where the active set is fixed, on this rank.
+/// The response to a load with a fixed active set, on this rank.
 #[derive(Clone, Debug, Default)]
 pub struct ActiveSetSolution {
-    /// The jumps and forces of every contact group; no force where open.
+    /// The jumps and forces of every contact group; 0 force where open.
     pub at: OnGroups<Iterate>,
     /// The forces at the jumps of the ties of every contact group above clusters.
     pub tied: OnGroups<Vec<f64>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: OnTreeNodes<Vec<f64>>,
-    /// The unknowns of the nodes between which an iterative solver works.
+    /// The unknowns of the roots between which an iterative solver works.
     pub merge_roots: OnTreeNodes<Vec<f64>>,
     /// The iterations.
     pub iterations: usize,
-    /// True if the preconditioner was too bad, and can be made better.
+    /// True if the preconditioner was insufficient, and can be improved.
     pub is_too_far: bool,
 }
 
 impl ActiveSetSolution {
-    /// True if it consists of finite numbers, on all ranks. Collective.
+    /// True if all values are finite, on all ranks. Collective.
     pub fn is_finite(&self, comm: &Comm) -> bool {
         let of_groups = self
             .at
@@ -46,7 +46,7 @@ impl ActiveSetSolution {
         comm.decide(!comm.collect(&is_finite).contains(&false))
     }
 
-    /// Zeros in place of unknowns that are no finite numbers.
+    /// Replaces unknowns that aren't finite by zeros.
     pub fn cut(&mut self) {
         for x in self.boundaries.values_mut().flatten() {
             *x = if x.is_finite() { *x } else { 0.0 };
@@ -55,8 +55,8 @@ impl ActiveSetSolution {
 }
 
 impl ActiveSetFronts {
-    /// Solves for `loads` where those normal jumps are `open` that are fixed as such; an iterative solver goes as far
-    /// as `accuracy` says. Collective.
+    /// Solves for `loads` with the fixed normal jumps that are `open`, an iterative solver to its `accuracy`.
+    /// Collective.
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
@@ -69,7 +69,7 @@ impl ActiveSetFronts {
     ) -> Result<ActiveSetSolution, Failure> {
         self.solves += 1;
         let mut solution = self.solve_as_it_is(context, loads, accuracy);
-        // One made again of the classes known to need it, then one that all classes were looked into for.
+        // The first repetition renews the classes known to need it, the second one examines all classes.
         for _ in 0..2 {
             if !solution.is_too_far {
                 break;
@@ -94,7 +94,7 @@ impl ActiveSetFronts {
     ) -> ActiveSetSolution {
         let (condensed, arrived) = self.condense(context, loads);
         let mut solution = ActiveSetSolution::default();
-        // Groups of ties alone are below clusters.
+        // Groups of ties only are below clusters.
         let all = context.groups.keys().map(|&g| (g, Iterate::default()));
         solution.at.extend(all);
         let below = match &self.bddc {
@@ -122,7 +122,7 @@ impl ActiveSetFronts {
         solution
     }
 
-    /// Condenses loads up the hierarchy: those of the fronts, and what arrives at the owners of the nodes above. Collective.
+    /// Condenses loads up the hierarchy: those of the fronts, and those received at the nodes above. Collective.
     fn condense(
         &self,
         context: &Context<'_>,
@@ -163,7 +163,7 @@ impl ActiveSetFronts {
         (condensed, arrived)
     }
 
-    /// Recovers what the fronts have eliminated under these `loads`, from the unknowns `below` the roots on. Collective.
+    /// Recovers the eliminated unknowns of the fronts under these `loads`, from those `below` the roots on. Collective.
     fn recover(
         &self,
         context: &Context<'_>,
@@ -201,8 +201,8 @@ impl ActiveSetFronts {
 }
 
 impl ActiveSetFront {
-    /// The forces on its own normal jumps, 0 where open: what the load leaves of them at the unknowns `boundary`,
-    /// closed normal jumps and what is kept.
+    /// The forces on its own normal jumps, 0 where open: the load's imbalance at the unknowns `boundary`, closed normal
+    /// jumps and kept unknowns.
     fn balance(&self, load: &CondensedLoad, boundary: &[f64]) -> Vec<f64> {
         let closed = self.held.ncols();
         let mut of_closed = load.boundary()[..closed].to_vec();

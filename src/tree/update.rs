@@ -1,9 +1,9 @@
-//! Choice of the conditions that change where the solution contradicts an active set.
+//! Choice of the conditions that change where the solution contradicts the active set.
 //!
-//! All that are wrong, as semismooth Newton does. Where these don't become fewer the energy descends: from jumps that
-//! penetrate nowhere the way towards those of a step is gone up to where the first condition closes, and where none does
-//! those under tension open (Nocedal and Wright, Numerical Optimization, 2006, algorithm 16.3), until fewer are wrong than
-//! ever. That comes back nowhere, so it ends.
+//! All wrong ones change, as in semismooth Newton. Where their number doesn't fall, the energy descends: from jumps
+//! without penetration a step towards those of the solution is shortened to where the first condition closes, and if
+//! none does, the tensile ones open (Nocedal and Wright, Numerical Optimization, 2006, algorithm 16.3), until fewer are
+//! wrong than ever. Descent doesn't cycle, so it ends.
 
 use std::collections::BTreeMap;
 
@@ -14,20 +14,20 @@ use crate::contact::projection::project;
 use crate::context::Context;
 use crate::tree::problem::TreeProblem;
 
-/// Tolerance of an iterative solver beside what is wrong with the active set before.
+/// Tolerance of an iterative solver relative to the previous error of the active set.
 pub(super) const LOOSE: f64 = 0.01;
-/// Steps without fewer conditions that say otherwise until the energy descends.
+/// Steps without fewer wrong conditions after which the energy descends.
 const PATIENCE: usize = 8;
 
-/// Rule by which all wrong conditions are changed, or some.
+/// Rule by which all wrong conditions change, or some.
 #[derive(Debug)]
 pub(super) struct ActiveSetUpdate {
-    /// Fewest conditions that were wrong.
+    /// Fewest wrong conditions so far.
     fewest: usize,
-    /// Steps that may go by without fewer.
+    /// Remaining steps without fewer.
     patience: usize,
-    /// Tolerance of an iterative solver beside what is wrong with the active set before: where conditions are changed
-    /// because of errors they don't become fewer.
+    /// Tolerance of an iterative solver relative to the previous error of the active set: conditions changed because of
+    /// solver errors don't become fewer.
     pub tolerance: f64,
 }
 
@@ -42,7 +42,7 @@ impl Default for ActiveSetUpdate {
 }
 
 impl ActiveSetUpdate {
-    /// True if all are changed where `count` are wrong; if not, the energy is to descend.
+    /// True if all of `count` wrong conditions change; if not, the energy is to descend.
     pub fn is_of_all(&mut self, count: usize) -> bool {
         let all = count < self.fewest || self.patience > 0;
         if count < self.fewest {
@@ -55,14 +55,14 @@ impl ActiveSetUpdate {
     }
 }
 
-/// Normal jumps that penetrate nowhere, by group of this rank, from which the energy descends.
+/// Normal jumps without penetration, by group of this rank, from which the energy descends.
 #[derive(Debug, Default)]
 pub(super) struct Descent(Option<OnGroups<Vec<f64>>>);
 
 impl Descent {
-    /// Goes towards the jumps that a step of a `problem` `found` where those limits were `open`, of which some are `wrong`,
-    /// and changes some; how many. `None` where rows depend on tangential jumps, that stick: no position near is known in which
-    /// nothing penetrates. Collective.
+    /// Moves towards the jumps `found` by a step of a `problem` with those limits `open`, some of them `wrong`, and
+    /// changes some statuses; returns how many. `None` if rows depend on sticking tangential jumps: no nearby position
+    /// without penetration is known. Collective.
     pub fn update(
         &mut self,
         problem: &TreeProblem<'_>,
@@ -101,7 +101,7 @@ impl Descent {
                     false => {
                         let rows = problem.laws[g].rows;
                         let projected = project(rows, &bounds[g], of_group, open);
-                        // Where all else that penetrates is closed none does.
+                        // None penetrates once all others that do are closed.
                         projected + close(of_group, &bounds[g], open, wrong)
                     }
                 };
@@ -119,16 +119,16 @@ impl Descent {
     }
 }
 
-/// The part of the way from `jumps` to those that were `found` after which the first open condition that is wrong
-/// closes; infinite where none is.
+/// The fraction of the step from `jumps` to those `found` at which the first wrong open condition closes; infinite if
+/// there is none.
 fn part(jumps: &[f64], found: &[f64], bounds: &[f64], open: &[bool], wrong: &[usize]) -> f64 {
     let part = |&j: &usize| ((bounds[j] - jumps[j]) / (found[j] - jumps[j])).max(0.0);
     let penetrating = wrong.iter().filter(|&&j| open[j]);
     penetrating.map(part).fold(f64::INFINITY, f64::min)
 }
 
-/// Goes a `way` of this length from `jumps` towards those that were `found`, and closes what closes there, or goes there
-/// where nothing is in the way, and opens what is under tension; how many.
+/// Makes the fraction `way` of the step from `jumps` to those `found`, and closes the conditions that close there, or
+/// makes the full step if nothing blocks it, and opens the tensile ones; returns how many.
 fn go(
     jumps: &mut [f64],
     found: &[f64],
@@ -155,7 +155,7 @@ fn go(
     changed.len()
 }
 
-/// Closes what is open and wrong, at its bound; how many.
+/// Closes wrong open conditions at their bounds; returns how many.
 fn close(jumps: &mut [f64], bounds: &[f64], open: &mut [bool], wrong: &[usize]) -> usize {
     let mut count = 0;
     for &j in wrong.iter().filter(|&&j| open[j]) {
@@ -175,7 +175,7 @@ mod tests {
 
     use super::*;
 
-    /// Finds which t are 0 in min ½ tᵀ H t − cᵀ t over t ≤ 0; how many steps of descent that took.
+    /// Finds which t are 0 in min ½ tᵀ H t − cᵀ t over t ≤ 0; returns the number of descent steps.
     fn open_jumps(h: &Mat<f64>, c: &[f64]) -> usize {
         let n = c.len();
         let (mut open, mut update, mut singles) = (vec![false; n], ActiveSetUpdate::default(), 0);
@@ -224,14 +224,14 @@ mod tests {
         panic!("it goes on for ever");
     }
 
-    /// Changes of all that are wrong come back to where they were with 7 of these matrices.
+    /// Changes of all wrong conditions cycle for 7 of these matrices.
     #[test]
     fn sets_that_come_back_are_left_by_descent() {
         let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();
         let mut singles = 0;
         for seed in 0..200 {
             let n = 6 + seed % 9;
-            // Of low rank, but for a little.
+            // Matrices of almost low rank.
             let root = Mat::from_fn(n, (3 * n / 10).max(2), |i, j| {
                 noise(1000 * seed + 31 * i + j)
             });

@@ -1,4 +1,4 @@
-//! The discrete problem of a whole model, assembled without any code of the program under test.
+//! The discrete problem of a whole model, assembled independently of the program under test.
 //!
 //! ```text
 //! K u + Dᵀ μ + Bᵀ λ + Tᵀ λ_t = f,   D u = v,   B u ≤ g
@@ -17,8 +17,8 @@ use super::random::Random;
 use super::sparse_system::SparseSystem;
 use super::twofold::Twofold;
 
-/// Compliance of rows in the factorized matrix, relative to the largest entry of K: with it rows
-/// that depend on others do no harm, and refinement against the system without it takes it off.
+/// Compliance of rows in the factorized matrix, relative to the largest entry of K: it makes dependent rows harmless,
+/// and refinement against the system without it removes its effect.
 const SLACK: f64 = 1e-13;
 
 /// A row of a condition: dofs and coefficients.
@@ -35,21 +35,21 @@ pub struct Tangent {
     area: f64,
 }
 
-/// Round-off with random signs: in the entries of K their last digits, and forces of up to so much.
+/// Round-off with random signs: in the last digits of K's entries, and as forces up to this size.
 #[derive(Clone, Copy, Debug)]
 pub struct Disturbance {
     pub force: f64,
     pub seed: u64,
 }
 
-/// The condition along a tangent while a linear system is solved.
+/// The condition along a tangent in a linear system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
     /// No force.
     Free,
-    /// The tangential jump has this value.
+    /// A tangential jump of this value.
     Stuck(f64),
-    /// The force is this.
+    /// A force of this value.
     Pushed(f64),
 }
 
@@ -64,7 +64,7 @@ pub struct Solved {
 pub struct Assembled {
     pub dofs: usize,
     cells: Vec<Cell>,
-    /// K by element, entries of one place still apart.
+    /// K by element, entries at the same position not yet added.
     pub stiffness: Vec<Triplet<usize, usize, f64>>,
     /// The largest entry of K: rows of D and B are multiplied by it, λ and μ divided.
     scale: f64,
@@ -81,8 +81,7 @@ pub struct Residual {
 }
 
 impl Tangent {
-    /// Coefficient and constant of its bound in terms of the normal force λ: how the bound grows, and what it
-    /// is without λ.
+    /// Slope and constant of its bound as a linear function of the normal force λ.
     pub fn bound(&self, closed: bool) -> (f64, f64) {
         match self.law {
             Law::Given { bound } => (0.0, bound * self.area),
@@ -94,7 +93,7 @@ impl Tangent {
         }
     }
 
-    /// True if the bound is there without contact.
+    /// True if the bound doesn't depend on contact.
     pub fn is_given(&self) -> bool {
         matches!(self.law, Law::Given { .. })
     }
@@ -105,7 +104,7 @@ impl Tangent {
     }
 }
 
-/// Σ c u(dof), with the digits of twice the precision.
+/// Σ c u(dof), with twice the digits of double precision.
 fn product(row: &Row, u: &[f64]) -> f64 {
     let mut sum = Twofold::default();
     row.iter().for_each(|&(i, c)| sum.add_product(c, u[i]));
@@ -178,19 +177,19 @@ impl Assembled {
         sums.iter().map(Twofold::value).collect()
     }
 
-    /// uᵀ K u from the strains, so that a rigid part of u has none, however large it is.
+    /// uᵀ K u from the strains, so that a rigid part of u contributes nothing, however large it is.
     fn energy(&self, u: &[f64]) -> f64 {
         self.cells.iter().map(|cell| cell.energy(u)).sum()
     }
 
-    /// ‖u − v‖ over ‖u‖ in the norm of the energy.
+    /// ‖u − v‖ over ‖u‖ in the energy norm.
     pub fn energy_difference(&self, u: &[f64], v: &[f64]) -> f64 {
         // Squares of the smallest and largest loads would be 0 and infinite.
         let size = u.iter().fold(0.0, |m: f64, u| m.max(u.abs())).max(1e-300);
         let scaled: Vec<f64> = u.iter().map(|u| u / size).collect();
         let difference: Vec<f64> = u.iter().zip(v).map(|(u, v)| (u - v) / size).collect();
         let (difference, energy) = (self.energy(&difference), self.energy(&scaled));
-        // Two rigid motions have no difference.
+        // The difference of two rigid motions has no energy.
         if difference == 0.0 {
             0.0
         } else {
@@ -198,7 +197,7 @@ impl Assembled {
         }
     }
 
-    /// K u − f + Bᵀ λ + Tᵀ λ_t with the digits of twice the precision.
+    /// K u − f + Bᵀ λ + Tᵀ λ_t with twice the digits of double precision.
     pub fn residual(&self, u: &[f64], forces: &[f64], tangential: &[f64]) -> Residual {
         let mut sums = vec![Twofold::default(); self.dofs];
         let mut terms = vec![0.0; self.dofs];
@@ -224,16 +223,15 @@ impl Assembled {
         }
     }
 
-    /// u and λ with the `closed` conditions and `equations` as equations and the other conditions
-    /// away.
+    /// u and λ with the `closed` conditions and `equations` as equations and without the other conditions.
     pub fn solve(&self, closed: &[bool], equations: &[(Row, f64)]) -> (Vec<f64>, Vec<f64>) {
         let free = vec![Along::Free; self.tangents.len()];
         let solved = self.solve_along(closed, &free, equations, None);
         (solved.u, solved.forces)
     }
 
-    /// The same with what holds along the tangents. What is `disturbed` does to the solution what the scene's condition
-    /// makes of round-off.
+    /// The solution of that problem with conditions along the tangents. The `disturbed` data change it as much as
+    /// round-off does at the scene's condition number.
     pub fn solve_along(
         &self,
         closed: &[bool],

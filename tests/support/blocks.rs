@@ -1,4 +1,4 @@
-//! Meshes of quadrilateral blocks, and what can be done to a mesh without changing what it is.
+//! Meshes of quadrilateral blocks, and changes to a mesh that leave the body unchanged.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -9,7 +9,7 @@ use contact_dd_partition::mesh::{Group, Mesh};
 
 use super::random::Random;
 
-/// A mesh in the making; blocks share no nodes unless they are glued.
+/// A mesh under construction; blocks share no nodes unless they are glued.
 #[derive(Clone)]
 pub struct Blocks {
     pub mesh: Mesh,
@@ -31,9 +31,8 @@ impl Blocks {
         self.quadrilateral(name, corners, n)
     }
 
-    /// Adds the quadrilateral with `corners`, counter-clockwise from the lower left, as the group
-    /// of cells `name` with the groups of facets `name bottom`, `right`, `top`, `left`. A group
-    /// that is there grows.
+    /// Adds the quadrilateral with `corners`, counter-clockwise from the lower left, as the group of cells `name` with
+    /// the groups of facets `name bottom`, `right`, `top`, `left`. An existing group grows.
     pub fn quadrilateral(self, name: &str, corners: [[f64; 2]; 4], n: [usize; 2]) -> Self {
         let [a, b, c, d] = corners;
         self.mapped(name, n, |[s, t]| {
@@ -101,14 +100,14 @@ impl Blocks {
         self.members(name, 1).extend(facets);
     }
 
-    /// Makes one node of nodes that lie at the same place, where `at(x, y)` says so.
+    /// Merges nodes with the same position, where `at(x, y)` is true.
     pub fn glued(self, at: impl Fn(f64, f64) -> bool) -> Self {
         let mesh = glued(self.mesh, |[x, y, _]| at(x, y));
         Self { mesh }
     }
 }
 
-/// The mesh with one node for all that lie at the same place, where `at` says so.
+/// The mesh with nodes of the same position merged, where `at` is true.
 pub fn glued(old: Mesh, at: impl Fn([f64; 3]) -> bool) -> Mesh {
     let mut known: HashMap<[i64; 3], u32> = HashMap::new();
     let mut mesh = Mesh {
@@ -151,7 +150,7 @@ pub fn moved(mut mesh: Mesh, to: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
         let [x, y] = to([point[0], point[1]]);
         *point = [x, y, 0.0];
     }
-    // A reflection turns all cells inside out.
+    // A reflection inverts all cells.
     if mesh.measure(0) < 0.0 {
         for cell in 0..mesh.cells.len() {
             let old = mesh.cells.nodes_of(cell).to_vec();
@@ -184,8 +183,8 @@ pub fn jittered(mut mesh: Mesh, amount: f64, seed: u64) -> Mesh {
     mesh
 }
 
-/// The same mesh with nodes, cells and facets in another order, elements turned round, and tags
-/// with gaps. The second result is the old tag of every new one.
+/// The mesh with nodes, cells and facets in another order, elements rotated, and gaps in tags. The second result is the
+/// old tag of every new one.
 pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
     let mut random = Random::new(seed);
     let node_order = random.permutation(mesh.points.len());
@@ -210,7 +209,7 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
                         on_edges.rotate_left(turn);
                     }
                 }
-                // Every other one inside out.
+                // Every other one is inverted.
                 _ if turn.is_multiple_of(2) => {
                     let order = elements.kind(old as usize).reversed();
                     nodes = order.iter().map(|&from| nodes[from]).collect();
@@ -262,7 +261,7 @@ pub fn shuffled(mesh: &Mesh, seed: u64) -> (Mesh, BTreeMap<i64, i64>) {
     (shuffled, old_tags)
 }
 
-/// The mesh with a name before those of its groups.
+/// The mesh with a name prefixed to those of its groups.
 pub fn named(mut mesh: Mesh, name: &str) -> Mesh {
     let groups = std::mem::take(&mut mesh.groups).into_iter();
     mesh.groups = groups
@@ -271,7 +270,7 @@ pub fn named(mut mesh: Mesh, name: &str) -> Mesh {
     mesh
 }
 
-/// Two meshes as one, without common nodes.
+/// Union of two meshes without common nodes.
 pub fn joined(mut first: Mesh, second: Mesh) -> Mesh {
     let nodes = first.points.len() as u32;
     let number: Vec<u32> = (nodes..nodes + second.points.len() as u32).collect();

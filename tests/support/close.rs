@@ -1,4 +1,4 @@
-//! Numbers that are as good as equal.
+//! Comparison of numbers up to a tolerance.
 
 /// Fails unless both agree to within `slack`.
 #[track_caller]

@@ -1,4 +1,4 @@
-//! A solution against the reference.
+//! Comparison of a solution with the reference.
 
 use contact_dd_partition::model::Model;
 
@@ -32,7 +32,7 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
                 1e-10 * force / condition.area,
                 &at,
             );
-            // What carries neither gap nor force may be either.
+            // The status is arbitrary at a point with neither gap nor force.
             if gap_ref > 1e-11 * size || force_ref > 1e-10 * force {
                 assert_eq!(point.closed, force_ref > 0.0, "{at}: {point:?}");
             }
@@ -41,8 +41,8 @@ pub fn compare(model: &Model, reference: &Monolithic, solution: &Solution) {
     }
 }
 
-/// Findings of the judge of random scenes in the increments of a model, the worst of all: each has to keep the laws of
-/// contact and friction, and to be what follows from what it says is closed, sticks and slips.
+/// The judge's worst findings in the increments of a model: each increment has to fulfil the laws of contact and
+/// friction, and to be the solution for its own statuses.
 pub fn judged(model: &Model, increments: &[Solution]) -> Findings {
     assert_eq!(increments.len(), model.steps.len().max(1));
     let of_step = |(k, solution): (usize, &Solution)| {

@@ -1,4 +1,4 @@
-//! Balance of energy in load steps with friction, from mesh, scene and results alone.
+//! Balance of energy in load steps with friction, from mesh, scene and results only.
 
 use contact_dd_partition::model::Model;
 
@@ -7,8 +7,8 @@ use super::close::close;
 use super::scenes::at_step;
 use super::solution::Solution;
 
-/// Work in a load step, with the mean of the forces at both its ends, how the energy of the bodies changes, and what
-/// it is then.
+/// Work in a load step with the mean of the forces at both ends, the change of the bodies' energy, and the energy
+/// afterwards.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Works {
     pub loads: f64,
@@ -67,14 +67,14 @@ impl State {
     }
 }
 
-/// ½ (a + b)·(y − x), 0 for what isn't there.
+/// ½ (a + b)·(y − x), 0 for missing values.
 fn work([a, b]: [&[f64]; 2], [x, y]: [&[f64]; 2]) -> f64 {
     let was = |values: &[f64], i: usize| values.get(i).copied().unwrap_or_default();
     let each = (0..b.len()).map(|i| 0.5 * (was(a, i) + b[i]) * (y[i] - was(x, i)));
     each.sum()
 }
 
-/// Of every load step.
+/// Works of every load step.
 pub fn works(model: &Model, solutions: &[Solution]) -> Vec<Works> {
     let mut before = State::default();
     let one = |(k, solution): (usize, &Solution)| {

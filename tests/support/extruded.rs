@@ -3,7 +3,7 @@
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::mesh::{Group, Mesh};
 
-/// The nodes of a plane mesh at the levels of an extruded one, made when they are first asked for.
+/// The nodes of a plane mesh at the levels of an extruded one, created on demand.
 struct Levels<'a> {
     plane: &'a Mesh,
     heights: Vec<f64>,
@@ -12,7 +12,7 @@ struct Levels<'a> {
 }
 
 impl Levels<'_> {
-    /// Node `node` of the plane at a level.
+    /// Node `node` of the plane mesh at a level.
     fn at(&mut self, level: usize, node: u32) -> u32 {
         let place = &mut self.number[level * self.plane.points.len() + node as usize];
         *place.get_or_insert_with(|| {
@@ -22,15 +22,15 @@ impl Levels<'_> {
         })
     }
 
-    /// Nodes of the plane, given as their places in `nodes`, at a level.
+    /// Nodes of the plane mesh, given as `places` in `nodes`, at a level.
     fn pick(&mut self, level: usize, nodes: &[u32], places: &[usize]) -> Vec<u32> {
         places.iter().map(|&i| self.at(level, nodes[i])).collect()
     }
 }
 
-/// The mesh with a layer of hexahedra between each two of these `heights` (m, ascending): of 8, 20 and 27 nodes over
-/// quadrilaterals of 4, 8 and 9. Groups of cells and facets keep their names; the ends of a group of cells are
-/// `NAME back` and `NAME front`. `None` where there are other cells, or different ones.
+/// The mesh with a layer of hexahedra between consecutive `heights` (m, ascending): of 8, 20 and 27 nodes over
+/// quadrilaterals of 4, 8 and 9. Groups of cells and facets keep their names; the ends of a group of cells are `NAME
+/// back` and `NAME front`. `None` if there are other cells, or different ones.
 pub fn extruded(plane: &Mesh, heights: &[f64]) -> Option<Mesh> {
     let kind = plane.cells.iter().next()?.0;
     let (solid, side) = match kind {

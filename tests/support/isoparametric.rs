@@ -1,5 +1,5 @@
-//! Elements without any code of the program under test: shape functions from the monomials that
-//! they span, rules of quadrature from tables.
+//! Elements, independent of the program under test: shape functions from the monomials that they span, quadrature rules
+//! from tables.
 
 use contact_dd_partition::element::ElementKind::{
     self, Hexahedron8, Hexahedron20, Hexahedron27, Line2, Line3, Quad4, Quad8, Quad9, Tetrahedron4,
@@ -22,7 +22,7 @@ pub struct Cell {
     stiffness: DMatrix<f64>,
 }
 
-/// The middle of some corners.
+/// The midpoint of some corners.
 fn middle(corners: &[[f64; 3]], of: &[usize]) -> [f64; 3] {
     [0, 1, 2].map(|k| of.iter().map(|&i| corners[i][k]).sum::<f64>() / of.len() as f64)
 }
@@ -85,7 +85,7 @@ fn powers(kind: ElementKind) -> Vec<[i32; 3]> {
     let all = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9]);
     let is_of = |powers: &[i32; 3]| {
         let sum: i32 = powers.iter().sum();
-        // Factors of first degree come on top in serendipity elements.
+        // Serendipity elements also have factors of first degree.
         let beyond: i32 = powers.iter().filter(|&&p| p > 1).sum();
         match kind {
             Line2 | Triangle3 | Tetrahedron4 => sum <= 1,
@@ -100,8 +100,8 @@ fn powers(kind: ElementKind) -> Vec<[i32; 3]> {
         .collect()
 }
 
-/// Σ_k V⁻¹_ki of(power k) for every node i, with V_ik = m_k(ξ_i): what a linear function of the
-/// monomials, such as a value or a slope, is of the shape functions N = V⁻ᵀ m.
+/// Σ_k V⁻¹_ki of(power k) for every node i, with V_ik = m_k(ξ_i): the value for the shape functions N = V⁻ᵀ m of a
+/// linear functional given on the monomials, such as a value or a slope.
 fn of_shapes(kind: ElementKind, of: &dyn Fn([i32; 3]) -> f64) -> DVector<f64> {
     let (nodes, powers) = (reference(kind), powers(kind));
     let n = nodes.len();
@@ -136,8 +136,8 @@ pub fn gradients(kind: ElementKind, xi: [f64; 3]) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Points and weights of the rule by which the stiffness is defined; of quadratic tetrahedra of one that is as exact
-/// where their edges are straight.
+/// Points and weights of the rule that defines the stiffness; for quadratic tetrahedra a rule that is as exact if their
+/// edges are straight.
 fn rule(kind: ElementKind, is_ring: bool) -> Vec<([f64; 3], f64)> {
     let product = |line: &[(f64, f64)]| -> Vec<([f64; 3], f64)> {
         let depth = match kind.dim() {
@@ -194,7 +194,7 @@ fn rule(kind: ElementKind, is_ring: bool) -> Vec<([f64; 3], f64)> {
 pub struct Reference(Vec<(Vec<f64>, Vec<[f64; 3]>, f64)>);
 
 impl Reference {
-    /// Of cells around an axis or not.
+    /// The reference for cells around an axis or not.
     pub fn new(kind: ElementKind, is_ring: bool) -> Self {
         let points = rule(kind, is_ring).into_iter();
         let of_point = |(xi, w)| (shapes(kind, xi), gradients(kind, xi), w);
@@ -280,7 +280,7 @@ impl Cell {
             }
             for (&node, &slope) in self.nodes.iter().zip(slopes).skip(1) {
                 for axis in 0..self.dim {
-                    // The slopes add up to 0: against the first node, a translation drops out.
+                    // The slopes add up to 0: relative to the first node, a translation cancels.
                     let du = u[self.dim * node + axis] - u[self.dim * self.nodes[0] + axis];
                     strain += du * self.strain((slope.0, 0.0), axis);
                 }

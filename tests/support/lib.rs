@@ -1,5 +1,5 @@
-//! Trials of the whole program: random scenes, exact solutions, independent solves and the judges that compare, which
-//! tests and studies share.
+//! Trials of the whole program, shared by tests and studies: random scenes, exact solutions, independent solves and the
+//! judges that compare.
 
 #![allow(
     missing_docs,

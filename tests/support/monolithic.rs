@@ -6,8 +6,8 @@
 //! K u + Dᵀ μ + Bᵀ λ = f,   D u = v,   B u ≤ g,   λ ≥ 0,   λ (B u − g) = 0
 //! ```
 //!
-//! by a primal-dual active set: with the closed conditions A as equations the system is linear,
-//! indefinite and sparse; conditions of A in tension open, penetrating ones close.
+//! by a primal-dual active set: with the closed conditions A as equations the system is linear, indefinite and sparse;
+//! conditions of A in tension open, penetrating ones close.
 
 use std::collections::HashSet;
 
@@ -15,7 +15,7 @@ use contact_dd_partition::model::Model;
 
 use super::assembled::{Assembled, Row};
 
-/// Force or penetration, relative to the largest force or displacement, that counts as none.
+/// Force or penetration, relative to the largest force or displacement, below which it counts as zero.
 const ROUND_OFF: f64 = 1e-13;
 
 /// The solution of a model.
@@ -24,7 +24,7 @@ pub struct Monolithic {
     pub u: Vec<f64>,
     /// Contact force of every condition in the order of contacts [N/m].
     pub forces: Vec<f64>,
-    /// Gap that is left at every condition [m].
+    /// Remaining gap at every condition [m].
     pub gaps: Vec<f64>,
     assembled: Assembled,
 }
@@ -34,8 +34,8 @@ impl Monolithic {
         Self::with(model, Vec::new())
     }
 
-    /// The solution that meets `equations`, Σ coefficient·u(dof) = 0, too: with a free motion it
-    /// takes them to make it the only one.
+    /// The solution that also fulfils `equations`, Σ coefficient·u(dof) = 0, which make it unique where a motion is
+    /// free.
     pub fn with(model: &Model, equations: Vec<Row>) -> Self {
         let assembled = Assembled::new(model);
         let equations: Vec<(Row, f64)> = equations.into_iter().map(|row| (row, 0.0)).collect();
@@ -49,7 +49,7 @@ impl Monolithic {
         }
     }
 
-    /// ‖u − v‖ over ‖u‖ in the norm of the energy.
+    /// ‖u − v‖ over ‖u‖ in the energy norm.
     pub fn energy_difference(&self, v: &[f64]) -> f64 {
         self.assembled.energy_difference(&self.u, v)
     }

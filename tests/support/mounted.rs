@@ -1,21 +1,21 @@
-//! File systems that are full or read-only, mounted where only the program under test sees them.
+//! Full or read-only file systems, mounted so that only the program under test sees them.
 
 use std::path::Path;
 use std::process::Command;
 
-/// A file system of its own in a folder, with the file `output` of yesterday in it.
+/// A file system in a folder, containing an older file `output`.
 #[derive(Clone, Copy, Debug)]
 pub enum Mounted {
-    /// With so many bytes, rounded up to pages.
+    /// A file system of this many bytes, rounded up to pages.
     OfSize(u64),
-    /// A file system that can't be written any more.
+    /// A read-only file system.
     ReadOnly,
 }
 
 impl Mounted {
-    /// The command that runs `command` with the file system in `folder`, and then fails unless
-    /// `output` is that of yesterday and nothing else is there; otherwise it ends with the exit code of
-    /// `command`. `None` where nothing may be mounted.
+    /// The command that runs `command` with the file system in `folder`, and then fails unless the older `output` is
+    /// unchanged and the only file; otherwise it ends with the exit code of `command`. `None` if nothing may be
+    /// mounted.
     pub fn around(self, folder: &Path, command: &Command) -> Option<Command> {
         let privilege = privilege()?;
         let (size, then) = match self {
@@ -43,7 +43,7 @@ impl Mounted {
     }
 }
 
-/// The command for a view of file systems in which one may mount: as root, or as one's own root.
+/// The command that allows mounting in its own view of file systems: as root, or as one's own root.
 pub fn privilege() -> Option<&'static str> {
     ["-m", "-rm"].into_iter().find(|&option| {
         let mut mount = Command::new("unshare");

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 /// The end of a program, and its output.
 #[derive(Debug)]
 pub struct Ended {
-    /// The exit status; `None` if it had to be ended because its time was up.
+    /// The exit status; `None` if the program was killed because its time was up.
     pub status: Option<ExitStatus>,
     pub stdout: String,
     pub stderr: String,
@@ -25,7 +25,7 @@ impl Ended {
     /// The exit code.
     ///
     /// # Panics
-    /// If it has none, because it hung or was killed.
+    /// The program hung or was killed, so that it has none.
     #[track_caller]
     pub fn code(&self) -> i32 {
         let Some(status) = self.status else {
@@ -39,14 +39,14 @@ impl Ended {
             .unwrap_or_else(|| panic!("ended by a signal: {status}\n{}", self.stderr))
     }
 
-    /// Lines that begin with `error:`, the program's way to fail.
+    /// Lines that begin with `error:`, the program's form of failure.
     pub fn errors(&self) -> Vec<&str> {
         let lines = self.stderr.lines().chain(self.stdout.lines());
         lines.filter(|line| line.starts_with("error:")).collect()
     }
 
-    /// Fails unless all that it started ends within `limit`: a launcher doesn't wait until the system
-    /// has buried its ranks.
+    /// Fails unless all processes that it started end within `limit`: a launcher doesn't wait for the system to remove
+    /// its ranks.
     #[track_caller]
     pub fn leaves_no_process(&self, limit: Duration) {
         let deadline = Instant::now() + limit;
@@ -69,7 +69,7 @@ impl Ended {
     }
 }
 
-/// A program on its way.
+/// A running program.
 pub struct Running {
     child: Child,
     temporary: TempDir,
@@ -79,8 +79,8 @@ pub struct Running {
 }
 
 impl Running {
-    /// Starts it with a folder of its own for temporary files: launchers that end at the same
-    /// time remove the folder that they share.
+    /// Starts the program with its own folder for temporary files: launchers that end at the same time remove the
+    /// folder that they share.
     pub fn start(command: &mut Command) -> Self {
         let temporary = tempfile::tempdir().unwrap();
         let mut child = command
@@ -101,7 +101,7 @@ impl Running {
         }
     }
 
-    /// The processes that it started, and those that these started, whose name is `name`.
+    /// The processes named `name` among its children and their descendants.
     pub fn descendants(&self, name: &str) -> Vec<u32> {
         let processes = processes();
         let mut tree = vec![self.child.id()];
@@ -123,7 +123,7 @@ impl Running {
             .collect()
     }
 
-    /// Waits until one of its processes, or itself, is stopped, and returns which.
+    /// Waits until the program or one of its processes is stopped, and returns which.
     #[track_caller]
     pub fn stopped(&self, limit: Duration) -> u32 {
         let deadline = Instant::now() + limit;
@@ -142,7 +142,7 @@ impl Running {
         self.child.try_wait().unwrap().is_none()
     }
 
-    /// Waits for its end, for `limit` at most; then it and all that it started are killed.
+    /// Waits for its end, at most for `limit`; then kills it and all that it started.
     pub fn wait(mut self, limit: Duration) -> Ended {
         let deadline = Instant::now() + limit;
         let status = loop {
@@ -164,8 +164,7 @@ impl Running {
         }
     }
 
-    /// The launcher's ranks are in process groups of their own, so that they are looked up one by
-    /// one.
+    /// The launcher's ranks have their own process groups, so that they are looked up one by one.
     fn kill(&mut self) {
         let mut doomed = Vec::new();
         for process in processes() {
@@ -173,7 +172,7 @@ impl Running {
                 doomed.push(process.id);
             }
         }
-        // The launcher first: it would take the end of a rank for news.
+        // The launcher goes first, as it would report the end of a rank.
         self.child.kill().unwrap();
         self.child.wait().unwrap();
         for process in doomed {
@@ -182,7 +181,7 @@ impl Running {
     }
 }
 
-/// Sends a signal; a process that is gone already is fine.
+/// Sends a signal; a process that has already ended is fine.
 pub fn send(id: u32, signal: Signal) {
     if let Some(id) = Pid::from_raw(id as i32) {
         let _ = kill_process(id, signal);

@@ -1,4 +1,4 @@
-//! Punches on blocks, a quarter of each in space and a half in the plane, whose meshes don't match.
+//! Punches on blocks with non-matching meshes, a quarter of each in space and a half in the plane.
 
 use contact_dd_partition::element::ElementKind::{
     self, Hexahedron8, Hexahedron20, Quad4, Quad8, Tetrahedron4, Tetrahedron10, Triangle3,
@@ -13,10 +13,10 @@ use crate::scenes::model;
 use crate::solids::{between, moved, solid};
 use crate::sorts::sort;
 
-/// The height of a block, and its width.
+/// Height and width of a block.
 pub const BLOCK: f64 = 10.0;
 
-/// A punch pressed on a block by 100 Pa on its top, held by symmetry alone along x and y.
+/// A punch pressed on a block by 100 Pa on its top, held along x and y by symmetry only.
 #[derive(Clone, Debug)]
 pub struct Punch {
     /// The kind of cells.
@@ -32,7 +32,7 @@ pub struct Punch {
 }
 
 impl Punch {
-    /// One of any size and any radius on any mesh: the punch's cells measure from 0.1 to 6 times those of the block.
+    /// A punch of random size and radius on random meshes: its cells measure 0.1 to 6 times those of the block.
     pub fn random(random: &mut Random) -> Self {
         let (kind, most) = random.pick(&[
             (Triangle3, 20),
@@ -104,7 +104,7 @@ impl Punch {
         joined(block, punch)
     }
 
-    /// The names of the sides that touch: of the block, of the punch.
+    /// The names of the sides in contact: of the block, of the punch.
     pub fn sides(&self) -> [&'static str; 2] {
         match self.is_plane() {
             true => ["block top", "punch bottom"],
@@ -112,7 +112,7 @@ impl Punch {
         }
     }
 
-    /// The model with these two sides in their order.
+    /// The model with these two contact sides in this order.
     pub fn model(&self, [a, b]: [&str; 2]) -> Model {
         let (held, top, plane) = match self.is_plane() {
             true => (

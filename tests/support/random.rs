@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same in every run.
+//! Pseudo-random numbers, identical in every run.
 
 /// SplitMix64.
 #[derive(Clone)]
@@ -17,12 +17,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Between −1 and 1.
+    /// A number between −1 and 1.
     pub fn signed(&mut self) -> f64 {
         self.next() as f64 / u64::MAX as f64 * 2.0 - 1.0
     }
 
-    /// Between `low` and `high`.
+    /// A number between `low` and `high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.signed() + 1.0) / 2.0
     }
@@ -42,17 +42,17 @@ impl Random {
         choices[self.below(choices.len())]
     }
 
-    /// `low` to `high`, both included.
+    /// A whole number from `low` to `high`, both included.
     pub fn count(&mut self, low: usize, high: usize) -> usize {
         low + self.below(high + 1 - low)
     }
 
-    /// 0 to `n` − 1.
+    /// A whole number from 0 to `n` − 1.
     pub fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
-    /// The numbers 0 to `n` − 1 in any order.
+    /// A random permutation of the numbers 0 to `n` − 1.
     pub fn permutation(&mut self, n: usize) -> Vec<u32> {
         let mut order: Vec<u32> = (0..n as u32).collect();
         for i in (1..n).rev() {

@@ -5,9 +5,8 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 use super::blocks::Blocks;
 
 impl Blocks {
-    /// Adds a disc whose boundary has 4`n` facets of equal length. Its groups of facets are the
-    /// quarters below, on the right, above and on the left; there are nodes in between them and,
-    /// for an even `n`, in their middles.
+    /// Adds a disc whose boundary has 4`n` facets of equal length. Its groups of facets are the quarters below, on the
+    /// right, above and on the left; there are nodes in between them and, for an even `n`, in their middles.
     pub fn disc(self, name: &str, center: [f64; 2], radius: f64, n: usize) -> Self {
         self.mapped(name, [n, n], |at| {
             // Squares around the centre become circles.
@@ -26,8 +25,8 @@ impl Blocks {
         })
     }
 
-    /// Adds a ring around the origin of `n` cells through its thickness and around; `right` is its
-    /// outer boundary, `left` the inner one.
+    /// Adds a ring around the origin of `n` cells through its thickness and around; `right` is its outer boundary,
+    /// `left` the inner one.
     pub fn ring(self, name: &str, radii: [f64; 2], n: [usize; 2]) -> Self {
         let [inner, outer] = radii;
         self.mapped(name, n, |[s, t]| {

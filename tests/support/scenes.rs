@@ -26,7 +26,7 @@ x = 0.0
 y = 0.0
 ";
 
-/// The same, the upper one at its left side against sliding.
+/// Supports of both blocks: `HELD`, and the upper block at its left side against sliding.
 pub const SUPPORTS: &str = "
 [[displacement]]
 on = 'lower bottom'
@@ -37,7 +37,7 @@ on = 'upper left'
 x = 0.0
 ";
 
-/// A pressure on the left that is a pull on the right.
+/// A pressure on the left that becomes tension on the right.
 pub const LOAD: &str = "
 [[pressure]]
 on = 'upper top'
@@ -58,7 +58,7 @@ pub fn two_blocks() -> Blocks {
         .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [8, 8])
 }
 
-/// The scene of [`two_blocks`] with what is added or put in the place of a part.
+/// The scene of [`two_blocks`], complete with supports, load and contact.
 pub fn two_block_scene() -> String {
     format!("{BODIES}{SUPPORTS}{LOAD}{JOINT}")
 }
@@ -86,7 +86,7 @@ pub fn built_in_model(name: &str, refine: u32) -> Model {
     model(text, mesh)
 }
 
-/// The model with the loads of step k and no steps.
+/// The model with the loads of step k as its only ones, without steps.
 pub fn at_step(model: &Model, k: usize) -> Model {
     let mut at_step = model.clone();
     let step = &model.steps[k];
@@ -107,7 +107,7 @@ pub fn checkerboard(young: [f64; 2], poisson: f64, length: usize, cells: usize) 
     model(&scene, mesh)
 }
 
-/// The scene and its mesh.
+/// The scene of the checkerboard and its mesh.
 fn squares(young: [f64; 2], poisson: f64, length: usize, cells: usize) -> (String, Mesh) {
     let mut blocks = Blocks::new();
     for i in 0..7 * length {
@@ -138,7 +138,7 @@ fn squares(young: [f64; 2], poisson: f64, length: usize, cells: usize) -> (Strin
     (scene, jittered(mesh, 0.2 * step, 3))
 }
 
-/// The same in space, held all over on the left: columns, so many layers of cells long.
+/// The checkerboard in space, held all over on the left: columns that are `layers` cells long.
 pub fn columns(young: [f64; 2], poisson: f64, cells: usize, layers: usize) -> Model {
     let (scene, mesh) = squares(young, poisson, 1, cells);
     let heights: Vec<f64> = (0..=layers).map(|k| k as f64 / layers as f64).collect();
@@ -149,8 +149,8 @@ pub fn columns(young: [f64; 2], poisson: f64, cells: usize, layers: usize) -> Mo
     model(&scene, mesh.unwrap())
 }
 
-/// A block whose corner lies in that of two walls, across which a third one stands: three conditions on a node, all with
-/// these `words`, under a body force.
+/// A block whose corner lies in that of two walls and on a third one across: three conditions on a node, each with the
+/// keys `words`, under a body force.
 pub fn corner(force: [f64; 2], words: &str) -> Model {
     let blocks = Blocks::new().rectangle("block", [0.01, 1.01], [0.02, 1.02], [8, 8]);
     let wall = |name: &str, on: &str, point: &str, normal: &str| {

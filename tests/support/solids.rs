@@ -1,4 +1,4 @@
-//! Meshes of boxes in space, of cells of every kind.
+//! Meshes of boxes in space, with cells of every kind.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use contact_dd_partition::mesh::Mesh;
 
 use super::random::Random;
 
-/// All cells of space.
+/// All kinds of cells in space.
 pub const SOLIDS: [ElementKind; 5] = [
     Tetrahedron4,
     Tetrahedron10,
@@ -18,10 +18,10 @@ pub const SOLIDS: [ElementKind; 5] = [
     Hexahedron27,
 ];
 
-/// The corners between the first and the seventh of a hexahedron on the six ways along its edges: six tetrahedra.
+/// The corners between the first and the seventh of a hexahedron on the six paths along its edges: six tetrahedra.
 const WAYS: [[usize; 2]; 6] = [[1, 2], [2, 3], [3, 7], [7, 4], [4, 5], [5, 1]];
 
-/// The places of the nodes of the cells in a hexahedron, from 0 to 2 in each direction.
+/// Positions of the nodes of the cells in a hexahedron, from 0 to 2 in each direction.
 fn cells_in_hexahedron(kind: ElementKind) -> Vec<Vec<[usize; 3]>> {
     let at = |xi: &[f64; 3]| xi.map(|c| (c + 1.0) as usize);
     let corners: Vec<[usize; 3]> = Hexahedron8.node_coordinates().iter().map(at).collect();
@@ -110,7 +110,7 @@ pub fn between(low: [f64; 3], high: [f64; 3]) -> impl Fn([f64; 3]) -> [f64; 3] {
     move |x| [0, 1, 2].map(|k| low[k] * (1.0 - x[k]) + high[k] * x[k])
 }
 
-/// A rotation about no special axis.
+/// A rotation about a general axis.
 pub fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
     let [x, y] = [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y];
     let [y, z] = [
@@ -128,7 +128,7 @@ pub fn moved(mut mesh: Mesh, to: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
     mesh
 }
 
-/// The mesh with nodes inside of the unit cube moved a little: edges of quadratic cells become curved.
+/// The mesh with nodes inside the unit cube moved a little, so that edges of quadratic cells become curved.
 pub fn shaken(mut mesh: Mesh, amount: f64) -> Mesh {
     let mut random = Random::new(7);
     for point in &mut mesh.points {

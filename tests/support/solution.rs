@@ -1,4 +1,4 @@
-//! A result file as any reader of HDF5 sees it.
+//! A result file as read by any HDF5 reader.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -35,9 +35,9 @@ pub struct ContactPoint {
     pub force: f64,
     pub pressure: f64,
     pub closed: bool,
-    /// With friction at its bound.
+    /// True with friction at its bound.
     pub slipping: bool,
-    /// On side a; 0 without friction, as the slip is.
+    /// Force on side a; 0 without friction, like the slip.
     pub tangential_force: [f64; 3],
     pub slip: [f64; 3],
 }
@@ -70,7 +70,7 @@ impl Solution {
             .collect()
     }
 
-    /// All increments: those of the load steps, or the only one.
+    /// All increments: the load steps, or the single one.
     pub fn increments(path: &Path, has_steps: bool) -> Vec<Self> {
         match has_steps {
             true => Self::steps(path),
@@ -88,7 +88,7 @@ impl Solution {
             .collect()
     }
 
-    /// Step k of so many; `None` for a file without steps.
+    /// Step k of that many; `None` for a file without steps.
     fn of_step(path: &Path, step: Option<(usize, usize)>) -> Self {
         let file = File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let tags = column::<i64>(&file, "VTKHDF/PointData/GlobalNodeId");
@@ -115,7 +115,7 @@ impl Solution {
         }
     }
 
-    /// Displacement in the order of the model's nodes, its dofs in a row.
+    /// Displacement in the order of the model's nodes, with the dofs of a node in a row.
     pub fn dofs(&self, model: &Model) -> Vec<f64> {
         let tags = model.mesh.node_tags.iter();
         tags.flat_map(|tag| self.displacement[tag][..model.mesh.dim].to_vec())
@@ -131,7 +131,7 @@ impl Solution {
         self.points().fold(0.0, |m, point| m.max(point.force))
     }
 
-    /// All conditions.
+    /// The points of all contacts.
     pub fn points(&self) -> impl Iterator<Item = &ContactPoint> {
         self.contacts.values().flatten()
     }
@@ -148,7 +148,7 @@ impl Solution {
         self.report["sweeps"].as_u64().unwrap()
     }
 
-    /// Fails unless the certificate keeps what the design promises.
+    /// Fails unless the certificate fulfils the targets of the design.
     #[track_caller]
     pub fn check_certificate(&self) {
         let limits = [
@@ -174,7 +174,7 @@ impl Solution {
     }
 }
 
-/// Every dataset of a result file that doesn't speak of time, bit by bit.
+/// Every dataset of a result file except times, bit by bit.
 pub fn datasets(result: &Path) -> BTreeMap<String, Vec<u64>> {
     let file = File::open(result).unwrap();
     let mut all = BTreeMap::new();
@@ -206,15 +206,15 @@ fn is_real(dataset: &hdf5::Dataset) -> bool {
     matches!(descriptor, TypeDescriptor::Float(_))
 }
 
-/// Numbers of a result by their kind, the last parts of their datasets' names: lengths, forces and statuses.
+/// Kinds of numbers in a result by the last parts of their datasets' names: lengths, forces and statuses.
 const KINDS: [&[&str]; 3] = [
     &["displacement", "gap", "slip"],
     &["force", "tangential_force"],
     &["status"],
 ];
 
-/// The largest difference between displacements, jumps, forces and statuses of two result files, relative to the largest
-/// number of the same kind, and the dataset where that is; infinite where one has what the other hasn't.
+/// The largest difference between displacements, jumps, forces and statuses of two result files, relative to the
+/// largest number of the same kind, and its dataset; infinite where only one file has a number.
 pub fn difference(a: &Path, b: &Path) -> (f64, String) {
     let (a, b) = (numbers(a), numbers(b));
     let mut worst = (0.0, "all".to_owned());
@@ -255,7 +255,7 @@ fn numbers(result: &Path) -> BTreeMap<String, Vec<f64>> {
     all.collect()
 }
 
-/// The largest difference of two lists; infinite where one has no number and the other has one.
+/// The largest difference of two lists; infinite where only one has a number.
 fn farthest(a: &[f64], b: &[f64]) -> f64 {
     let differences = a
         .iter()
@@ -269,7 +269,7 @@ fn farthest(a: &[f64], b: &[f64]) -> f64 {
     differences.fold(0.0, f64::max)
 }
 
-/// The part of a list that belongs to step k of so many.
+/// The part of a list that belongs to step k of that many.
 fn part<T: Copy>(all: Vec<T>, step: Option<(usize, usize)>) -> Vec<T> {
     let Some((k, count)) = step else {
         return all;

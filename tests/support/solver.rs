@@ -1,4 +1,4 @@
-//! The program under test, started as a user starts it.
+//! The program under test, started like by a user.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use tempfile::TempDir;
 use super::process::{Ended, Running};
 use super::solution::{Solution, datasets, difference};
 
-/// Longer than any of these runs takes, on a machine with other work, too.
+/// Time limit well above any of these runs, even on a busy machine.
 pub const LIMIT: Duration = Duration::from_secs(300);
 
 /// A folder with a problem file.
@@ -31,13 +31,13 @@ impl Case {
         case
     }
 
-    /// A model in `count` subdomains.
+    /// The problem of a model in `count` subdomains.
     #[track_caller]
     pub fn of(model: &Model, count: usize) -> Self {
         Self::new(&problem(model, Some(count)))
     }
 
-    /// A model in `count` subdomains and so many clusters of them, about.
+    /// The problem of a model in `count` subdomains and about `clusters` clusters.
     #[track_caller]
     pub fn in_clusters(model: &Model, count: usize, clusters: usize) -> Self {
         let mut problem = problem(model, Some(count));
@@ -72,12 +72,12 @@ impl Case {
         self.run_on(0, args)
     }
 
-    /// Runs on `ranks` ranks, without a launcher for 0.
+    /// Runs on `ranks` ranks; 0 means without a launcher.
     pub fn run_on(&self, ranks: usize, args: &[&str]) -> Ended {
         Running::start(program(ranks).arg(self.problem()).args(args)).wait(LIMIT)
     }
 
-    /// Runs without a launcher and reads the result, which has to keep its certificate.
+    /// Runs without a launcher and reads the result, which has to fulfil its certificate.
     #[track_caller]
     pub fn solve(&self, args: &[&str]) -> Solution {
         let ended = self.run(args);
@@ -87,8 +87,8 @@ impl Case {
         solution
     }
 
-    /// Fails unless the result that is there has the same bits on 2 to 4 ranks, and that of the iterative solver, too, which
-    /// is the same up to a `tolerance`.
+    /// Fails unless the existing result has the same bits on 2 to 4 ranks, and likewise the iterative solver's, which
+    /// agrees with it up to a `tolerance`.
     #[track_caller]
     pub fn is_the_same_on_all_ranks_and_by_iteration(&self, tolerance: f64) {
         let direct = self.folder().join("direct.vtkhdf");
@@ -104,7 +104,7 @@ impl Case {
         self.has_the_bits_of(&alone, &iterative);
     }
 
-    /// Fails unless 2 to 4 ranks have the bits of a result.
+    /// Fails unless runs on 2 to 4 ranks have the bits of a result.
     #[track_caller]
     fn has_the_bits_of(&self, result: &Path, args: &[&str]) {
         let expected = datasets(result);
@@ -119,7 +119,7 @@ impl Case {
     }
 }
 
-/// Solves all increments of a model in `count` subdomains; each has to keep its certificate.
+/// Solves all increments of a model in `count` subdomains; each has to fulfil its certificate.
 #[track_caller]
 pub fn solve_steps(model: &Model, count: usize) -> Vec<Solution> {
     let case = Case::of(model, count);
@@ -143,11 +143,11 @@ pub fn solve(model: &Model, count: usize) -> Solution {
     Case::of(model, count).solve(&[])
 }
 
-/// The program under test as Cargo built it.
+/// The program under test, built by Cargo.
 pub fn built() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
-        // Cargo puts the programs of tests and studies into a folder below that of the programs that they try.
+        // Cargo puts tests and studies into a folder below that of the programs under test.
         let own = env::current_exe().unwrap();
         let folder = own.parent().and_then(Path::parent).unwrap();
         let built = folder.join("contact-dd-mpi");

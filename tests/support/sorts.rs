@@ -1,4 +1,4 @@
-//! Meshes of other cells than linear triangles, made from those.
+//! Meshes of other cells, made from linear triangles.
 
 use std::collections::HashMap;
 
@@ -8,16 +8,16 @@ use contact_dd_partition::element::ElementKind::{
 use contact_dd_partition::element::Elements;
 use contact_dd_partition::mesh::Mesh;
 
-/// A kind of cells that those of a mesh become.
+/// A kind of cells into which those of a mesh are converted.
 #[derive(Clone, Copy, Debug)]
 pub struct Sort {
     pub name: &'static str,
-    /// The quadrilateral that two triangles that make one become, by their number; or they stay.
+    /// The kind of quadrilateral made of a pair of triangles, by the pair's number; `None` keeps the triangles.
     quadrilateral: fn(usize) -> Option<ElementKind>,
     pub is_quadratic: bool,
 }
 
-/// Every kind alone, and what can be mixed.
+/// Every kind of cells alone, and the mixtures.
 pub const SORTS: [Sort; 7] = [
     Sort {
         name: "triangle3",
@@ -56,14 +56,13 @@ pub const SORTS: [Sort; 7] = [
     },
 ];
 
-/// The sort of a name.
+/// The sort with a name.
 pub fn sort(name: &str) -> Sort {
     *SORTS.iter().find(|sort| sort.name == name).unwrap()
 }
 
 impl Sort {
-    /// A mesh of [`super::blocks::Blocks`], of pairs of linear triangles, in cells of this sort,
-    /// with straight edges.
+    /// A mesh of [`super::blocks::Blocks`], of pairs of linear triangles, in cells of this sort, with straight edges.
     pub fn of(self, mesh: &Mesh) -> Mesh {
         let paired = self.paired(mesh);
         if self.is_quadratic {
@@ -84,7 +83,7 @@ impl Sort {
                 halves.iter().for_each(|half| cells.push(Triangle3, half));
                 continue;
             }
-            // The corner of one that the other lacks lies between those that both have.
+            // The corner of a triangle that the other one lacks lies between the two shared ones.
             let lacks = |half: &[u32], node: &u32| !half.contains(node);
             let own = halves[0].iter().position(|n| lacks(halves[1], n)).unwrap();
             let mut corners = halves[0].to_vec();
@@ -108,7 +107,7 @@ impl Sort {
         paired
     }
 
-    /// The mesh with a node in the middle of every edge, and of quadrilaterals of nine nodes.
+    /// The mesh with a node at the middle of every edge, and in the middle of quadrilaterals with nine nodes.
     fn raised(self, mesh: Mesh) -> Mesh {
         let mut raised = Mesh {
             cells: Elements::default(),
@@ -156,7 +155,7 @@ fn node(mesh: &mut Mesh, at: [f64; 3]) -> u32 {
     mesh.points.len() as u32 - 1
 }
 
-/// The node in the middle of an edge.
+/// The node at the middle of an edge.
 fn middle(mesh: &mut Mesh, known: &mut HashMap<[u32; 2], u32>, [a, b]: [u32; 2]) -> u32 {
     *known.entry([a.min(b), a.max(b)]).or_insert_with(|| {
         let (p, q) = (mesh.points[a as usize], mesh.points[b as usize]);

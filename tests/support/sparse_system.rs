@@ -1,4 +1,4 @@
-//! A sparse system of equations, solved by LU and refined with the digits of twice the precision.
+//! A sparse system of equations, solved by LU and refined with twice the digits of double precision.
 
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Lu;
@@ -7,7 +7,7 @@ use faer::{Mat, Par};
 
 use super::twofold::Twofold;
 
-/// Corrections of a solution at most.
+/// Most corrections of a solution.
 const REFINEMENTS: usize = 12;
 
 /// A sparse matrix with its factor.
@@ -18,7 +18,7 @@ pub struct SparseSystem {
 }
 
 impl SparseSystem {
-    /// Of `n` equations, those from `first` on with `slack` in the factor.
+    /// The system of `n` equations, with `slack` in the factor's rows from `first` on.
     pub fn new(
         n: usize,
         entries: Vec<Triplet<usize, usize, f64>>,
@@ -50,7 +50,7 @@ impl SparseSystem {
             let correction = self.lu.solve(&residual);
             let largest = |m: f64, x: &f64| m.max(x.abs());
             let change = (0..n).fold(0.0, |m, i| largest(m, &correction[(i, 0)]));
-            // Where it grows, the matrix is singular to rounding.
+            // A growing correction means that the matrix is singular to round-off.
             if !change.is_finite() || change > last {
                 break;
             }

@@ -1,4 +1,4 @@
-//! Consequences of equilibrium alone.
+//! Consequences of equilibrium only.
 
 use contact_dd_partition::mesh::Mesh;
 

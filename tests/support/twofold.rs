@@ -1,6 +1,6 @@
-//! Sums with about twice the digits.
+//! Sums with about twice the digits of double precision.
 
-/// A sum of products with about twice the digits: what rounding takes is kept beside it.
+/// A sum of products with about twice the digits: rounding errors are summed separately.
 #[derive(Clone, Copy, Default)]
 pub struct Twofold {
     sum: f64,

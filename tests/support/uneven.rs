@@ -7,10 +7,10 @@ use super::random::Random;
 use super::scenes::model;
 use super::sorts::Sort;
 
-/// The pressure on them [Pa].
+/// The pressure on the blocks [Pa].
 pub const PRESSURE: f64 = 1e6;
 
-/// Two materials, and bodies of them in turn.
+/// Two materials, and bodies that alternate between them.
 pub fn materials(bodies: &[&str]) -> String {
     let mut text = "plane = 'strain'
         materials.m0 = {young = 210e9, poisson = 0.3}
@@ -22,7 +22,7 @@ pub fn materials(bodies: &[&str]) -> String {
     text
 }
 
-/// A block of n[0] × n[1] cells whose nodes lie along x as they happen to.
+/// A block of n[0] × n[1] cells with nodes irregularly spaced along x.
 pub fn block(
     blocks: Blocks,
     name: &str,
@@ -44,8 +44,8 @@ pub fn block(
     })
 }
 
-/// Two blocks of so many cells along their joint and `rows` across, the upper one on the lower one,
-/// under [`PRESSURE`] from above, turned by an angle. `upside_down`: the lower one is side a.
+/// Two blocks of these cells along their joint and `rows` across, the upper one on the lower one, under [`PRESSURE`]
+/// from above, rotated by an angle. With `upside_down` the lower one is side a.
 #[track_caller]
 pub fn two_sorts(
     [lower, upper]: [Sort; 2],
@@ -88,7 +88,7 @@ pub fn two_sorts(
     model(&text, mesh)
 }
 
-/// The stress of an upright column under [`PRESSURE`], turned by an angle: xx, yy, xy.
+/// The stress of an upright column under [`PRESSURE`], rotated by an angle: xx, yy, xy.
 pub fn turned_pressure(angle: f64) -> [f64; 3] {
     let (sin, cos) = angle.sin_cos();
     [sin * sin, cos * cos, -sin * cos].map(|s| -PRESSURE * s)

@@ -1,7 +1,7 @@
 //! Stress intensity factors and the energy release rate of a crack tip as functionals of the solution.
 //!
-//! With M = L u + m of both modes, K = ½ H⁻¹ M and J = Kᵀ H K, so that dJ = K·dM. L doesn't depend on the size of the stiffness C; H⁻¹
-//! grows with it, and 1/m does: at fixed displacements C ∂K/∂C = ½ H⁻¹ L u, and C ∂J/∂C = J − K·m.
+//! With M = L u + m of both modes, K = ½ H⁻¹ M and J = Kᵀ H K, so that dJ = K·dM. L doesn't depend on the size of the
+//! stiffness C; H⁻¹ grows with it as 1/m does: at fixed displacements C ∂K/∂C = ½ H⁻¹ L u, and C ∂J/∂C = J − K·m.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::fem::interaction_integral::TipDisc;
 use crate::vector::{axpy, dot};
 
 impl Functional {
-    /// K_I, K_II or J of a crack tip; 0 where its body is absent. Collective.
+    /// Adds K_I, K_II or J of a crack tip; 0 if its body is absent. Collective.
     pub(super) fn weigh_tip(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let catalog = context.catalog;

@@ -10,7 +10,7 @@ use super::transposed::{Transposed, TransposedProblem};
 use crate::bytes::Reals;
 use crate::vector::dot;
 
-/// All that the derivatives of a quantity follow from.
+/// The data from which the derivatives of a quantity follow.
 #[derive(Clone, Copy)]
 pub struct Sensitivity<'a> {
     /// The solution.
@@ -19,7 +19,7 @@ pub struct Sensitivity<'a> {
     pub functional: &'a Functional,
     /// The transposed problem.
     pub problem: &'a TransposedProblem<'a>,
-    /// The solution of that.
+    /// The solution of the transposed problem.
     pub state: &'a Transposed,
     /// K_m u.
     pub forces: &'a MaterialForces,
@@ -58,7 +58,7 @@ pub fn derivatives(of: &Sensitivity<'_>) -> Vec<f64> {
 }
 
 impl Sensitivity<'_> {
-    /// The parts of a block in all derivatives: w·df − w·dK u + η·dv.
+    /// The terms of a block in all derivatives: w·df − w·dK u + η·dv.
     fn of_block(&self, b: BlockId) -> Vec<f64> {
         let context = &self.solved.fixed.context;
         let parameters = &context.catalog.parameters;
@@ -107,7 +107,7 @@ impl Sensitivity<'_> {
         parts
     }
 
-    /// The part of a contact group in a derivative: ν·dg − τ'·dφ.
+    /// The term of a contact group in a derivative: ν·dg − τ'·dφ.
     fn of_group(&self, g: GroupId, parameter: &Parameter) -> f64 {
         let (Some(group), Some(of_group)) = (
             self.solved.fixed.context.groups.get(&g),
@@ -149,8 +149,8 @@ impl Sensitivity<'_> {
         }
     }
 
-    /// Explicit derivative of a mean stress, or of what is of a crack tip, with respect to a stiffness, at fixed displacements; on
-    /// the root.
+    /// Explicit derivative of a mean stress, or of a crack tip quantity, with respect to a stiffness, at fixed
+    /// displacements; on the root.
     fn beside(&self, parameter: &Parameter) -> f64 {
         let catalog = self.solved.fixed.context.catalog;
         let quantity = &catalog.quantities[self.functional.number];
@@ -198,7 +198,7 @@ impl Sensitivity<'_> {
         if size > 0.0 { off.abs() / size } else { 0.0 }
     }
 
-    /// The part of a block in the difference of both sides, and the size of its terms.
+    /// The terms of a block in the difference of both sides, and their size.
     fn reciprocity_of_block(&self, b: BlockId) -> [f64; 2] {
         let fixed = self.solved.fixed;
         let solution = &self.solved.solution.discrete;
@@ -266,7 +266,7 @@ impl Sensitivity<'_> {
             let along: f64 = slip.map(|&(j, e)| e * state.gaps[j]).sum();
             off -= along * point.cohesion;
             size += (along * point.cohesion).abs();
-            // Q acts on the slip since where the sides stuck.
+            // Q acts on the slip since the sides last stuck.
             let before: f64 = slip_before(&loads.gaps, point).map(|(_, e, s)| e * s).sum();
             let turned =
                 slip_before(&loads.gaps, point).map(|(j, e, s)| state.gaps[j] * (s - e * before));
@@ -281,7 +281,7 @@ fn sizes(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| (x * y).abs()).sum()
 }
 
-/// The slipping conditions of a point, the parts of its direction along them, and the jumps from which slips count.
+/// The slipping conditions of a point, its direction's components along them, and the jumps from which slips count.
 fn slip_before<'a>(
     gaps: &'a [f64],
     point: &'a SlippingPoint,

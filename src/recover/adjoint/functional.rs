@@ -1,4 +1,4 @@
-//! A quantity as a functional of the solution: its value, and its derivatives in displacements, forces, reactions and gaps.
+//! A quantity as a functional of the solution: value, and derivatives in displacements, forces, reactions and gaps.
 
 use std::collections::BTreeMap;
 
@@ -83,11 +83,11 @@ pub struct Functional {
     pub number: usize,
     /// The value; on the root.
     pub value: f64,
-    /// The part of the value that is in proportion to the stiffness around a crack tip, at fixed displacements; on the root.
+    /// The part of the value proportional to the stiffness around a crack tip, at fixed displacements; on the root.
     pub of_stiffness: f64,
-    /// Tag of its node, −1 where there is none; of a largest pressure on the root.
+    /// Tag of its node, −1 if there is none; for a largest pressure only on the root.
     pub node: i64,
-    /// ∂q/∂u of the blocks that it depends on, the parts of blocks add up.
+    /// ∂q/∂u of the blocks that it depends on; the parts of blocks add up.
     pub of_nodes: OnBlocks<Vec<f64>>,
     /// ∂q/∂ρ of every support of the blocks that it depends on.
     pub of_supports: OnBlocks<Vec<f64>>,
@@ -127,7 +127,7 @@ impl Functional {
         functional
     }
 
-    /// Weights times displacements, those of bodies' closing motions among them.
+    /// Adds weights times displacements, including the bodies' closing motions.
     fn weigh_nodes(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let mut parts = BTreeMap::new();
@@ -155,7 +155,7 @@ impl Functional {
             .unwrap_or_default();
     }
 
-    /// The forces of supports along a direction, and those of springs, −K_s u.
+    /// Adds the forces of supports along a direction, and of springs, −K_s u.
     fn weigh_reactions(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let is_one = |condition: u32| quantity.of.contains(&condition);
         for (&b, block) in solved.fixed.context.blocks {
@@ -189,7 +189,7 @@ impl Functional {
         self.value = parts.sum();
     }
 
-    /// Forces of a contact along a direction, or normal ones, over an area where they are a mean pressure, or their moment.
+    /// Adds forces of a contact along a direction, or normal ones, over an area for a mean pressure, or their moment.
     fn weigh_forces(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let share = match quantity.kind {
@@ -225,7 +225,7 @@ impl Functional {
         self.value = context.sum_of_groups(|g| parts.get(&g).copied().unwrap_or_default());
     }
 
-    /// The pressure of the point that has the largest one.
+    /// Finds the point with the largest pressure.
     fn find_largest(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let contact = quantity.of[0];
@@ -262,7 +262,7 @@ impl Functional {
         }
     }
 
-    /// The gap that is left at a point: g − B u.
+    /// The remaining gap at a point: g − B u.
     fn weigh_gap(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let mut pushes = BTreeMap::new();

@@ -1,17 +1,17 @@
-//! The error of the mesh in a quantity, by the solution w of its transposed problem (dual-weighted residuals; Becker and
-//! Rannacher, Acta Numerica 10, 2001).
+//! The error of the mesh in a quantity, by the solution w of its transposed problem (dual-weighted residuals; Becker
+//! and Rannacher, Acta Numerica 10, 2001).
 //!
 //! ```text
 //! J(u) − J(u_h) = a(u − u_h, w − w_h) ≈ ∫ (σ*(u_h) − σ(u_h)) C⁻¹ (σ*(w_h) − σ(w_h)) dx
 //! ```
 //!
-//! with σ* the stress recovered from σ, as in the estimate of the energy's error (Ródenas, González-Estrada and others, Int. J.
-//! Numer. Methods Engrg 101, 2015). As recovery is linear, it follows from the errors E of two states:
-//! 4 α a = E(u + α w) − E(u − α w).
+//! with σ* the stress recovered from σ, as in the estimate of the energy's error (Ródenas, González-Estrada and others,
+//! Int. J. Numer. Methods Engrg 101, 2015). As recovery is linear, it follows from the errors E of two states: 4 α a =
+//! E(u + α w) − E(u − α w).
 //!
-//! The estimate lacks what constraints at nodes miss between these, and the change of the quantity's own weights with
-//! the mesh. Weights of stresses that vary from cell to cell, as those around the tip of a crack do, make σ(w) as rough
-//! as they are: there recovery tells nothing of its error.
+//! The estimate lacks the violation of constraints between nodes, and the change of the quantity's own weights with the
+//! mesh. Weights of stresses that vary from cell to cell, as those around a crack tip, make σ(w) as rough as they are:
+//! recovery can't estimate its error there.
 
 use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::quantity::{Quantity, QuantityKind};
@@ -22,21 +22,21 @@ use crate::context::Context;
 use crate::recover::BlockSolution;
 use crate::recover::stresses::{Stress, stresses};
 
-/// Part of the first-order change in an energy, which is ½ a(u, u): half of it is that of w, which is u itself.
+/// Share of the first-order change in an energy, which is ½ a(u, u): half of it comes from w, which is u itself.
 const OF_ENERGY: f64 = 0.5;
 
 /// The estimated error of a quantity: its value less the exact one.
 #[derive(Debug, Default)]
 pub struct MeshError {
-    /// The whole; on the root.
+    /// The total error; on the root.
     pub error: f64,
-    /// The parts of the cells of every block of this rank.
+    /// The contributions of the cells of every block of this rank.
     pub of_cells: OnBlocks<Vec<f64>>,
 }
 
 impl MeshError {
-    /// That of a quantity whose transposed problem is solved; `None` where there are no stresses, or it is the pressure of a
-    /// single point, or of the tip of a crack. Collective.
+    /// The error of a quantity whose transposed problem is solved; `None` without stresses, and for the pressure of a
+    /// single point or a quantity of a crack tip. Collective.
     pub fn new(solved: Solved<'_>, quantity: &Quantity, of: &Transposed) -> Option<Self> {
         let has_estimate = match quantity.kind {
             QuantityKind::LargestPressure => quantity.length > 0.0,

@@ -4,9 +4,9 @@ use super::solved::Solved;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
 
-/// A force, a gap or a slip is about to vanish below this part of the largest force or displacement.
+/// Force, gap or slip, relative to the largest force or displacement, below which it is about to vanish.
 const NEAR: f64 = 1e-6;
-/// Points that are named at most.
+/// Most points that are named.
 const MOST: usize = 20;
 
 /// The points whose status is about to change, in words; on the root. Collective.
@@ -65,7 +65,7 @@ fn near(
             true => here.bound - here.size() <= force,
             false => here.distance() <= distance,
         };
-        // Without a bound nothing acts along the tangents, whatever sticks or slips.
+        // Without a bound there is no tangential force, be the point sticking or slipping.
         near.extend(law.normal.filter(|_| is_near && here.bound > force));
     }
     near.sort_unstable();

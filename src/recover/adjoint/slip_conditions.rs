@@ -1,4 +1,4 @@
-//! The conditions z of what slips in a transposed problem, z = G w(z), by generalized conjugate residuals.
+//! The conditions z of slipping points in a transposed problem, z = G w(z), by generalized conjugate residuals.
 
 use super::slipping::{Direction, OnConditions, add, scaled};
 use super::transposed::TransposedProblem;
@@ -8,7 +8,7 @@ use crate::fem::load::BlockLoads;
 use crate::recover::BlockSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
 
-/// Most products of a round.
+/// Most products in a round.
 const PRODUCTS: usize = 60;
 
 impl TransposedProblem<'_> {
@@ -46,7 +46,7 @@ impl TransposedProblem<'_> {
         self.weighed(product)
     }
 
-    /// W times numbers of these conditions.
+    /// W times a vector on conditions.
     pub(super) fn weighed(&self, mut of: OnConditions) -> OnConditions {
         for (g, points) in self.slipping {
             if let Some(of) = of.get_mut(g) {
@@ -56,7 +56,7 @@ impl TransposedProblem<'_> {
         of
     }
 
-    /// z with W (I − G) z = `missing`, but for a part `reduction` of that. Collective.
+    /// z with W (I − G) z = `missing`, to a relative accuracy `reduction`. Collective.
     pub(super) fn conditions_of_slips(
         &self,
         missing: &OnConditions,
@@ -83,10 +83,10 @@ impl TransposedProblem<'_> {
         sum
     }
 
-    /// A direction z and W (I − G) z, which is a unit vector orthogonal to those `before`. Collective.
+    /// A direction z for which W (I − G) z is a unit vector orthogonal to those `before`, and that vector. Collective.
     fn direction(&self, mut z: OnConditions, before: &[Direction]) -> Direction {
         let mut product = self.product(&z);
-        // Twice is enough for orthogonality to rounding.
+        // Two passes suffice for orthogonality to round-off.
         for _ in 0..2 {
             for (known, of_known) in before {
                 let share = self.dot(&product, of_known);

@@ -1,4 +1,4 @@
-//! The points that slip: how their forces follow what presses and how they slip, λ_s = M λ_n + Q s + φ.
+//! Slipping points: dependence of their forces on the normal force and the slip, λ_s = M λ_n + Q s + φ.
 
 use contact_dd_partition::id::OnGroups;
 
@@ -15,24 +15,24 @@ pub struct SlippingPoints(pub Vec<SlippingPoint>);
 pub struct SlippingPoint {
     /// The normal condition.
     pub normal: usize,
-    /// True if that is closed, so that it may follow what presses.
+    /// True if that is closed, so that its jump may depend on the slip.
     pub is_closed: bool,
-    /// The slipping conditions and the parts e of its direction along them.
+    /// The slipping conditions and the components e of the slip direction along them.
     pub tangents: Vec<(usize, f64)>,
     /// Coefficient of friction.
     pub coefficient: f64,
     /// κ (N/m): its force turns with the slip.
     pub turning: f64,
-    /// Stiffness of the bodies against a jump, about (N/m).
+    /// Approximate stiffness of the bodies against a jump (N/m).
     pub stiffness: f64,
-    /// The force that presses (N/m).
+    /// The normal force (N/m).
     pub pressing: f64,
-    /// The part of the bound without it (N/m).
+    /// The part of the bound without normal force (N/m).
     pub cohesion: f64,
 }
 
 impl SlippingPoints {
-    /// The slipping points of a group with a solution, whose forces are at their bounds, in these directions.
+    /// The slipping points of a group in a solution with forces at their bounds, in these directions.
     pub fn new(group: &ContactGroup, solution: &GroupSolution) -> Self {
         let mut all = Vec::new();
         for law in group.point_laws() {
@@ -61,8 +61,8 @@ impl SlippingPoints {
         Self(all)
     }
 
-    /// Right-hand side of the transposed problem at these points, where `left` is the residual of conditions, b_s − B_s w of what
-    /// slips: a jump at normal conditions (m), and forces at tangents, over their stiffness (m).
+    /// Right-hand side of the transposed problem at these points, where `left` is the residual b_s − B_s w of slipping
+    /// conditions: a jump at normal conditions (m), and forces at tangents, over their stiffness (m).
     pub fn wanted(&self, left: &[f64]) -> Vec<f64> {
         let mut wanted = vec![0.0; left.len()];
         for point in &self.0 {
@@ -79,7 +79,7 @@ impl SlippingPoints {
         wanted
     }
 
-    /// The forces at tangents among what is wanted of conditions, and the jumps at all others.
+    /// Splits a right-hand side at conditions into jumps, and forces at slipping tangents.
     pub fn split(&self, wanted: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut jumps, mut forces) = (wanted.to_vec(), vec![0.0; wanted.len()]);
         for point in &self.0 {
@@ -91,8 +91,8 @@ impl SlippingPoints {
         (jumps, forces)
     }
 
-    /// Multiplies numbers of conditions by W = e eᵀ + r/(r + κ) (I − e eᵀ) of every point with the stiffness r: the forces that turn
-    /// with the slip are as large as others then.
+    /// Multiplies a vector on conditions by W = e eᵀ + r/(r + κ) (I − e eᵀ) for every point with the stiffness r:
+    /// forces that turn with the slip become as large as others.
     pub fn weigh(&self, of: &mut [f64]) {
         for point in self.0.iter().filter(|point| point.turning > 0.0) {
             let along: f64 = point.tangents.iter().map(|&(j, e)| e * of[j]).sum();
@@ -103,7 +103,7 @@ impl SlippingPoints {
         }
     }
 
-    /// Gives slipping tangents these forces.
+    /// Sets the forces at slipping tangents.
     pub fn set_forces(&self, forces: &[f64], of_group: &mut GroupSolution) {
         for (j, _) in self.0.iter().flat_map(|point| &point.tangents) {
             of_group.forces[*j] = forces[*j];
@@ -114,10 +114,10 @@ impl SlippingPoints {
 /// A number for every condition of the contact groups of this rank.
 pub type OnConditions = OnGroups<Vec<f64>>;
 
-/// A change z of the conditions of what slips, and W (I − G) z.
+/// A change z of the conditions of slipping points, and W (I − G) z.
 pub type Direction = (OnConditions, OnConditions);
 
-/// Adds a multiple of other numbers to those of every condition.
+/// Adds a multiple of another vector on conditions.
 pub fn add(to: &mut OnConditions, factor: f64, others: &OnConditions) {
     for (g, to) in to {
         if let Some(others) = others.get(g) {
@@ -126,7 +126,7 @@ pub fn add(to: &mut OnConditions, factor: f64, others: &OnConditions) {
     }
 }
 
-/// A multiple of these numbers.
+/// A multiple of a vector on conditions.
 pub fn scaled(all: &OnConditions, factor: f64) -> OnConditions {
     let all = all.iter();
     all.map(|(&g, own)| (g, own.iter().map(|x| factor * x).collect()))

@@ -1,7 +1,7 @@
 //! The largest pressure of a contact, smoothed over a length.
 //!
-//! With r the distance of two points and k = 1 − r/length, 0 where that is less, the smoothed pressure at a point is Σ k λ / Σ k A over
-//! all points with their forces λ and areas A: the mean pressure in a window whose weights sink to its rim.
+//! With the distance r of two points and k = max(0, 1 − r/length), the smoothed pressure at a point is Σ k λ / Σ k A
+//! over all points with their forces λ and areas A: the mean pressure in a window whose weights fall to its rim.
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{difference, length};
@@ -18,7 +18,7 @@ struct Surface<'a> {
     catalog: &'a Catalog,
     /// The axis.
     axis: usize,
-    /// The places of the points in the catalog, in the order of their positions along it.
+    /// The indices of the points in the catalog, in the order of their positions along the axis.
     order: Vec<usize>,
     /// The length over which pressures are smoothed (m).
     length: f64,
@@ -53,7 +53,7 @@ impl<'a> Surface<'a> {
         &self.catalog.points[place]
     }
 
-    /// The weights k of the points around one, by their places in the catalog.
+    /// The weights k of the points around one, by their indices in the catalog.
     fn around(&self, center: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let at = self.point(center).position;
         let low = at[self.axis] - self.length;
@@ -76,7 +76,7 @@ impl<'a> Surface<'a> {
             .sum()
     }
 
-    /// The largest smoothed pressure of forces, by places in the catalog, and the point that has it.
+    /// The largest smoothed pressure of forces, by indices in the catalog, and its point.
     fn largest(&self, forces: &[f64]) -> Option<(f64, usize)> {
         let pressure = |&center: &usize| {
             let force: f64 = self
@@ -91,7 +91,7 @@ impl<'a> Surface<'a> {
 }
 
 impl Functional {
-    /// The smoothed pressure of the point that has the largest one. Collective.
+    /// Finds the point with the largest smoothed pressure. Collective.
     pub(super) fn find_smoothed(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let plan = context.plan;

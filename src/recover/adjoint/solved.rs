@@ -1,9 +1,9 @@
-//! The solution that quantities are of.
+//! The solution whose quantities are evaluated.
 
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
 
-/// The solution of a load step, of which there are quantities.
+/// The solution of a load step, whose quantities are evaluated.
 #[derive(Clone, Copy)]
 pub struct Solved<'a> {
     /// The problem with its active set.
@@ -15,7 +15,7 @@ pub struct Solved<'a> {
 }
 
 impl Solved<'_> {
-    /// Why there are no derivatives, in words; on the root.
+    /// Reason why there are no derivatives, in words; on the root.
     pub fn without_derivatives(&self) -> Option<String> {
         let solution = self.solution;
         let root = self.fixed.root?;

@@ -1,6 +1,6 @@
-//! The transposed problem of a quantity, by the factors at hand.
+//! The transposed problem of a quantity, solved with the available factors.
 //!
-//! The symmetric part is solved as a change of the solution is. At slipping points the conditions z depend on the slips
+//! The symmetric part is solved like a change of the solution. At slipping points the conditions z depend on the slips
 //! of w: z = G w(z), which generalized conjugate residuals solve (Eisenstat, Elman and Schultz, SIAM J. Numer. Anal.
 //! 20, 1983). Their directions serve all quantities, as (I − G) is the same for all.
 
@@ -27,9 +27,9 @@ use crate::recover::motions::Field;
 use crate::recover::{BlockSolution, DiscreteSolution, GroupSolution};
 use crate::vector::{axpy, dot};
 
-/// Accuracy of a correction where it is iterated for.
+/// Accuracy of a correction by an iterative solver.
 const ACCURACY: f64 = 1e-10;
-/// Most rounds in which the conditions of what slips are solved for.
+/// Most rounds in which the conditions of slipping points are solved for.
 const ROUNDS: usize = 3;
 /// Residual to which the conditions of slipping points are solved.
 const ENOUGH: f64 = 1e-9;
@@ -37,23 +37,23 @@ const ENOUGH: f64 = 1e-9;
 /// The transposed problem of a quantity, on this rank.
 pub struct TransposedProblem<'a> {
     pub(super) solved: Solved<'a>,
-    /// The points that slip.
+    /// The slipping points.
     pub slipping: &'a OnGroups<SlippingPoints>,
-    /// The directions in which slips were looked into.
+    /// The directions of earlier products with slip conditions.
     pub(super) directions: &'a RefCell<Vec<Direction>>,
-    /// The nodes of the hierarchy that have nodes of contact points, with all above them.
+    /// The nodes of the hierarchy that contain contact points, and all above them.
     pub(super) around_contact: Numbered<TreeNodeId, bool>,
-    /// a, and as what supports prescribe −r; at conditions b.
+    /// a, −r as prescribed displacements, and b at conditions.
     pub(super) loads: Loads,
 }
 
 /// The solution of a transposed problem.
 pub struct Transposed {
-    /// w, ν and the forces at what slips, and what is left of the jumps that conditions ask for.
+    /// w, ν and the forces at slipping tangents, and the residual jumps of conditions.
     pub discrete: DiscreteSolution,
     /// Residuals on the nodes of every block of this rank: a − K w − Bᵀν.
     pub residuals: OnBlocks<Vec<f64>>,
-    /// a, r and b, and what the conditions of slipping points ask for.
+    /// a, r and b, and the right-hand sides at slipping points.
     loads: Loads,
 }
 
@@ -166,14 +166,14 @@ impl<'a> TransposedProblem<'a> {
         }
     }
 
-    /// Takes back what round-off has left. Collective.
+    /// Removes round-off from a solution. Collective.
     pub fn refine(&self, of: Transposed) -> Transposed {
         let (mut discrete, loads) = (of.discrete, of.loads);
         self.correct(&loads, &mut discrete);
         self.ended(discrete, loads)
     }
 
-    /// No force at any condition, with these displacements.
+    /// A state with these displacements and no force at any condition.
     pub(super) fn at_rest(&self, blocks: OnBlocks<BlockSolution>) -> DiscreteSolution {
         let groups = self.solved.solution.discrete.groups.iter();
         let groups = groups.map(|(&g, of_group)| {
@@ -214,12 +214,12 @@ impl<'a> TransposedProblem<'a> {
         state.blocks.iter().filter_map(of_block).collect()
     }
 
-    /// Adds the solution of the symmetric problem for what a state leaves of `loads`. Collective.
+    /// Adds the solution of the symmetric problem for a state's residual of `loads`. Collective.
     fn correct(&self, loads: &Loads, state: &mut DiscreteSolution) {
         self.correct_by(self.solved.fixed, loads, state);
     }
 
-    /// The same with `fixed`. Collective.
+    /// Adds that solution for the problem `fixed`. Collective.
     pub(super) fn correct_by(
         &self,
         fixed: &FixedActiveSet<'_>,
@@ -264,7 +264,7 @@ impl<'a> TransposedProblem<'a> {
     pub(super) fn wanted(&self, state: &DiscreteSolution) -> OnConditions {
         let groups = state.groups.iter();
         let groups = groups.map(|(&g, of_group)| {
-            // Of a slipping tangent the jump that is asked for is b_s.
+            // The required jump of a slipping tangent is b_s.
             (g, self.slipping[&g].wanted(&of_group.gaps))
         });
         groups.collect()
@@ -277,7 +277,7 @@ impl<'a> TransposedProblem<'a> {
             .collect()
     }
 
-    /// The same on all ranks, whatever has which group. Collective.
+    /// The dot product, equal on all ranks however groups are distributed. Collective.
     pub(super) fn dot(&self, a: &OnConditions, b: &OnConditions) -> f64 {
         let context = &self.solved.fixed.context;
         let mut sum = context.sum_of_groups(|g| dot(&a[&g], &b[&g]));

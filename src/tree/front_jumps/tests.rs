@@ -11,7 +11,7 @@ fn noise(seed: usize) -> f64 {
     2.0 * ((seed as f64 * 78.233).sin() * 43758.5453).fract()
 }
 
-/// T of the jumps of a front, t = T τ, from what each displacement is that a jump alone replaces.
+/// T of the jumps of a front, t = T τ, from the displacements that a single jump replaces each.
 fn of_front(front: &FrontJumps) -> Mat<f64> {
     let replaced = |k: usize| Replaced {
         dof: InterfaceDof {
@@ -32,8 +32,8 @@ fn of_front(front: &FrontJumps) -> Mat<f64> {
     t
 }
 
-/// The jumps τ of a front with this stiffness and load, where closed limits are at prescribed values and open ones carry
-/// given forces, and what balances at those that are closed there.
+/// The jumps τ of a front with this stiffness and load, for prescribed values of closed limits and given forces on open
+/// ones, and the balance at the closed jumps.
 fn solved(
     front: &FrontJumps,
     (h, c): (&Mat<f64>, &Mat<f64>),
@@ -64,8 +64,8 @@ fn solved(
     (jumps, balance)
 }
 
-/// The front's equations are solved for its open jumps; the answer fulfils those of the limits, among them rows that follow
-/// from others and rows under given forces.
+/// The front's equations are solved for its open jumps; the result fulfils those of the limits, including dependent
+/// rows and rows under given forces.
 #[test]
 fn the_answer_of_a_front_balances_and_has_closed_rows_at_their_bounds() {
     let mut rows = DependentConstraints::default();

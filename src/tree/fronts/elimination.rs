@@ -13,7 +13,7 @@ use crate::schur::merge::Merge;
 use crate::tree::front_jumps::FrontJumps;
 
 impl ActiveSetFronts {
-    /// Brings S of a node to the owner of the one that it is merged into. Collective.
+    /// Sends S of a node to the owner of the node that it is merged into. Collective.
     pub(super) fn pass_up(
         &mut self,
         context: &Context<'_>,
@@ -50,7 +50,7 @@ impl ActiveSetFronts {
                 .get(&plan.groups[g].node)
                 .map(|front| &front.jumps.open);
             let between = || self.bddc.as_ref().and_then(|bddc| bddc.open(g));
-            // Of ties alone nothing ever changes.
+            // Groups of ties only never change.
             !open[&g].is_empty() && front.or_else(between) != Some(&open[&g])
         };
         let mut touched = plan.tree.nodes.like(!is_known);
@@ -62,7 +62,7 @@ impl ActiveSetFronts {
         touched
     }
 
-    /// Eliminates what is touched. Collective; what failed on this rank is said at the end.
+    /// Eliminates the touched fronts. Collective; failures of this rank are returned at the end.
     pub(super) fn eliminate(
         &mut self,
         context: &Context<'_>,
@@ -90,7 +90,7 @@ impl ActiveSetFronts {
         result
     }
 
-    /// Merges the children of node v of this rank; nothing where one of them failed.
+    /// Merges the children of node v of this rank; `None` if one of them failed.
     fn merge(
         &mut self,
         context: &Context<'_>,

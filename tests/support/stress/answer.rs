@@ -1,11 +1,11 @@
-//! The contact of a result.
+//! The contact results of a solution.
 
 use contact_dd_partition::model::Model;
 
 use super::super::assembled::{Assembled, Tangent};
 use super::super::solution::{ContactPoint, Solution};
 
-/// By condition and by tangent.
+/// Contact results by condition and by tangent.
 pub struct Answer<'a> {
     pub points: Vec<&'a ContactPoint>,
     pub forces: Vec<f64>,

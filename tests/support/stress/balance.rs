@@ -1,13 +1,13 @@
 //! Balance of the load by contact forces: a linear program, solved by the simplex method.
 //!
-//! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the
-//! rigid motions R of all bodies. Either they do, or a motion z exists that supports and contact
-//! allow, D R z = 0 and B R z ≤ 0, and that the load drives, fᵀ R z > 0; both are checked.
+//! There is an equilibrium if λ ≥ 0 and support forces μ exist with Rᵀ (f − Bᵀ λ − Dᵀ μ) = 0 for the rigid motions R of
+//! all bodies. Either they do, or a motion z exists that supports and contact allow, D R z = 0 and B R z ≤ 0, and that
+//! the load drives, fᵀ R z > 0; both are checked.
 //!
-//! With friction there are tangential forces, too: |λ_t| ≤ μ λ + b, with b > 0 for a Tresca bound and for cohesion,
-//! for which all is taken to be closed. In space discs are polygons: one inside for what holds, one around for what
-//! fails. What rigid bodies can't balance no elastic ones can; what they can, elastic ones may still not, as their
-//! normal forces aren't free to choose.
+//! Friction adds tangential forces: |λ_t| ≤ μ λ + b, with b > 0 for a Tresca bound and for cohesion, where all contacts
+//! count as closed. In space discs are replaced by polygons: an inner one to show balance, an outer one to show
+//! failure. Elastic bodies can't balance more than rigid ones; they may balance less, as their normal forces can't be
+//! chosen freely.
 
 use std::f64::consts::PI;
 
@@ -17,24 +17,24 @@ use nalgebra::{DMatrix, DVector};
 use super::super::assembled::{Assembled, Row, Tangent};
 use super::rigid::Bodies;
 
-/// Rest of the load, relative to it, up to which it is balanced, and from which not.
+/// Unbalanced part of the load, relative to it, up to which it is balanced, and from which on it isn't.
 const BALANCED: f64 = 1e-11;
 const UNBALANCED: f64 = 1e-7;
 
 /// Corners of the polygon for a disc.
 const CORNERS: usize = 12;
 
-/// Answer of the linear program.
+/// Result of the linear program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Balance {
     Holds,
     Fails,
-    /// Within round-off of the border between both.
+    /// Within round-off of the border between the two.
     Unclear,
 }
 
 impl Balance {
-    /// With the friction that the scene has.
+    /// The balance with the scene's friction.
     pub fn new(model: &Model, assembled: &Assembled) -> Self {
         let inside = Self::with(model, assembled, &assembled.tangents, 1.0);
         if model.mesh.dim == 2 || inside == Self::Holds {
@@ -51,7 +51,7 @@ impl Balance {
         Self::with(model, assembled, &[], 1.0)
     }
 
-    /// With bounds that are `reach` times those of the law at the corners.
+    /// The balance with bounds at the corners `reach` times those of the law.
     fn with(model: &Model, assembled: &Assembled, tangents: &[Tangent], reach: f64) -> Self {
         let bodies = Bodies::new(model);
         let load: Vec<(usize, f64)> = assembled.load.iter().copied().enumerate().collect();
@@ -62,7 +62,7 @@ impl Balance {
         }
         let load = load / scale;
         let supports: Vec<_> = assembled.supports.iter().map(|(row, _)| row).collect();
-        // Motions that supports allow, on which contact and load act.
+        // Motions that supports allow, and that contacts and loads act on.
         let allowed = bodies.unseen(supports.into_iter());
         if allowed.is_empty() {
             return Self::Holds;
@@ -92,14 +92,14 @@ impl Balance {
         Self::bounded(columns, &bounded, &allowed * load)
     }
 
-    /// Balance of `load`: is it a combination of `columns` with coefficients ≥ 0 and of points of polygons, given
-    /// by their corners and a factor of these.
+    /// Balance of `load`: is it a combination of `columns` with coefficients ≥ 0 and of points of polygons, given by
+    /// their corners and a factor for these?
     fn bounded(
         columns: Vec<DVector<f64>>,
         bounded: &[(Vec<DVector<f64>>, f64)],
         load: DVector<f64>,
     ) -> Self {
-        // More than all the load together needs no bound.
+        // A bound beyond the sum of all loads has no effect.
         let most = 10.0 * (1.0 + load.norm());
         let (rows, extra) = (load.len(), bounded.len());
         let lifted = |top: &DVector<f64>, at: Option<usize>| {
@@ -113,7 +113,7 @@ impl Balance {
         let mut all: Vec<DVector<f64>> = columns.iter().map(|c| lifted(c, None)).collect();
         let mut rhs = lifted(&load, None);
         for (i, (corners, bound)) in bounded.iter().enumerate() {
-            // The shares of its corners and of its middle are 1 together.
+            // The shares of a polygon's corners and of its centre add up to 1.
             rhs[rows + i] = 1.0;
             let bound = bound.min(most);
             all.extend((corners.iter()).map(|corner| lifted(&(corner * bound), Some(i))));
@@ -137,7 +137,7 @@ impl Balance {
     }
 }
 
-/// Both ends along the only tangent, or the corners of a polygon in the disc of two of them.
+/// Both ends along a single tangent, or the corners of a polygon in the disc of two tangents.
 fn corners(tangents: &[DVector<f64>], reach: f64) -> Vec<DVector<f64>> {
     match tangents {
         [a, b] => (0..CORNERS)
@@ -184,13 +184,13 @@ impl<'a> Simplex<'a> {
         if j < self.columns.len() { 0.0 } else { 1.0 }
     }
 
-    /// The rest of the load, and the dual that proves it.
+    /// The unbalanced part of the load, and the dual that proves it.
     fn solve(&mut self) -> (f64, DVector<f64>) {
         let m = self.load.len();
         let mut dual = DVector::zeros(m);
         let mut left = f64::INFINITY;
         for step in 0..5000 {
-            // The basis is small: a fresh factorization in every step collects no round-off.
+            // The basis is small: a fresh factorization in every step accumulates no round-off.
             let columns: Vec<_> = self.basis.iter().map(|&j| self.column(j)).collect();
             let basis = DMatrix::from_columns(&columns);
             let lu = basis.clone().lu();
@@ -209,7 +209,7 @@ impl<'a> Simplex<'a> {
                 dual.dot(column) / (dual.norm() * column.norm()).max(1e-300)
             };
             let outside = (0..self.columns.len()).filter(|j| !self.basis.contains(j));
-            // The largest gain is fast, the first can't cycle.
+            // The largest gain is fast, the first one can't cycle.
             let entering = match step < 500 {
                 true => outside
                     .filter(|j| gain(j) > 1e-11)

@@ -3,8 +3,7 @@
 use super::boxes::wall;
 use super::draft::{Draft, rectangle};
 
-/// Cantilevers on top of each other with rough gaps, like a leaf spring; the lowest may touch
-/// stops.
+/// Cantilevers on top of each other with rough gaps, like a leaf spring; the lowest may touch stops.
 pub fn beams(draft: &mut Draft) {
     let count = draft.random.count(1, 4);
     let length = draft.random.magnitude(0.5, 2.0);
@@ -73,7 +72,7 @@ pub fn plank(draft: &mut Draft) {
     }
 }
 
-/// None where both sides are clamped.
+/// A gap that vanishes where both sides are clamped.
 fn clamped_gap(draft: &mut Draft, deflection: f64, length: f64) -> String {
     let gap = bending_gap(draft, deflection, length);
     format!("(x/({length:e}))*({gap})")

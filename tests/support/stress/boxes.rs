@@ -10,7 +10,7 @@ pub fn packing(draft: &mut Draft) {
         .map(|_| draft.random.magnitude(-1.5, 0.3))
         .collect();
     let heights: Vec<f64> = (0..up).map(|_| draft.random.magnitude(-1.5, 0.3)).collect();
-    // Without the wall that it is pushed against, a row slides.
+    // A row slides without the wall that it is pushed against.
     let open = draft.random.chance(0.1);
     draft.equilibrium = Some(!open);
     let ends = |sizes: &[f64], i: usize| {

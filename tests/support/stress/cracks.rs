@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, bilinear};
 
-/// A plate of pieces that are glued but for cracks along horizontal lines.
+/// A plate of pieces that are glued except for cracks along horizontal lines.
 pub fn cracked(draft: &mut Draft) {
     let (across, up) = (draft.random.count(2, 4), draft.random.count(2, 3));
     // A piece in which a crack ends from both sides needs an inner column.
@@ -27,7 +27,7 @@ pub fn cracked(draft: &mut Draft) {
         let level = y - lean * x;
         let line = level.round();
         let on_line = (level - line).abs() < 1e-9 && line >= 1.0 && line < up as f64;
-        // Tips are glued: both pieces beside a node have to be open, or the edge of the plate.
+        // Tips are glued: a node is free only between open pieces, or at the edge of the plate.
         let pieces = [x - 1e-6, x + 1e-6].map(f64::floor);
         on_line
             && pieces.iter().all(|&piece| {
@@ -59,8 +59,8 @@ pub fn cracked(draft: &mut Draft) {
     }
 }
 
-/// Pieces of a line that are open: one at most, so that no two open pieces share a node that would
-/// have to be glued on either side.
+/// Pieces of a line that are open: one at most, so that no two open pieces share a node that would have to be glued on
+/// either side.
 fn crack(draft: &mut Draft, across: usize) -> Vec<bool> {
     let at = draft.random.below(across);
     (0..across).map(|i| i == at).collect()

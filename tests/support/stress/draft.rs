@@ -1,4 +1,4 @@
-//! A random scene in the making: its text and its mesh.
+//! A random scene under construction: its text and its mesh.
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::mesh::Mesh;
@@ -7,19 +7,19 @@ use super::super::blocks::Blocks;
 use super::super::random::Random;
 use super::friction::Friction;
 
-/// Poisson's ratios between which the hard ones are drawn.
+/// Poisson's ratios from which the difficult ones are drawn.
 const HARD_POISSON: [f64; 5] = [0.49, 0.499, 0.4999, 0.499_999, 0.499_999_9];
 
-/// The generator of the families' drafts.
+/// Builder of a scene, on which the families draw.
 pub struct Draft {
     pub random: Random,
     pub blocks: Blocks,
-    /// Keys of the scene's root, which have to stand before its tables.
+    /// Keys of the scene's root, which have to precede its tables.
     head: String,
     tables: String,
-    /// True if it is built to have an equilibrium; `None` where only [`super::Balance`] knows.
+    /// True if it is built to have an equilibrium; `None` if only [`super::Balance`] can tell.
     pub equilibrium: Option<bool>,
-    /// Young's modulus about which those of the bodies vary (Pa).
+    /// Young's modulus around which those of the bodies vary (Pa).
     young: f64,
     /// Orders of magnitude between the stiffest and the softest.
     contrast: f64,
@@ -30,11 +30,11 @@ pub struct Draft {
     /// True if nodes of blocks in contact lie opposite each other.
     pub matching: bool,
     contacts: usize,
-    /// The friction of its contacts; none without.
+    /// The friction of its contacts; `None` without friction.
     pub friction: Option<Friction>,
     /// True if the resultants of all contacts follow from statics.
     pub determined: bool,
-    /// The cells of a scene in space, and whether it stands askew.
+    /// The kind of cells of a scene in space, and whether the scene is tilted.
     pub kind: ElementKind,
     pub tilted: bool,
     /// Sides in space under pressure.
@@ -42,7 +42,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// With blocks of at most `cells` × `cells` cells.
+    /// A draft with blocks of at most `cells` × `cells` cells.
     pub fn new(mut random: Random, cells: usize) -> Self {
         let young = random.magnitude(3.0, 12.0);
         let contrast = random.pick(&[0.0, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0]);
@@ -68,12 +68,12 @@ impl Draft {
         }
     }
 
-    /// The same in space, of cells of a kind.
+    /// A draft in space, with cells of this kind.
     pub fn in_space(random: Random, kind: ElementKind, cells: usize) -> Self {
         let mut draft = Self::new(random, cells);
         draft.head.clear();
         draft.kind = kind;
-        // Only statics knows.
+        // Only statics can tell.
         draft.equilibrium = None;
         draft.tilted = draft.random.chance(0.3);
         draft.matching = draft.random.chance(0.5);
@@ -86,7 +86,7 @@ impl Draft {
         self.tables += text;
     }
 
-    /// A load step, its keys as a scene has them.
+    /// Adds a load step with these keys of the scene file.
     pub fn step(&mut self, keys: &str) {
         self.tables += &format!("[[step]]\n{keys}\n");
     }
@@ -125,7 +125,7 @@ impl Draft {
                 false => map([s, t]),
             })
         };
-        // Where a side is far shorter than its opposite, cells may fold.
+        // Cells may fold where a side is far shorter than its opposite.
         let whole = drawn(amount);
         self.blocks = match is_folded(&whole.mesh, self.blocks.mesh.cells.len()) {
             true => drawn(0.0),
@@ -133,7 +133,7 @@ impl Draft {
         };
     }
 
-    /// Makes one node of nodes at the same place, where `at(x, y)` says so.
+    /// Merges nodes with the same position, where `at(x, y)` is true.
     pub fn glue(&mut self, at: impl Fn(f64, f64) -> bool) {
         let blocks = std::mem::replace(&mut self.blocks, Blocks::new());
         self.blocks = blocks.glued(at);
@@ -144,7 +144,7 @@ impl Draft {
         format!("{}{}", self.head, self.tables)
     }
 
-    /// Makes one body of a material of its own of `groups`.
+    /// Makes one body of `groups`, with its own material.
     pub fn body<const D: usize>(&mut self, name: &str, groups: &[&str], force: [f64; D]) {
         let (young, poisson) = self.material();
         self.head += &format!("materials.'{name}' = {{young = {young:e}, poisson = {poisson}}}\n");
@@ -192,8 +192,8 @@ impl Draft {
         self.tables += &format!("[[traction]]\non = '{on}'\nvalue = ['{x}', '{y}']\n");
     }
 
-    /// A contact between groups of facets; without a gap the geometry gives it. Where nodes don't
-    /// match, either side may be the first.
+    /// Adds a contact between groups of facets; without a given gap the geometry determines it. If nodes don't match,
+    /// either side may be the first.
     pub fn contact(&mut self, a: &[String], b: &[String], gap: Option<&str>) {
         let turned = !self.matching && self.random.chance(0.5);
         let [a, b] = if turned { [b, a] } else { [a, b] };
@@ -204,7 +204,7 @@ impl Draft {
         self.gap(gap);
     }
 
-    /// A contact with a rigid obstacle, written as in a scene.
+    /// Adds a contact with a rigid obstacle, in the syntax of a scene.
     pub fn obstacle(&mut self, side: &[String], obstacle: &str, gap: Option<&str>) {
         self.tables += &format!(
             "[[contact]]\nname = 'c{}'\nsides = [{side:?}]\nobstacle = {obstacle}\n",
@@ -223,7 +223,7 @@ impl Draft {
         }
     }
 
-    /// The displacement that the load makes in a body of size 1 of the middle material (m).
+    /// Displacement by the load in a body of size 1 of the average material (m).
     pub fn compression(&self) -> f64 {
         self.load / self.young
     }
@@ -239,13 +239,13 @@ impl Draft {
             1 => 0.0,
             2 => random.within(0.5, 6.0),
             3 => random.within(6.0, 60.0),
-            // So many waves a facet that its nodes see noise.
+            // The wavelength is so far below a facet that its nodes see noise.
             _ => random.within(1e3, 1e4),
         };
         format!("({size:e})*sin(({wave})*{axis}+({phase}))+({offset:e})")
     }
 
-    /// A force per volume that a body of this height carries as well as a pressure.
+    /// A force per volume, as harmless as a pressure to a body of this height.
     pub fn weight(&mut self, height: f64) -> f64 {
         match self.random.chance(0.6) {
             true => -self.load / height * self.random.magnitude(-2.0, 0.0),
@@ -264,7 +264,7 @@ impl Draft {
                 format!("({size:e})*exp(-({share:e})*({axis}-({middle:e}))^2)")
             }
             _ => {
-                // At a slope of 3 the resultant would be at the end.
+                // The resultant would lie at the end at a slope of 3.
                 let slope = self.random.within(-1.8, 1.8) / half;
                 format!("({size:e})*(1+({slope:e})*({axis}-({middle:e})))")
             }
@@ -272,7 +272,7 @@ impl Draft {
     }
 }
 
-/// True if triangles of a mesh from a number on are turned both ways.
+/// True if triangles of a mesh, from a number on, have both orientations.
 fn is_folded(mesh: &Mesh, first: usize) -> bool {
     let is_left = |cell: usize| {
         let nodes = mesh.cells.nodes_of(cell);
@@ -288,9 +288,9 @@ pub fn bilinear([a, b, c, d]: [[f64; 2]; 4], [s, t]: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| between(between(a[i], b[i], s), between(d[i], c[i], s), t))
 }
 
-/// A number between −1 and 1 that looks random and depends on `at` alone.
+/// A pseudo-random number between −1 and 1 that depends on `at` only.
 pub fn noise(at: f64) -> f64 {
-    // The same place reached by another sum of fractions is the same place.
+    // Rounding identifies positions reached by different sums of fractions.
     let at = (at * 1e6).round();
     let wild = (at * 12.9898).sin() * 43_758.547;
     2.0 * (wild - wild.floor()) - 1.0

@@ -1,4 +1,4 @@
-//! Scenes with friction: laws, and loads that go to and fro.
+//! Scenes with friction: laws, and loads that reverse.
 //!
 //! The families without friction get laws and load steps; two more are driven along their joints.
 
@@ -22,11 +22,11 @@ pub struct Friction {
     pub law: Law,
     /// Size of the pressures (Pa).
     load: f64,
-    /// Orders of magnitude of Tresca bounds, or of cohesion if any, below and above the load.
+    /// Orders of magnitude below and above the load of Tresca bounds, or of any cohesion.
     orders: Option<[f64; 2]>,
 }
 
-/// With laws of friction.
+/// A family, with laws of friction added.
 pub const fn frictional(family: Family) -> Family {
     Family {
         frictional: true,
@@ -75,7 +75,7 @@ impl Friction {
         let random = &mut self.random;
         let size = (self.orders).map(|[low, high]| self.load * random.magnitude(low, high));
         let mut key = |name: &str, value: f64| match random.below(4) {
-            // Between half of it and it.
+            // A coefficient between half the largest and the largest.
             0 => {
                 let wave = random.within(0.1, 30.0);
                 format!("{name} = '({value:e})*(0.75+0.25*sin(({wave})*(x+2*y)))'\n")
@@ -122,7 +122,7 @@ fn inclusion(draft: &mut Draft) {
     to_and_fro(draft);
 }
 
-/// Flat blocks on a base or a floor, pressed and pushed aside: by less than friction carries, or more.
+/// Flat blocks on a base or a floor, pressed and pushed sideways, by less or by more than friction carries.
 fn sheared(draft: &mut Draft) {
     let count = draft.random.count(1, 3);
     let on_floor = draft.random.chance(0.5);
@@ -153,7 +153,7 @@ fn sheared(draft: &mut Draft) {
     let top = format!("b{} top", count - 1);
     let pressure = draft.load * draft.random.magnitude(-2.0, 0.0);
     draft.pressure(&top, &format!("{pressure:e}"));
-    // What the weakest joint carries isn't known: some of these slide.
+    // The weakest joint's strength isn't known, so that some of these slide.
     let most = match draft.friction.as_ref().map(|friction| friction.law) {
         Some(Law::Coulomb(most)) => most,
         _ => 0.5,
@@ -163,7 +163,7 @@ fn sheared(draft: &mut Draft) {
     to_and_fro(draft);
 }
 
-/// A block on a base, pressed, its upper side moved to and fro further than it sticks; or it is pressed by that
+/// A block on a base, pressed, its upper side moved forth and back further than it sticks; or it is pressed by that
 /// side, too.
 fn driven(draft: &mut Draft) {
     let height = draft.random.magnitude(-1.0, 0.0);
@@ -211,13 +211,13 @@ fn driven(draft: &mut Draft) {
             let down = pressed * draft.random.within(0.2, 1.2);
             keys += &format!("y = {:e}\n", -down);
         }
-        // The base stays where it is.
+        // The base stays at rest.
         keys += "[[step.displacement]]\non = 'base bottom'\nx = 0.0\ny = 0.0";
         draft.step(&keys);
     }
 }
 
-/// Up to five load steps; loads aside change their sign.
+/// Up to five load steps, whose sideways loads change sign.
 fn to_and_fro(draft: &mut Draft) {
     if draft.random.chance(0.3) {
         return;

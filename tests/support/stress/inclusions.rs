@@ -2,9 +2,9 @@
 
 use super::draft::Draft;
 
-/// A square plate with a hole in its middle and a body in the hole, held by it alone.
+/// A square plate with a hole in its middle and a body in the hole, held by the plate only.
 pub fn inclusion(draft: &mut Draft) {
-    // What keeps a round one from turning are the kinks of its facets, where they don't match.
+    // Without matching nodes only kinks between its facets would keep a round body from turning.
     let round = draft.random.chance(0.6) && draft.matching;
     let n = 2 * draft.random.count(1, draft.cells.div_ceil(2));
     let rings = draft.random.count(1, draft.cells);
@@ -66,7 +66,7 @@ pub fn inclusion(draft: &mut Draft) {
     loads(draft);
 }
 
-/// The plate stands on rollers below and at its left; the other sides are pushed or pulled.
+/// Loads of the plate, which stands on rollers below and at its left; the other sides are pushed or pulled.
 fn loads(draft: &mut Draft) {
     let loose = draft.random.chance(0.08);
     draft.equilibrium = Some(!loose);
@@ -83,7 +83,7 @@ fn loads(draft: &mut Draft) {
     }
 }
 
-/// The disk that a square becomes; its boundary stays the boundary.
+/// Map of a square to a disk; its boundary remains the boundary.
 fn squircle([x, y]: [f64; 2]) -> [f64; 2] {
     [
         x * (1.0 - y * y / 2.0).sqrt(),
@@ -91,7 +91,7 @@ fn squircle([x, y]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Turned by quarters, counter-clockwise.
+/// A point turned by quarters of a turn, counter-clockwise.
 fn turned([x, y]: [f64; 2], quarters: usize) -> [f64; 2] {
     match quarters {
         0 => [x, y],

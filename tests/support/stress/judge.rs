@@ -1,10 +1,9 @@
-//! Is an answer the solution? Without friction the problem is convex: what fulfils all its conditions is. With
-//! Coulomb's friction it is one, though there may be others.
+//! Check whether an answer is the solution. Without friction the problem is convex: an answer that fulfils all its
+//! conditions is the only solution. With Coulomb's friction it is a solution, though there may be others.
 //!
-//! The conditions are checked with matrices that the program never saw, in twice the precision; and the linear
-//! problem in which is closed, sticks and slips what the program says is solved by one sparse factorization, so
-//! that the distance to the solution is known, too. Friction opposes the tangential jump since the load step
-//! before.
+//! The conditions are checked with matrices independent of the program, in twice the precision; and the linear problem
+//! with the program's closed, sticking and slipping points is solved by one sparse factorization, which gives the
+//! distance to the solution, too. Friction opposes the tangential jump since the load step before.
 
 use contact_dd_partition::model::Model;
 
@@ -13,71 +12,69 @@ use super::super::solution::Solution;
 use super::answer::{Answer, dot};
 use super::rigid::Bodies;
 
-/// Limits of an answer that is right; the first three stand ten times above their targets.
+/// Limits for a right answer; the first three are ten times their targets.
 const BACKWARD_ERROR: f64 = 1e-13;
 const PENETRATION: f64 = 1e-13;
 const TENSION: f64 = 1e-11;
 const COMPLEMENTARITY: f64 = 1e-10;
-/// Of the law of friction: relative to the largest bound, or to this part of the loads where that is more.
+/// Limit for the law of friction: relative to the largest bound, or to this part of the loads if that is more.
 const FRICTION: f64 = 1e-9;
 const LEAST_BOUND: f64 = 1e-3;
-/// Tangential jumps that differ by no more are the same, relative to the largest displacement.
+/// Difference of equal tangential jumps, relative to the largest displacement.
 const STUCK: f64 = 1e-10;
-/// Difference to the reference that is always round-off, and how many times that which last
-/// digits make.
+/// Difference to the reference that is always round-off, and the factor on a difference due to last digits.
 const DIFFERENCE: f64 = 1e-10;
 const DISTURBANCES: f64 = 100.0;
-/// Disturbances that are tried: by chance a single one may leave the softest motion alone.
+/// Number of disturbances tried: a single one may happen not to move the softest mode.
 const SAMPLES: u64 = 4;
-/// Resultant of loads and contact forces on bodies that nothing else holds, relative to the loads,
-/// that is always round-off.
+/// Resultant of loads and contact forces on otherwise free bodies, relative to the loads, that is always round-off.
 const BALANCE: f64 = 1e-9;
 
 /// Findings, each relative to the size of its quantity.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Findings {
-    /// ‖K u − f + Bᵀ λ‖∞ over ‖|K||u| + |f| + |Bᵀ λ|‖∞, where nothing is prescribed.
+    /// ‖K u − f + Bᵀ λ‖∞ over ‖|K||u| + |f| + |Bᵀ λ|‖∞, on unknowns that aren't prescribed.
     pub backward_error: f64,
     pub penetration: f64,
     pub tension: f64,
-    /// Resultant of loads and contact forces along the rigid motions that supports leave, over
-    /// the sum of the loads; and what round-off in the terms of K u makes of it. A body that
-    /// hangs in the air may have a small backward error where it fell far.
+    /// Resultant of loads and contact forces along the rigid motions that supports leave, over the sum of the loads,
+    /// and the round-off of the terms of K u in it. An unsupported body may have a small backward error after a long
+    /// fall.
     pub balance: f64,
     balance_round_off: f64,
     /// The largest of the lesser of force and gap.
     pub complementarity: f64,
     /// Largest error of prescribed displacements.
     pub supports: f64,
-    /// By how much tangential forces exceed their bound.
+    /// Largest excess of tangential forces over their bound.
     pub bound: f64,
-    /// The largest of the lesser of slip since the step before and what the force that opposes it lacks.
+    /// The largest of the lesser of slip since the step before and the shortfall of the opposing force.
     pub direction: f64,
-    /// Difference of the slip to that of the displacements.
+    /// Difference between the slip and that of the displacements.
     pub slip: f64,
-    /// Force or slip out of the tangential direction, or without friction.
+    /// Force or slip outside the tangential direction, or without friction.
     pub off_tangent: f64,
-    /// By how much a point is not what its status says: open with a force, closed with a gap, slipping
-    /// with less force than the bound.
+    /// Deviation of points from their status: open with a force, closed with a gap, slipping with less force than the
+    /// bound.
     pub status: f64,
-    /// The largest slip since the step before of what sticks.
+    /// The largest slip of sticking points since the step before.
     pub stuck: f64,
-    /// Distance to the reference in the norm of the energy.
+    /// Distance to the reference in the energy norm.
     pub difference: Option<f64>,
-    /// The same of references with stiffness and balance of forces changed in the last digits, the largest of some;
-    /// only where the difference is more than round-off.
+    /// The largest distance among some references with stiffness and balance of forces changed in the last digits; only
+    /// if the difference is more than round-off.
     pub disturbance: Option<f64>,
-    /// Tension or penetration of the reference at most.
+    /// Largest tension or penetration of the reference.
     pub reference_signs: Option<f64>,
 }
 
 impl Findings {
-    /// Judges `solution`, against a reference if `compare`; without friction, or of a first load step.
+    /// Judges `solution`, against a reference if `compare`; without friction, or in a first load step.
     pub fn new(model: &Model, assembled: &Assembled, solution: &Solution, compare: bool) -> Self {
         Self::after(None, model, assembled, solution, compare)
     }
 
-    /// Judges `solution`, which comes after the one `before`; `assembled` has its loads.
+    /// Judges `solution`, which follows the one `before`; `assembled` has its loads.
     pub fn after(
         before: Option<&Solution>,
         model: &Model,
@@ -97,8 +94,8 @@ impl Findings {
         findings
     }
 
-    /// The same without what is to be said of the whole step where it was made in parts: what slipped in one of
-    /// them may stick in the last.
+    /// The findings for a step made in parts, without those about the whole step: a point that slipped in one part may
+    /// stick in the last.
     pub fn in_parts(self) -> Self {
         Self {
             direction: 0.0,
@@ -107,7 +104,7 @@ impl Findings {
         }
     }
 
-    /// The worse of both in everything.
+    /// The worse of two for every finding.
     pub fn or(self, other: Self) -> Self {
         let either = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => Some(worse(a, b)),
@@ -167,7 +164,7 @@ impl Findings {
             };
             self.status = worse(self.status, wrong / STUCK);
         }
-        // Where the terms of K u are so large that their round-off is a force, the law holds up to that.
+        // The law holds up to the round-off of the terms of K u where these are so large that it acts like a force.
         let round_off = 10.0 * f64::EPSILON * largest(&residual.terms) / FRICTION;
         let least = (LEAST_BOUND * load_scale).max(round_off);
         self.friction(assembled, state, size.max(before), least);
@@ -192,10 +189,10 @@ impl Findings {
             let [size_of_force, way] = [force, since].map(|v| dot(v, v).sqrt());
             has_friction[tangent.condition] = true;
             self.bound = worse(self.bound, ratio(size_of_force - bounds[k], scale));
-            // About to open, without pressure, it may have any part of its cohesion.
+            // A point about to open, without pressure, may have any part of its cohesion.
             let normal = state.forces[tangent.condition];
             let is_parting = !tangent.is_given() && normal <= FRICTION * scale;
-            // Of a small slip the direction is known less well.
+            // The direction of a small slip is less certain.
             let angle = ratio(dot(force, since), size_of_force * way)
                 .clamp(-1.0, 1.0)
                 .acos();
@@ -254,8 +251,8 @@ impl Findings {
         self.balance = ratio(along.fold(0.0, worse), load);
     }
 
-    /// Solves with the closed conditions as equations and friction as it is said to be; free motions as the
-    /// program has them.
+    /// Solves with the closed conditions as equations and the program's statuses of friction; free motions as in the
+    /// program's solution.
     fn compare(&mut self, model: &Model, assembled: &Assembled, u: &[f64], state: &Answer) {
         let closed: Vec<bool> = state.points.iter().map(|point| point.closed).collect();
         let along = self.along(assembled, state);
@@ -309,9 +306,9 @@ impl Findings {
         }
     }
 
-    /// Tangents that stick or slip, as the status says, or where the bound is there without contact, the force.
-    /// What slips has the force that it has: by the law it would depend on the normal forces, which need not be the
-    /// only ones where conditions depend on others.
+    /// Conditions along tangents that stick or slip by their status, or have a given bound, by their force. Slipping
+    /// points keep their forces: by the law these would depend on the normal forces, which need not be unique where
+    /// conditions depend on others.
     fn along(&self, assembled: &Assembled, state: &Answer) -> Vec<Along> {
         let bounds = state.bounds(assembled);
         let one = |(k, tangent): (usize, &Tangent)| {
@@ -330,7 +327,7 @@ impl Findings {
         assembled.tangents.iter().enumerate().map(one).collect()
     }
 
-    /// The fault, if there is one.
+    /// The faults in words; empty if there are none.
     pub fn faults(&self) -> Vec<String> {
         let mut limits = vec![
             ("backward error", self.backward_error, BACKWARD_ERROR),
@@ -364,7 +361,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, x| worse(m, x.abs()))
 }
 
-/// The greater of both; what isn't a number is worst.
+/// The greater of two; NaN is worst.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
@@ -373,7 +370,7 @@ fn worse(a: f64, b: f64) -> f64 {
     }
 }
 
-/// a / b, and 0 where both are.
+/// a / b, and 0 if both are.
 fn ratio(a: f64, b: f64) -> f64 {
     if a == 0.0 { 0.0 } else { a / b }
 }

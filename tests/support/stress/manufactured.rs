@@ -1,4 +1,4 @@
-//! Scenes whose solution is known: chosen first, and the loads and gaps from it.
+//! Scenes with a solution chosen first, and loads and gaps computed from it.
 
 use contact_dd_partition::element::geometry::padded;
 use contact_dd_partition::model::Model;
@@ -6,8 +6,8 @@ use contact_dd_partition::model::Model;
 use super::super::assembled::Assembled;
 use super::super::random::Random;
 
-/// Replaces forces, gaps and prescribed displacements by those of a smooth displacement with
-/// contact forces at any conditions: K u + Bᵀ λ = f, B u = g where λ > 0.
+/// Replaces forces, gaps and prescribed displacements by those of a smooth displacement with contact forces at any
+/// conditions: K u + Bᵀ λ = f, B u = g where λ > 0.
 pub fn manufacture(model: &mut Model, random: &mut Random) {
     let assembled = Assembled::new(model);
     let dim = model.mesh.dim;

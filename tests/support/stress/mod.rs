@@ -1,7 +1,7 @@
-//! Random scenes that are hard on a contact solver, and what to say of its answers.
+//! Random scenes that are hard on a contact solver, and the judges of its answers.
 //!
-//! A seed is a scene: its family, geometry, materials, gaps, loads, subdomains, and whether it has
-//! an equilibrium. Nothing here looks into the program under test.
+//! A seed determines a scene: its family, geometry, materials, gaps, loads, subdomains, and whether it has an
+//! equilibrium. Nothing here depends on the program under test.
 
 mod answer;
 mod balance;
@@ -34,7 +34,7 @@ use super::sorts::SORTS;
 
 pub use self::balance::Balance;
 
-/// Scenes of one kind.
+/// A family of similar scenes.
 #[derive(Clone, Copy)]
 pub struct Family {
     pub name: &'static str,
@@ -53,7 +53,7 @@ const fn matching(name: &'static str, make: fn(&mut Draft)) -> Family {
     }
 }
 
-/// A family whose bodies are meshed each for itself.
+/// A family whose bodies are meshed independently.
 const fn uneven(name: &'static str, make: fn(&mut Draft)) -> Family {
     Family {
         matching: false,
@@ -61,7 +61,7 @@ const fn uneven(name: &'static str, make: fn(&mut Draft)) -> Family {
     }
 }
 
-/// The families of scenes; from [`FIRST_UNEVEN`] on those whose nodes don't match.
+/// The families of scenes; from [`FIRST_UNEVEN`] on those with non-matching nodes.
 pub const FAMILIES: [Family; 20] = [
     matching("tower", towers::tower),
     matching("packing", boxes::packing),
@@ -86,38 +86,37 @@ pub const FAMILIES: [Family; 20] = [
 ];
 const FIRST_UNEVEN: usize = 12;
 
-/// Cells a side from which on some scenes are finer.
+/// Number of cells per side from which on some scenes are finer.
 const FINE: usize = 10;
 
 /// A random scene.
 pub struct Drawn {
     pub seed: u64,
     pub family: &'static str,
-    /// The name of its cells.
+    /// The name of its kind of cells.
     pub cells: &'static str,
     /// The scene file.
     pub text: String,
-    /// True if its gaps, loads and prescribed displacements were replaced by those of a solution
-    /// chosen first.
+    /// True if its gaps, loads and prescribed displacements were replaced by those of a solution chosen first.
     pub manufactured: bool,
     /// Factor of gaps, loads and prescribed displacements.
     pub factor: f64,
     pub model: Model,
-    /// True if it was built to have an equilibrium; `None` where only [`Balance`] knows.
+    /// True if it was built to have an equilibrium; `None` if only [`Balance`] can tell.
     pub equilibrium: Option<bool>,
     /// The wanted number of subdomains, which the scene may not allow.
     pub subdomains: usize,
-    /// On how many ranks it runs besides without a launcher, 0 for none.
+    /// Number of ranks of a second run, besides the one without a launcher; 0 for none.
     pub ranks: usize,
-    /// The laws of friction, if it has any.
+    /// The laws of friction, if there are any.
     pub friction: Option<Law>,
-    /// True if the resultants of all contacts follow from statics, so that what rigid bodies with friction can
-    /// balance elastic ones do.
+    /// True if the resultants of all contacts follow from statics, so that elastic bodies with friction balance
+    /// whatever rigid ones can.
     pub determined: bool,
 }
 
 impl Drawn {
-    /// The scene file, and what was changed behind it.
+    /// The scene file, and the changes made after it.
     pub fn described(&self) -> String {
         let mut text = format!("# {} in {}\n{}", self.family, self.cells, self.text);
         if self.manufactured {
@@ -127,20 +126,20 @@ impl Drawn {
     }
 }
 
-/// The scene of a seed, with blocks of at most `cells` linear cells a side, or half as many
-/// quadratic ones; where that isn't few, some scenes are several times finer.
+/// The scene of a seed, with blocks of at most `cells` linear cells per side, or half as many quadratic ones; some are
+/// several times finer, unless `cells` is small.
 #[track_caller]
 pub fn draw(seed: u64, cells: usize) -> Drawn {
     draw_from(&FAMILIES, seed, cells)
 }
 
-/// The same with blocks whose nodes don't match.
+/// The scene of a seed, with blocks whose nodes don't match.
 #[track_caller]
 pub fn draw_uneven(seed: u64, cells: usize) -> Drawn {
     draw_from(&FAMILIES[FIRST_UNEVEN..], seed, cells)
 }
 
-/// A scene with friction, of families of its own. Whether it has an equilibrium only [`Balance`] knows.
+/// A scene with friction, from families of its own; only [`Balance`] can tell whether it has an equilibrium.
 #[track_caller]
 pub fn draw_frictional(seed: u64, cells: usize) -> Drawn {
     draw_from(&friction::FAMILIES, seed, cells)
@@ -162,7 +161,7 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
     let mut draft = Draft::new(random.clone(), cells);
     draft.matching = family.matching;
     if family.frictional {
-        // Numbers of its own, so that the rest is drawn as without friction.
+        // Separate random numbers leave the rest of the scene as without friction.
         draft.friction = Some(Friction::new(Random::new(!seed), draft.load));
     }
     (family.make)(&mut draft);
@@ -176,7 +175,7 @@ fn draw_from(families: &[Family], seed: u64, cells: usize) -> Drawn {
 /// The scene of a draft on its mesh.
 #[track_caller]
 fn drawn(seed: u64, family: &'static str, cells: &'static str, draft: Draft, mesh: Mesh) -> Drawn {
-    // The judge's criteria don't depend on the size of strains, which is often absurd here.
+    // The judge's criteria don't depend on the size of strains, which is often unrealistic here.
     let text = format!("large_strains = true\n{}", draft.text());
     let mut model = model(&text, mesh);
     let mut random = draft.random;
@@ -213,7 +212,7 @@ fn drawn(seed: u64, family: &'static str, cells: &'static str, draft: Draft, mes
     }
 }
 
-/// Multiplies forces, gaps, prescribed displacements and bounds of friction, and so the solution.
+/// Multiplies forces, gaps, prescribed displacements and bounds of friction, and thereby the solution.
 pub fn scale(model: &mut Model, factor: f64) {
     for step in &mut model.steps {
         step.supports.iter_mut().for_each(|value| *value *= factor);
@@ -237,7 +236,7 @@ pub fn scale(model: &mut Model, factor: f64) {
     }
 }
 
-/// The partition into the wanted number of subdomains, or the nearest that can be.
+/// The partition into the wanted number of subdomains, or the nearest possible one.
 pub fn decomposed(model: &Model, wanted: usize) -> Result<Decomposition, String> {
     let error = match Decomposition::new(model, Some(wanted)) {
         Ok(decomposition) => return Ok(decomposition),

@@ -1,4 +1,4 @@
-//! Bodies on rigid obstacles: floors, notches, circles, pipes; nothing else holds them.
+//! Bodies held only by rigid obstacles: floors, notches, circles, pipes.
 
 use super::boxes::wall;
 use super::draft::{Draft, rectangle};
@@ -36,7 +36,7 @@ pub fn punched(draft: &mut Draft) {
 pub fn notched(draft: &mut Draft) {
     let slope = draft.random.magnitude(-1.0, 0.7);
     let n = [draft.side_cells(), draft.side_cells()];
-    // The lower corner first: its two lower sides lie on the walls.
+    // The lower corner comes first: its two lower sides lie on the walls.
     let corners = [[0.0, 0.0], [1.0, slope], [0.0, 2.0 * slope], [-1.0, slope]];
     let weight = draft.weight(slope) - draft.load * 1e-2;
     draft.block("b", corners, n, [0.0, weight]);

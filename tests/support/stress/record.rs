@@ -1,4 +1,4 @@
-//! A record of what became of random scenes, a line of text for each, so that two programs can be compared.
+//! A record of the results of random scenes, a line of text each, to compare two programs.
 
 pub mod comparison;
 
@@ -9,7 +9,7 @@ use std::str::FromStr;
 use super::friction::Law;
 use super::trial::{Trial, Verdict};
 
-/// Coefficient of friction up to which the target is higher.
+/// Coefficient of friction up to which more scenes have to be right.
 const USUAL: f64 = 0.5;
 /// The columns of a line.
 const COLUMNS: [&str; 12] = [
@@ -19,7 +19,7 @@ const COLUMNS: [&str; 12] = [
 /// The mark of a column without a value.
 const NONE: &str = "-";
 
-/// The key of a scene: its suite, the interface solver that was asked for, and its seed.
+/// The key of a scene: its suite, the requested interface solver, and its seed.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
     pub suite: String,
@@ -33,17 +33,17 @@ pub struct Row {
     /// `none`, `given`, `coulomb<=0.5` or `coulomb`.
     pub law: String,
     pub verdict: Verdict,
-    /// The exit code; `None` where it hung or was killed.
+    /// The exit code; `None` if the program hung or was killed.
     pub exit: Option<i32>,
-    /// Of a run that wrote a report, of all its load steps: sweeps, steps of Newton's method and linear problems solved.
+    /// Sums over all load steps of a run with a report: sweeps, steps of Newton's method and linear problems solved.
     pub counts: Option<[u64; 3]>,
-    /// The method and what contact conditions were solved with.
+    /// The method, and the solver of contact conditions.
     pub solver: Option<String>,
     /// Equilibrium of the certificate.
     pub backward: Option<f64>,
-    /// Time that the program took (s).
+    /// Time taken by the program (s).
     pub seconds: f64,
-    /// Methods that had to help, what the program said when it failed, and why the verdict isn't right.
+    /// Fallback methods, the program's message of a failure, and the reason for a verdict that isn't right.
     pub words: String,
 }
 
@@ -53,7 +53,7 @@ pub struct Record {
     pub rows: BTreeMap<Key, Row>,
 }
 
-/// The name of a law of friction, of a scene without any if that is `None`.
+/// The name of a law of friction; `None` is a scene without friction.
 pub fn law_name(law: Option<Law>) -> &'static str {
     match law {
         None => "none",
@@ -64,7 +64,7 @@ pub fn law_name(law: Option<Law>) -> &'static str {
 }
 
 impl Row {
-    /// The record of a trial under this law.
+    /// The record of a trial with this law.
     pub fn new(law: Option<Law>, trial: &Trial) -> Self {
         let text = |key: &str| Some(trial.report.as_ref()?.get(key)?.as_str()?.to_owned());
         let count = |key: &str| Some(trial.reported(&[key])? as u64);
@@ -97,7 +97,7 @@ impl Row {
 }
 
 impl Record {
-    /// The lines, in the order of suites, operators and seeds, below one with the columns' names.
+    /// The lines, in the order of suites, operators and seeds, below a line with the columns' names.
     pub fn to_text(&self) -> String {
         let head = COLUMNS.map(str::to_owned);
         let head = (head, "why".to_owned());
@@ -117,7 +117,7 @@ impl Record {
     }
 }
 
-/// The columns of a row, and the words behind them.
+/// The columns of a row, and the words after them.
 fn columns(key: &Key, row: &Row) -> ([String; 12], String) {
     fn or_none(value: Option<impl Display>) -> String {
         value.map_or(NONE.into(), |value| value.to_string())
@@ -143,7 +143,7 @@ fn columns(key: &Key, row: &Row) -> ([String; 12], String) {
 impl FromStr for Record {
     type Err = String;
 
-    /// Reads the lines; those that begin with `#` and the one with the columns' names say nothing.
+    /// Reads the lines; those that begin with `#` and the one with the columns' names are skipped.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut rows = BTreeMap::new();
         for (number, line) in text.lines().enumerate() {

@@ -1,17 +1,17 @@
-//! Rigid motions of the bodies of a model, and what supports and contact do to them.
+//! Rigid motions of the bodies of a model, and the effect of supports and contact on them.
 
 use contact_dd_partition::model::Model;
 use nalgebra::{DMatrix, DVector};
 
-/// Singular value, relative to the largest, that counts as none.
+/// Singular value, relative to the largest, below which it counts as zero.
 const NOTHING: f64 = 1e-9;
 
-/// Bodies, each what hangs together through nodes, with their rigid motions.
+/// Bodies as sets of connected nodes, with their rigid motions.
 pub struct Bodies {
     dim: usize,
     /// Body of every node.
     of_node: Vec<usize>,
-    /// Middle and size of every body (m).
+    /// Centre and size of every body (m).
     frames: Vec<([f64; 3], f64)>,
     points: Vec<[f64; 3]>,
 }
@@ -67,7 +67,7 @@ impl Bodies {
         }
     }
 
-    /// Number of rigid motions of a body: along every axis, around its middle.
+    /// Number of rigid motions of a body: along every axis, and rotations about its centre.
     fn modes(&self) -> usize {
         if self.dim == 2 { 3 } else { 6 }
     }
@@ -118,13 +118,13 @@ impl Bodies {
             .collect()
     }
 
-    /// Orthonormal coefficients of the motions that none of `rows` sees.
+    /// Orthonormal coefficients of the motions on which none of `rows` acts.
     pub fn unseen<'a>(
         &self,
         rows: impl Iterator<Item = &'a Vec<(usize, f64)>>,
     ) -> Vec<DVector<f64>> {
         let n = self.motions();
-        // Rows are folded in one after the other: A ᵀA would lose half of the digits.
+        // Rows are added to a triangular factor one by one: AᵀA would lose half of the digits.
         let mut folded = DMatrix::zeros(2 * n, n);
         let mut filled = n;
         for row in rows {

@@ -1,4 +1,4 @@
-//! Scenes in space: blocks on and beside each other, wedges, layers, and obstacles, upright or askew.
+//! Scenes in space: blocks on and next to each other, wedges, layers, and obstacles, upright or tilted.
 
 pub mod friction;
 
@@ -28,13 +28,13 @@ pub const FAMILIES: [Family; 6] = [
     matching("indenter in space", indenter),
 ];
 
-/// The scene of a seed, with blocks of at most `cells` linear cells a side, or half as many quadratic ones.
+/// The scene of a seed, with blocks of at most `cells` linear cells per side, or half as many quadratic ones.
 #[track_caller]
 pub fn draw_in_space(seed: u64, cells: usize) -> Drawn {
     draw_from(&FAMILIES, seed, cells)
 }
 
-/// The same with friction, of seeds that count anew; most that have no equilibrium are drawn once more, and so on.
+/// A scene with friction, with seeds numbered anew; most without equilibrium are drawn again until one is kept.
 #[track_caller]
 pub fn draw_frictional_in_space(seed: u64, cells: usize) -> Drawn {
     let mut random = Random::new(seed.rotate_left(32));
@@ -44,7 +44,7 @@ pub fn draw_frictional_in_space(seed: u64, cells: usize) -> Drawn {
         if random.chance(KEPT) || !has_no_equilibrium(&drawn) {
             return Drawn { seed, ..drawn };
         }
-        // Of the same family.
+        // The next numbers give the same family.
         numbers += (friction::FAMILIES.len() as u64) << 32;
     }
 }
@@ -120,7 +120,7 @@ impl Draft {
         [0; 3].map(|_| self.side_cells())
     }
 
-    /// Cells of a block in contact with one of `n`.
+    /// Cell counts of a block in contact with one of `n`.
     fn facing_counts(&mut self, n: [usize; 3]) -> [usize; 3] {
         match self.matching {
             true => n,
@@ -134,7 +134,7 @@ impl Draft {
         ));
     }
 
-    /// A wall through `point`, the side lying on that side of it to which `normal` points.
+    /// Adds a wall through `point` for a side, which lies where `normal` points.
     fn wall(&mut self, side: &str, point: [f64; 3], normal: [f64; 3], gap: Option<&str>) {
         let [point, normal] = [point, normal].map(|v| self.turned(v));
         let obstacle = format!("{{point = {point:?}, normal = {normal:?}}}");
@@ -145,7 +145,7 @@ impl Draft {
         self.contact(&[a.to_owned()], &[b.to_owned()], gap);
     }
 
-    /// A gap along one of the axes, or none given.
+    /// A gap along one of the axes, or no given one.
     fn some_gap(&mut self) -> Option<String> {
         let axis = self.random.pick(&["x", "y", "z"]);
         self.random.chance(0.5).then(|| self.drawn_gap(axis))
@@ -163,7 +163,7 @@ impl Draft {
     }
 }
 
-/// The mesh with straight edges of quadratic tetrahedra, for which the judge's rule is as exact as any.
+/// The mesh with straight edges of quadratic tetrahedra, for which the judge's quadrature rule is exact, too.
 fn straightened(mut mesh: Mesh) -> Mesh {
     let mut done = HashSet::new();
     for cell in 0..mesh.cells.len() {
@@ -212,7 +212,7 @@ fn stack(draft: &mut Draft) {
     }
     draft.some_pressure(&format!("b{} z1", count - 1));
     if draft.random.chance(0.1) {
-        // Nothing holds it but friction, of which there is none.
+        // Only friction, which is absent, could hold it.
         let push = draft
             .turned([draft.load, 0.0, -draft.load])
             .map(|c| format!("{c:e}"));

@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, bilinear, noise, rectangle};
 
-/// The failure of a tower, if it has one.
+/// The kind of failure of a tower, if it fails.
 #[derive(Clone, Copy, PartialEq)]
 enum Fall {
     Stands,
@@ -11,8 +11,8 @@ enum Fall {
     Pushed,
 }
 
-/// Blocks that get narrower towards the top, with smooth or rough joints; they stand by
-/// themselves, or against rollers at their left.
+/// Blocks that get narrower towards the top, with smooth or rough joints; they stand freely, or against rollers at
+/// their left.
 pub fn tower(draft: &mut Draft) {
     pile(draft, |draft, _| draft.random.magnitude(-3.0, 0.3));
 }
@@ -34,7 +34,7 @@ fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
     };
     draft.equilibrium = Some(fall == Fall::Stands);
     draft.determined = !rolled;
-    // A surface that isn't plane would hold what is pushed.
+    // An uneven surface would hold blocks that are pushed.
     let rough = fall == Fall::Stands && draft.random.chance(0.3);
     if rough && !rolled {
         draft.equilibrium = None;
@@ -78,7 +78,7 @@ fn pile(draft: &mut Draft, height: impl Fn(&mut Draft, usize) -> f64) {
     }
 }
 
-/// A block whose surfaces are plane or, above and below, uneven by far less than a facet.
+/// A block whose lower and upper surfaces are plane, or uneven by far less than a facet.
 fn layer(
     draft: &mut Draft,
     index: usize,
@@ -94,13 +94,13 @@ fn layer(
         return;
     }
     let facet = (x[1] - x[0]) / n[0] as f64;
-    // Gaps that the load closes in part: beyond, the load is less than the round-off of the gaps.
+    // The load closes gaps in part: if they are larger, the load is less than their round-off.
     let most = 1e4 * draft.compression();
     let size = (y[1] - y[0]).min(facet).min(most) * draft.random.magnitude(-3.0, -1.5);
     let seed = [index as f64 * 7.0, index as f64 * 7.0 + 3.0];
     draft.shape(&name, n, |[s, t]| {
         let [px, py] = bilinear(rectangle(x, y), [s, t]);
-        // Joints stay open a little, so that nothing lies behind its partner by much.
+        // Joints stay open a little, so that no side lies far behind its partner.
         let below = size * (1.0 + noise(seed[0] + px)) * (1.0 - t);
         let above = size * (1.0 + noise(seed[1] + px)) * t;
         [px, py + below - above]

@@ -1,4 +1,4 @@
-//! A scene put to the program, and the verdict.
+//! A run of the program on a scene, and the verdict.
 
 use std::path::Path;
 use std::process::Command;
@@ -16,26 +16,26 @@ use super::super::solver::{Case, launched};
 use super::judge::Findings;
 use super::{Balance, Drawn, decomposed};
 
-/// Dofs up to which there is a reference.
+/// Most dofs for which a reference is computed.
 const REFERENCE: usize = 100_000;
 
 /// The verdict on a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// The solution, or the message that there is none where there is none.
+    /// The solution, or the message of its absence in a scene without equilibrium.
     Right,
-    /// It says that it converged, but this isn't the solution.
+    /// An answer reported as converged that isn't the solution.
     Wrong,
-    /// Other bits on several ranks.
+    /// Different bits on several ranks.
     Differs,
-    /// Refused though there is an equilibrium.
+    /// A refusal although there is an equilibrium.
     Refused,
     /// A solution of a scene without equilibrium.
     Missed,
     NotConverged,
     Hung,
     Crashed,
-    /// The scene isn't what it was built to be: its equilibrium is a matter of round-off.
+    /// A scene that isn't as built: its equilibrium is a matter of round-off.
     Unclear,
 }
 
@@ -70,19 +70,19 @@ impl Verdict {
 /// A scene with its verdict.
 pub struct Trial {
     pub verdict: Verdict,
-    /// Why, in words; empty where it is right.
+    /// The reason for the verdict in words; empty if it is right.
     pub reason: String,
-    /// True if there is an equilibrium; `None` where that is a matter of round-off, so that both the
-    /// message that there is none and a solution are right, or of what friction carries.
+    /// True if there is an equilibrium; `None` if that depends on round-off, so that both a solution and the message of
+    /// its absence are right, or on the strength of friction.
     pub equilibrium: Option<bool>,
-    /// True if rigid bodies are held by friction, of which elastic ones may not find enough.
+    /// True if rigid bodies are held by friction, which may not suffice for elastic ones.
     pub by_friction: bool,
     /// True if a load step was made in parts, after it didn't converge as a whole.
     pub in_parts: bool,
-    /// The program's exit code, and the time that it took (s).
+    /// The program's exit code, and the time it took (s).
     pub exit: Option<i32>,
     pub seconds: f64,
-    /// The message when it failed.
+    /// The message of a failure.
     pub message: String,
     pub dofs: usize,
     pub conditions: usize,
@@ -116,24 +116,24 @@ fn steps(model: &Model) -> Vec<Loaded> {
     }
 }
 
-/// Equilibrium of all steps of a scene without friction, and with the friction that it has.
+/// Equilibrium of all steps of a scene without friction, and with its own friction.
 fn balances(drawn: &Drawn, steps: &[Loaded]) -> [Balance; 2] {
     let without = |step: &Loaded| Balance::without_friction(&step.model, &step.assembled);
     let held = least(steps.iter().map(without));
     let with = |step: &Loaded| Balance::new(&step.model, &step.assembled);
     match (held, drawn.friction) {
-        // What stands without friction stands with it.
+        // Scenes that hold without friction hold with it.
         (Balance::Holds, _) | (_, None) => [held; 2],
         _ => [held, least(steps.iter().map(with))],
     }
 }
 
-/// True if there is certainly no equilibrium in some step.
+/// True if some step certainly has no equilibrium.
 pub fn has_no_equilibrium(drawn: &Drawn) -> bool {
     balances(drawn, &steps(&drawn.model))[1] == Balance::Fails
 }
 
-/// The worst of all.
+/// The worst balance of all.
 fn least(balances: impl Iterator<Item = Balance>) -> Balance {
     let rank = |balance: &Balance| match balance {
         Balance::Holds => 0,
@@ -143,13 +143,13 @@ fn least(balances: impl Iterator<Item = Balance>) -> Balance {
     balances.max_by_key(rank).unwrap_or(Balance::Holds)
 }
 
-/// The interface solver that is asked for.
+/// The requested interface solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interface {
-    /// The program chooses.
+    /// The program's choice.
     Chosen,
     Direct,
-    /// The iterative one between so many clusters, about.
+    /// The iterative solver between about this many clusters.
     Iterative(usize),
 }
 
@@ -164,12 +164,12 @@ impl Interface {
 }
 
 impl Trial {
-    /// Runs `binary` on a scene, `limit` at most; with `keep` the problem file is copied there.
+    /// Runs `binary` on a scene, at most for `limit`; copies the problem file to `keep`, if given.
     pub fn of(drawn: &Drawn, binary: &Path, limit: Duration, keep: Option<&Path>) -> Self {
         Self::with(drawn, binary, limit, keep, Interface::Chosen)
     }
 
-    /// The same with an `interface` solver.
+    /// Runs `binary` likewise, with an `interface` solver.
     pub fn with(
         drawn: &Drawn,
         binary: &Path,
@@ -303,7 +303,7 @@ impl Trial {
         }
     }
 
-    /// Runs it on `ranks` ranks: the same end, the same bits.
+    /// Runs the scene on `ranks` ranks, which must give the same exit code and bits.
     fn again(
         &mut self,
         ranks: usize,
@@ -339,7 +339,7 @@ impl Trial {
             .as_f64()
     }
 
-    /// The most steps of Newton's method that an increment took.
+    /// The largest number of steps of Newton's method in an increment.
     pub fn newton_steps(&self) -> Option<f64> {
         let report = self.report.as_ref()?;
         let of = |entry: &Value| entry.get("active_set_iterations")?.as_f64();
@@ -349,7 +349,7 @@ impl Trial {
         }
     }
 
-    /// True if the report warns that the step of this name, or the only one, was made in parts.
+    /// True if the report warns that the step with this name, or the only one, was made in parts.
     fn is_in_parts(&self, step: Option<&str>) -> bool {
         let name = step.map_or(String::new(), |name| format!("step '{name}': "));
         let warnings = self.listed("warnings").unwrap_or_default();

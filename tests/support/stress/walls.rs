@@ -75,7 +75,7 @@ pub fn bricks(draft: &mut Draft) {
     }
     for brick in &all[courses - 1] {
         match lifted {
-            // More than the weight of the whole wall.
+            // A load above the weight of the whole wall.
             true => {
                 let pull = draft.load * 20.0 * (1.0 + height) * courses as f64;
                 draft.traction(&brick.side("top"), ["0", &format!("{pull:e}")]);

@@ -1,4 +1,4 @@
-//! A closed inclined crack, turned so that it lies along x.
+//! A closed inclined crack, rotated so that it lies along x.
 
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ Source and mesh: as above.
 
 const HALF: f64 = 3.0;
 const LOAD: f64 = 100e6;
-/// The coefficient of the case with friction.
+/// The coefficient of friction in the case with friction.
 const FRICTION: f64 = 0.6;
 const SCENE: &str = "
     plane = 'strain'
@@ -52,7 +52,7 @@ fn inclination() -> [f64; 2] {
     [sin, cos]
 }
 
-/// Shear along the crack: what its sides carry, and what they don't.
+/// Shear along the crack: the part that its sides carry, and the rest.
 fn shears(friction: f64) -> [f64; 2] {
     let [sin, cos] = inclination();
     let whole = LOAD * sin * cos;
@@ -77,7 +77,7 @@ fn exact(friction: f64) -> Exact {
     }))
 }
 
-/// The crack in cells of a kind, its coefficient of friction, and the loads that go with it.
+/// The crack in cells of a kind, with a coefficient of friction and the loads of its exact solution.
 fn posed(name: &str, n: usize, friction: f64) -> (Model, Exact) {
     let graded = |s: f64| s.powi(3);
     let outer = HALF - 1.0;
@@ -97,7 +97,7 @@ fn posed(name: &str, n: usize, friction: f64) -> (Model, Exact) {
                 [x(column, s), HALF * graded(t)]
             });
     }
-    // The sides of the crack have nodes of their own but for the tips.
+    // The sides of the crack share only the nodes at the tips.
     let blocks = blocks.glued(|x, y| y != 0.0 || x.abs() > 1.0 - 1e-9);
     let mut mesh = sort(name).of(&blocks.mesh);
     let pieces =
@@ -135,7 +135,7 @@ fn solved(name: &str, n: usize, friction: f64) -> Measured {
     measured(model, exact, move |solution| of_crack(solution, friction))
 }
 
-/// The crack where it sticks, and its uniform stress.
+/// The sticking crack, and its uniform stress.
 pub fn stuck(friction: f64) -> (Model, Exact) {
     posed("quad4", 8, friction)
 }
@@ -204,7 +204,7 @@ pub fn case() -> Case {
     }
 }
 
-/// The same with friction.
+/// The crack with friction.
 pub fn with_friction() -> Case {
     Case {
         title: "Closed inclined crack with friction",

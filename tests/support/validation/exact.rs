@@ -1,4 +1,4 @@
-//! An exact field of stress: the loads that it asks for, and how far a solution is from it.
+//! An exact stress field: the loads that it requires, and a solution's distance from it.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -42,7 +42,7 @@ pub enum Exact {
 /// N, ∂N/∂ξ and the weight at a point of a reference cell or facet.
 type Sample = (Vec<f64>, Vec<[f64; 3]>, f64);
 
-/// Points of the cube, or of a face or an edge of it that is left where its dimension is less.
+/// Points of the cube, or of the face or edge of it that remains in lower dimensions.
 fn samples(kind: ElementKind) -> Vec<Sample> {
     let rule: &[(f64, f64)] = if kind.dim() == 3 { &FOUR } else { &SIX };
     let mut points = vec![([0.0; 3], 1.0)];
@@ -58,7 +58,7 @@ fn samples(kind: ElementKind) -> Vec<Sample> {
     let at = points.into_iter().map(|(at, weight)| {
         let [s, t, r] = at.map(|c| 0.5 * (1.0 + c));
         match (kind.dim(), kind.corners()) {
-            // Upper faces become an edge and a corner.
+            // Upper faces collapse to an edge and a corner.
             (2, 3) => ([s * (1.0 - t), t, 0.0], 0.25 * weight * (1.0 - t)),
             (3, 4) => {
                 let (left, far) = (1.0 - r, (1.0 - t) * (1.0 - r));
@@ -115,7 +115,7 @@ impl Exact {
         [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|row| dot(row, n))
     }
 
-    /// Extent that a unit of area or length stands for.
+    /// Length around the axis at a point of a ring, else 1.
     fn around(&self, x: [f64; 3]) -> f64 {
         match self {
             Self::Ring(_) => 2.0 * PI * x[0],
@@ -123,8 +123,8 @@ impl Exact {
         }
     }
 
-    /// The strain of a gradient of displacement in Voigt's order; around an axis with the displacement along the radius
-    /// over it.
+    /// The strain of a displacement gradient in Voigt's order; around an axis with `hoop`, the radial displacement over
+    /// the radius.
     fn strain(&self, h: &Matrix3<f64>, hoop: f64) -> DVector<f64> {
         let shear = |i, j| h[(i, j)] + h[(j, i)];
         let (xx, yy, zz) = (h[(0, 0)], h[(1, 1)], h[(2, 2)]);
@@ -135,7 +135,7 @@ impl Exact {
         })
     }
 
-    /// ‖σ_h − σ‖ over ‖σ‖, both in the norm of C⁻¹, σ_h by the displacements of the solution.
+    /// ‖σ_h − σ‖ over ‖σ‖, both in the norm of C⁻¹, with σ_h from the displacements of the solution.
     pub fn energy_error(&self, model: &Model, solution: &Solution) -> f64 {
         let mesh = &model.mesh;
         let mut rules: BTreeMap<ElementKind, Vec<Sample>> = BTreeMap::new();
@@ -173,8 +173,7 @@ impl Exact {
         (error / energy).sqrt()
     }
 
-    /// Adds the tractions that this stress exerts on groups of facets, each of which faces a
-    /// direction.
+    /// Adds the tractions of this stress to groups of facets, each facing one direction.
     pub fn load<const N: usize>(&self, model: &mut Model, sides: &[(&str, [f64; N])]) {
         let mesh = &model.mesh;
         let mut rules: BTreeMap<ElementKind, Vec<Sample>> = BTreeMap::new();

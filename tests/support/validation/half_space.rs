@@ -14,8 +14,8 @@ pub const STIFFNESS: f64 = 200.0 / (1.0 - POISSON * POISSON);
 
 type C = Complex<f64>;
 
-/// Terms of the stress at a point of the half space: derivatives of F, and of Φ with Φ_z = F, over r where
-/// that is finite on the axis.
+/// Terms of the stress at a point of the half space: derivatives of F, and of Φ with Φ_z = F, over r where these are
+/// finite on the axis.
 pub struct Potential {
     f_z: f64,
     f_zz: f64,
@@ -54,12 +54,12 @@ pub fn radius() -> f64 {
     (0.75 * LOAD * 8.0 / STIFFNESS).cbrt()
 }
 
-/// The pressure in the middle.
+/// The pressure at the centre.
 pub fn peak() -> f64 {
     1.5 * LOAD / (PI * radius().powi(2))
 }
 
-/// Under a ball.
+/// The potential under a ball.
 pub fn of_ball([r, z]: [f64; 2]) -> Potential {
     let (a, i) = (radius(), C::i());
     let [root, zeta, w] = complex([r, z], a);
@@ -75,7 +75,7 @@ pub fn of_ball([r, z]: [f64; 2]) -> Potential {
     }
 }
 
-/// Under a flat punch of radius 1.
+/// The potential under a flat punch of radius 1.
 pub fn of_punch([r, z]: [f64; 2]) -> Potential {
     let [root, zeta, w] = complex([r, z], 1.0);
     let of = |value: C| -LOAD / (2.0 * PI) * value.im;
@@ -89,7 +89,7 @@ pub fn of_punch([r, z]: [f64; 2]) -> Potential {
     }
 }
 
-/// Under a force at the origin.
+/// The potential under a force at the origin.
 pub fn of_force([r, z]: [f64; 2]) -> Potential {
     let factor = LOAD / (2.0 * PI);
     let far = r.hypot(z);

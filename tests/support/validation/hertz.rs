@@ -1,4 +1,4 @@
-//! Line contact of two equal cylinders, of one on its plane of symmetry and of both.
+//! Line contact of two equal cylinders: one on its plane of symmetry, and both.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use super::super::sorts::{Sort, sort};
 use super::exact::Exact;
 use super::{Case, Family, Figure, Gate, Measured, Posed, falling, gather, measured, plain};
 
-/// Side of the squares that are cut out of the half planes.
+/// Side of the squares cut out of the half planes.
 const SIDE: f64 = 2.0;
 
 /// The exponent of graded meshes; quadratic cells need more than 4/3.
@@ -54,7 +54,7 @@ fn half_width() -> f64 {
     (1.456 / PI).sqrt()
 }
 
-/// The pressure in the middle.
+/// The pressure at the centre.
 fn peak() -> f64 {
     20.0 / (PI * half_width())
 }
@@ -82,8 +82,8 @@ fn exact() -> Exact {
     }))
 }
 
-/// A square below or above a contact of half-width `a`: its pieces `under` it and `beside` it, with
-/// lines at distances from its end and from the contact that grow with their number to a power.
+/// A square below or above a contact of half-width `a`: its pieces `under` it and `beside` it, with lines at distances
+/// from its end and from the contact that grow with a power of their number.
 pub fn square([body, row]: [&str; 2], n: usize, grading: f64, a: f64) -> Mesh {
     let graded = move |s: f64| s.powf(grading);
     let height = move |t: f64| match row {
@@ -100,14 +100,14 @@ pub fn square([body, row]: [&str; 2], n: usize, grading: f64, a: f64) -> Mesh {
     blocks.glued(|_, _| true).mesh
 }
 
-/// Errors of the pressure in the middle and of the half-width.
+/// Errors of the pressure at the centre and of the half-width.
 fn of_contact(solution: &Solution) -> Vec<Figure> {
     let mut points: Vec<&ContactPoint> = solution.contacts["contact"].iter().collect();
     points.sort_by(|p, q| p.position[0].total_cmp(&q.position[0]));
     let last = points.iter().rposition(|point| point.closed).unwrap();
     assert!(points[..last].iter().all(|point| point.closed));
     let at = |i: usize| points[i].position[0];
-    // One more than a cell away where it is on the other side of its next node.
+    // The end of the contact may lie in either of the cells at the last closed point.
     let cell = (at(last + 1) - at(last)).max(at(last) - at(last - 1));
     let total: f64 = points.iter().map(|point| point.force).sum();
     vec![
@@ -131,7 +131,7 @@ fn families(make: fn(Sort, usize, f64) -> Measured, names: &[&str]) -> Vec<Famil
     families
 }
 
-/// One body on its plane of symmetry.
+/// A body on its plane of symmetry.
 pub fn on_an_obstacle() -> Case {
     Case {
         title: "Hertz: a cylinder on a plane",
@@ -146,7 +146,7 @@ pub fn on_an_obstacle() -> Case {
 /// Both bodies.
 pub fn body_on_body() -> Case {
     let mut families = families(solve_body_on_body, &["triangle3", "triangle6"]);
-    // They have twice as many dofs.
+    // Two bodies have twice as many dofs.
     for family in families
         .iter_mut()
         .filter(|f| f.name != "triangle6, graded")
@@ -188,12 +188,12 @@ fn family(sort: Sort, grading: f64, make: fn(Sort, usize, f64) -> Measured, orde
         gates.push(Gate::AtMost("energy", 2e-3));
         gates.push(Gate::AtMost("p₀", 5e-4));
     }
-    // The other meshes stand in the document alone.
+    // The other meshes appear only in the document.
     let tested = match (sort.name, is_graded) {
         ("quad8", _) | ("quad4" | "quad9", false) => 0,
         _ => 3,
     };
-    // Linear cells need twice as many for as many dofs.
+    // Linear cells need twice as many per side for equally many dofs.
     let finer = if sort.is_quadratic { 1 } else { 2 };
     Family {
         name: format!(
@@ -207,7 +207,7 @@ fn family(sort: Sort, grading: f64, make: fn(Sort, usize, f64) -> Measured, orde
     }
 }
 
-/// One body on its plane of symmetry, with lines that follow a power of their number.
+/// A body on its plane of symmetry, with lines graded by a power of their number.
 pub fn posed_on_an_obstacle(sort: Sort, n: usize, grading: f64) -> Posed {
     let mut mesh = sort.of(&square(["body", "below"], n, grading, half_width()));
     for (name, of) in [

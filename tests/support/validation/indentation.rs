@@ -1,4 +1,4 @@
-//! A ball and a flat round punch on the half space in space, and a force on it.
+//! A ball, a flat round punch and a force on the half space in space.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -43,11 +43,11 @@ Mesh: the part between the spheres R = 1 and R = 4 and two planes of symmetry, w
 quadratic cells curved. A node holds it vertically.
 ";
 
-/// Radius and height of what is meshed of a half space.
+/// Radius and height of the meshed part of a half space.
 pub const SIDE: f64 = 2.0;
 
-/// The part of a length after the part `s` of its cells, which grow with a power of their number; nodes between are in
-/// the middle.
+/// The part of a length covered by the part `s` of its cells, whose sizes grow with a power of their number; midside
+/// nodes lie in the middle.
 fn graded(s: f64, cells: usize, power: f64) -> f64 {
     let at = |i: f64| (i / cells as f64).powf(power);
     let first = (s * cells as f64).min(cells as f64 - 1.0).floor();
@@ -55,11 +55,11 @@ fn graded(s: f64, cells: usize, power: f64) -> f64 {
     at(first) * (1.0 - within) + at(first + 1.0) * within
 }
 
-/// Image of a point (x, y) of the unit disc at the part w of the height.
+/// Position of a point (x, y) of the unit disc at the fraction w of the height.
 type Place<'a> = &'a dyn Fn([f64; 2], f64) -> [f64; 3];
 
 /// The quarter of a unit disc: a `core` and two pieces of a ring around it, `n` cells along each of their edges but
-/// `2n` across the ring, which become thinner to the outside with a power; `tall` cells high.
+/// `2n` across the ring, graded outward by a power; `tall` cells high.
 fn disc(name: &str, kind: ElementKind, [n, tall]: [usize; 2], grading: f64, place: Place) -> Mesh {
     let core = |[s, t]: [f64; 2]| {
         [
@@ -269,7 +269,7 @@ fn families(
 ) -> Vec<Family> {
     let family = |(name, kind): (&str, ElementKind)| Family {
         name: name.into(),
-        // Linear cells need twice as many for as many dofs.
+        // Linear cells need twice as many per edge for equally many dofs.
         run: Box::new(move |level| solve(kind, if kind.is_linear() { 2 } else { 1 } << level)),
         meshes: [if tested.contains(&kind) { 2 } else { 0 }, 3],
         gates: gates(kind),

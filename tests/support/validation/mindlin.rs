@@ -1,4 +1,4 @@
-//! Two equal cylinders that are pressed on each other and then pushed to and fro along their contact.
+//! Two equal cylinders pressed together and then pushed back and forth along their contact.
 
 use std::f64::consts::PI;
 
@@ -44,7 +44,7 @@ const TURN: f64 = 0.75;
 const LOADS: [f64; 14] = [
     0.0, 0.25, 0.5, TURN, 0.5, 0.0, -0.25, -0.5, -TURN, -0.5, 0.0, 0.25, 0.5, TURN,
 ];
-/// The load steps at which it turns round.
+/// The load steps at which Q reverses.
 const TURNS: [usize; 2] = [3, 8];
 
 fn half_width() -> f64 {
@@ -76,7 +76,7 @@ fn shears(step: usize) -> Vec<[f64; 2]> {
     sum
 }
 
-/// Z, Z' and ∫Z of one of them in the lower half plane.
+/// Z, Z' and ∫Z of one of these terms in the lower half plane.
 fn potentials(z: Complex<f64>, w: f64) -> [Complex<f64>; 3] {
     let i = Complex::i();
     let factor = largest_shear() / half_width();
@@ -89,7 +89,7 @@ fn potentials(z: Complex<f64>, w: f64) -> [Complex<f64>; 3] {
 fn exact(step: usize) -> Exact {
     let shears = shears(step);
     Exact::Plane(Box::new(move |[x, y]: [f64; 2]| {
-        // The upper one is the lower one turned by half a turn.
+        // The upper half plane is the lower one rotated by 180°.
         let [x, y] = if y > 0.0 { [-x, -y] } else { [x, y] };
         let mut stress = super::hertz::half_plane([x, y]);
         for &[sign, w] in &shears {
@@ -102,7 +102,7 @@ fn exact(step: usize) -> Exact {
     }))
 }
 
-/// The displacement of (0, 2) along x against (0, −2), with the lower corners at the same height.
+/// The displacement of (0, 2) along x relative to (0, −2), with the lower corners at the same height.
 fn approach(step: usize) -> f64 {
     let shear_modulus = YOUNG / (2.0 * (1.0 + POISSON));
     let displacement = |[x, y]: [f64; 2]| {
@@ -236,7 +236,7 @@ fn of_contact(model: &Model, solutions: &[Solution], cell: f64) -> Vec<Figure> {
                 .iter()
                 .map(|&[sign, w]| sign * shear / a * (w * w - x * x).max(0.0).sqrt())
                 .sum();
-            // Side a is the lower body, which the upper one pulls along.
+            // Side a is the lower body, which the upper one drags along.
             off += (point.tangential_force[0] - exact * area).abs() / (FRICTION * 10.0);
         }
         stress = stress.max(off);

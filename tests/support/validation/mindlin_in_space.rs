@@ -1,4 +1,4 @@
-//! Two equal balls that are pressed on each other and then pushed along their contact.
+//! Two equal balls pressed together and then pushed along their contact.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -29,7 +29,7 @@ from the area that sticks, against the exact one, which jumps with every node; *
 ";
 
 const FRICTION: f64 = 0.5;
-/// Radius of the part of the contact in cells of one size.
+/// Radius of the part of the contact with cells of one size.
 const FINE: f64 = 0.9;
 
 /// The half of a cylinder below the contact where y ≥ 0.
@@ -53,7 +53,7 @@ fn half(kind: ElementKind, n: usize) -> Mesh {
 
 fn posed(kind: ElementKind, n: usize, push: f64) -> Model {
     let lower = named(half(kind, n), "lower");
-    // Turned about y.
+    // The upper half is rotated about y.
     let upper = named(moved(half(kind, n), |[x, y, z]| [-x, y, -z]), "upper");
     let text = format!(
         "materials.steel = {{young = 200, poisson = 0.0}}
@@ -85,12 +85,12 @@ fn posed(kind: ElementKind, n: usize, push: f64) -> Model {
 }
 
 fn solved(kind: ElementKind, n: usize) -> Measured {
-    // By ν = 0 pushing leaves P as it is.
+    // Pushing doesn't change P, as ν = 0.
     let pressed = figured_steps(&posed(kind, n, 0.0), |solutions| {
         let points = &solutions[0].contacts["contact"];
         vec![plain("P", points.iter().map(|p| p.force).sum())]
     });
-    // Linear cells have chords of the round side.
+    // Linear cells replace the round side by chords.
     let angle = FRAC_PI_4 / n as f64;
     let chords = if kind.is_linear() {
         angle.sin() / angle
@@ -100,7 +100,7 @@ fn solved(kind: ElementKind, n: usize) -> Measured {
     let end = 0.5 * PI * SIDE * SIDE * chords;
     let push = 0.5 * FRICTION * pressed.figures[0].value / end;
     let nodes = if kind.is_linear() { 1 } else { 2 };
-    // Across the ring.
+    // Cell size across the ring.
     let cell = 0.5 * FINE / (2 * n * nodes) as f64;
     figured_steps(&posed(kind, n, push), |solutions| {
         figures(&solutions[1], cell)
@@ -109,7 +109,7 @@ fn solved(kind: ElementKind, n: usize) -> Measured {
 
 fn figures(solution: &Solution, cell: f64) -> Vec<Figure> {
     let points = &solution.contacts["contact"];
-    // Half of the contact.
+    // Twice the force on half of the contact.
     let force = 2.0 * points.iter().map(|p| p.force).sum::<f64>();
     let push = 2.0 * points.iter().map(|p| p.tangential_force[0]).sum::<f64>();
     let a = (0.75 * force * 8.0 / 200.0).cbrt();

@@ -1,7 +1,7 @@
-//! Scenes with exact answers, refined step by step: errors and the orders with which they vanish.
+//! Scenes with exact solutions, refined step by step: errors and their orders of convergence.
 //!
-//! `tests/scenes/validation.rs` holds the first refinements against gates; `scripts/validate` runs more and
-//! writes all into docs/validation.md.
+//! `tests/scenes/validation.rs` tests the first refinements against gates; `scripts/validate` runs more and writes all
+//! to docs/validation.md.
 
 pub mod beam;
 pub mod crack;
@@ -28,7 +28,7 @@ use self::exact::Exact;
 use super::solution::Solution;
 use super::solver;
 
-/// The figure of the certificate that every answer has to keep, and its target.
+/// The figure of the certificate that every answer has to fulfil, and its target.
 const BACKWARD_ERROR: &str = "backward error";
 const CERTIFIED: Gate = Gate::AtMost(BACKWARD_ERROR, 1e-14);
 
@@ -41,7 +41,7 @@ pub const KINDS: [(&str, ElementKind); 5] = [
     ("quad9", ElementKind::Quad9),
 ];
 
-/// A scene with an exact answer.
+/// A scene with an exact solution.
 pub struct Case {
     pub title: &'static str,
     /// Formula, source and mesh, in Markdown.
@@ -49,12 +49,12 @@ pub struct Case {
     pub families: Vec<Family>,
 }
 
-/// Meshes of one kind of cells, each with half the size of the one before.
+/// Meshes of one kind of cells, each with half the cell size of the one before.
 pub struct Family {
     pub name: String,
-    /// Solves the scene on a mesh refined so many times.
+    /// Solves the scene on a mesh refined this many times.
     pub run: Box<dyn Fn(usize) -> Measured>,
-    /// Number of meshes among the tests, which may be none, and in the document.
+    /// Number of meshes in the tests, which may be none, and in the document.
     pub meshes: [usize; 2],
     pub gates: Vec<Gate>,
 }
@@ -65,7 +65,7 @@ pub struct Measured {
     pub figures: Vec<Figure>,
 }
 
-/// A figure, zero if all were exact.
+/// A measured figure, such as an error.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
     pub name: &'static str,
@@ -74,12 +74,12 @@ pub struct Figure {
     pub has_order: bool,
 }
 
-/// The gates that have to hold.
+/// A condition on figures.
 #[derive(Clone, Copy, Debug)]
 pub enum Gate {
-    /// The order between the last two meshes is at least so much.
+    /// Least order of convergence between the last two meshes.
     Order(&'static str, f64),
-    /// On the finest mesh the figure is at most so much.
+    /// Largest value of the figure on the finest mesh.
     AtMost(&'static str, f64),
 }
 
@@ -115,7 +115,7 @@ pub fn cases() -> Vec<Case> {
     ]
 }
 
-/// An error that falls with a power of the mesh size.
+/// An error with an order of convergence.
 pub fn falling(name: &'static str, value: f64) -> Figure {
     let has_order = true;
     Figure {
@@ -125,7 +125,7 @@ pub fn falling(name: &'static str, value: f64) -> Figure {
     }
 }
 
-/// An error that doesn't fall evenly, or not at all.
+/// An error that falls irregularly, or not at all.
 pub fn plain(name: &'static str, value: f64) -> Figure {
     let has_order = false;
     Figure {
@@ -135,15 +135,15 @@ pub fn plain(name: &'static str, value: f64) -> Figure {
     }
 }
 
-/// Reads figures off a solution.
+/// Function that computes figures from a solution.
 pub type Figures = Box<dyn Fn(&Solution) -> Vec<Figure>>;
 
-/// Solves a model, in as many subdomains as suit its size.
+/// Solves a model, with a number of subdomains that suits its size.
 pub fn figured(model: &Model, figures: impl Fn(&Solution) -> Vec<Figure>) -> Measured {
     figured_steps(model, |solutions| figures(&solutions[0]))
 }
 
-/// Solves all increments of a model, in as many subdomains as suit its size.
+/// Solves all increments of a model, with a number of subdomains that suits its size.
 pub fn figured_steps(model: &Model, figures: impl Fn(&[Solution]) -> Vec<Figure>) -> Measured {
     let dofs = model.mesh.dim * model.mesh.points.len();
     let case = solver::Case::new(&solver::problem(model, None));
@@ -159,27 +159,27 @@ pub fn figured_steps(model: &Model, figures: impl Fn(&[Solution]) -> Vec<Figure>
     }
 }
 
-/// A scene on a mesh, with its exact answer.
+/// A scene on a mesh, with its exact solution.
 pub struct Posed {
     pub model: Model,
     pub exact: Exact,
-    /// Quantities that are looked at beside the energy.
+    /// Figures besides the energy error.
     pub figures: Figures,
 }
 
 impl Posed {
-    /// Number of unknowns, prescribed ones among them.
+    /// Number of unknowns, including prescribed ones.
     pub fn dofs(&self) -> usize {
         self.model.mesh.dim * self.model.mesh.points.len()
     }
 
-    /// The error in the norm of the energy, then the other figures.
+    /// The error in the energy norm, then the other figures.
     pub fn errors(&self, solution: &Solution) -> Vec<Figure> {
         let energy = self.exact.energy_error(&self.model, solution);
         [vec![falling("energy", energy)], (self.figures)(solution)].concat()
     }
 
-    /// Solves it, in as many subdomains as suit its size, and measures its errors.
+    /// Solves the scene, with a number of subdomains that suits its size, and measures its errors.
     pub fn measured(&self) -> Measured {
         figured(&self.model, |solution| self.errors(solution))
     }
@@ -200,7 +200,7 @@ pub fn measured(
     posed.measured()
 }
 
-/// Makes one group of others.
+/// Merges groups into one.
 pub fn gather(mesh: &mut Mesh, name: &str, of: &[&str]) {
     let groups: Vec<Group> = of.iter().map(|old| mesh.groups[*old].clone()).collect();
     let members = groups.iter().flat_map(|group| group.members.clone());
@@ -214,7 +214,7 @@ impl Family {
         (0..count).map(&self.run).collect()
     }
 
-    /// The gates that don't hold, in words.
+    /// The failed gates, in words.
     pub fn faults(&self, all: &[Measured]) -> Vec<String> {
         let last = &all[all.len() - 1];
         let value = |measured: &Measured, name: &str| {
@@ -239,7 +239,7 @@ impl Family {
 }
 
 impl Case {
-    /// Runs the meshes of the tests and fails where a gate isn't kept.
+    /// Runs the meshes of the tests and fails if a gate does.
     #[track_caller]
     pub fn check(&self) {
         let mut faults = Vec::new();

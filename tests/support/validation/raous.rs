@@ -1,4 +1,4 @@
-//! Raous' plate: a rigid floor below it, open, slipping and sticking.
+//! Raous' plate on a rigid floor, open, slipping and sticking.
 
 use contact_dd_partition::model::Model;
 

@@ -1,4 +1,4 @@
-//! Balls and a flat punch around an axis, on the half space.
+//! Axisymmetric balls and a flat punch, on the half space.
 
 use std::f64::consts::PI;
 
@@ -159,7 +159,7 @@ fn family(
     meshes: [usize; 2],
 ) -> Family {
     let sort = sort(name);
-    // Linear cells need twice as many for as many dofs.
+    // Linear cells need twice as many per side for equally many dofs.
     let finer = if sort.is_quadratic { 1 } else { 2 };
     Family {
         name: name.into(),

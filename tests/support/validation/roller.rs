@@ -53,7 +53,7 @@ const REFERENCE: [f64; 2] = [3590.30, 6.213_09];
 
 /// u_y of the block's middle (mm) and p₀ (MPa) with friction, likewise.
 const FRICTION_REFERENCE: [f64; 2] = [-1.269_378, 3631.97];
-/// The same as Code_Aster finds and as the benchmark has them, the stress in place of p₀.
+/// Both figures by Code_Aster and by the benchmark, which has the stress instead of p₀.
 const CODE_ASTER: [f64; 2] = [-1.270_310_97, 3_643.561_94];
 const NAFEMS: [f64; 2] = [-1.302_635_6, 3_542.687_88];
 
@@ -64,13 +64,13 @@ fn hertz() -> [f64; 2] {
     [2.0 * LOAD / (PI * half_width), half_width]
 }
 
-/// From 0 to 1, slowly at first.
+/// A graded coordinate from 0 to 1, slow at first.
 fn graded(by: f64, s: f64) -> f64 {
     (by * s).sinh() / by.sinh()
 }
 
-/// The quarter of a disc on the right of its lowest point, which is the origin: one piece `below`, up
-/// to 45° from there, one `beside` it, and one in the `middle`.
+/// The quarter of a disc to the right of its lowest point, which is the origin: one piece `below`, up to 45° from
+/// there, one `beside` it, and one in the `middle`.
 fn quarter(n: usize) -> Mesh {
     let arc = |part: f64| {
         let (sin, cos) = (FRAC_PI_4 * part).sin_cos();
@@ -96,7 +96,7 @@ fn quarter(n: usize) -> Mesh {
     blocks.glued(|_, _| true).mesh
 }
 
-/// The right half of the block, `n` cells each way.
+/// The right half of the block, `n` cells in each direction.
 fn block(n: usize) -> Mesh {
     Blocks::new()
         .mapped("block", [n, n], |[s, t]| {
@@ -144,7 +144,7 @@ fn figures(solution: &Solution) -> Vec<Figure> {
     ]
 }
 
-/// The scene, with these last lines of its contact, and after it.
+/// The scene, with these last lines of its contact and any after them.
 fn posed(sort: Sort, n: usize, rest: &str) -> Model {
     let mut cylinder = sort.of(&quarter(6 * n));
     gather(&mut cylinder, "cylinder", &["below", "beside", "middle"]);
@@ -214,7 +214,7 @@ pub fn case() -> Case {
     }
 }
 
-/// u_y of the block's middle (mm) and p₀ (MPa).
+/// u_y of the block's centre (mm) and p₀ (MPa).
 fn pressed(model: &Model, solution: &Solution) -> [f64; 2] {
     let all = model.mesh.points.iter().zip(&model.mesh.node_tags);
     let mut middles = all.filter(|(x, _)| **x == [0.0; 3]);

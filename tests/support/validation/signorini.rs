@@ -1,4 +1,4 @@
-//! A solution of Signorini's problem that was chosen first.
+//! A manufactured solution of Signorini's problem.
 
 use super::super::blocks::{Blocks, jittered};
 use super::super::scenes::model;
@@ -75,7 +75,7 @@ fn scene() -> String {
     )
 }
 
-/// The scene on n × n squares, or in irregular cells where these keep their order.
+/// The scene on n × n squares, or in irregular cells if these have the same order of convergence.
 pub fn posed(name: &str, n: usize) -> Posed {
     let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [-1.0, 0.0], [n, n]);
     let amount = if name == "quad8" { 0.0 } else { 0.1 };
@@ -109,7 +109,7 @@ fn of_contact(solution: &Solution, n: usize) -> Vec<Figure> {
     ]
 }
 
-/// The chosen solution in all kinds of cells.
+/// The manufactured solution in all kinds of cells.
 pub fn case() -> Case {
     let family = |name: &'static str| {
         let order = if sort(name).is_quadratic { 1.9 } else { 0.95 };

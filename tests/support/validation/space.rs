@@ -75,7 +75,7 @@ const TWO_BALLS: &str = "
     name = 'contact'
     sides = ['lower pole', 'upper pole']";
 
-/// An eighth of a ball of radius 8 on that of one of radius 5.
+/// An eighth of a ball of radius 8 on one of radius 5.
 pub fn two_balls(kind: ElementKind, level: usize) -> Model {
     let mesh = || (example::find("sphere").unwrap().mesh_of(kind, level as u32)).unwrap();
     let upper = named(mesh(), "upper");
@@ -92,7 +92,7 @@ fn solved_balls(kind: ElementKind, level: usize) -> Measured {
     })
 }
 
-/// By the radius R and the stiffness E* of a quarter of a contact.
+/// Errors against Hertz for the radius R and the stiffness E*, from a quarter of a contact.
 fn against_hertz(points: &[ContactPoint], radius: f64, stiffness: f64) -> Vec<Figure> {
     let force: f64 = 4.0 * points.iter().map(|point| point.force).sum::<f64>();
     let radius = (0.75 * force * radius / stiffness).cbrt();
@@ -186,10 +186,10 @@ const SPHERE: &str = "
     sides = ['inner z1', 'outer z0']
     gap = 0.0";
 
-/// Radii of the sphere: inside, where the layers touch, outside.
+/// Radii of the sphere: inner, at the interface of the layers, outer.
 const RADII: [f64; 3] = [1.0, 1.5, 2.0];
 
-/// A layer between the planes x = 0, y = 0, x = z and y = z.
+/// A layer bounded by the planes x = 0, y = 0, x = z and y = z.
 fn layer(name: &str, kind: ElementKind, n: usize, deep: usize, [from, to]: [f64; 2]) -> Mesh {
     solid(name, kind, [n, n, deep], move |[s, t, r]| {
         let direction = [(FRAC_PI_4 * s).tan(), (FRAC_PI_4 * t).tan(), 1.0];

@@ -1,4 +1,4 @@
-//! Fields that every mesh has exactly: uniform compression through contacts.
+//! Fields that every mesh represents exactly: uniform compression through contacts.
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::example;
@@ -66,7 +66,7 @@ fn gates() -> Vec<Gate> {
     ]
 }
 
-/// The patch test, matching nodes.
+/// The patch test with matching nodes.
 pub fn patch() -> Case {
     let scene = "
         plane = 'strain'
@@ -107,7 +107,7 @@ pub fn patch() -> Case {
     }
 }
 
-/// The patch test, nodes that don't match, every kind of cells on every other.
+/// The patch test with non-matching nodes, every kind of cells on every other.
 pub fn uneven() -> Case {
     const ANGLE: f64 = 0.4;
     let family = |lower: &'static str, upper: &'static str| Family {

@@ -6,24 +6,24 @@ use std::fmt::{self, Display, Formatter};
 use super::super::trial::Verdict;
 use super::{Key, Record, Row};
 
-/// Times as many sweeps or linear solves as before that are more, if they are so many more at least.
+/// Ratio of sweeps or linear solves to the earlier ones, and least difference, from which on they count as more.
 const TIMES_AS_MANY: f64 = 1.5;
 const MORE: u64 = 5;
 /// Target of the backward error.
 const BACKWARD_ERROR: f64 = 1e-14;
 
-/// A scene that isn't what it was: which, and the words that say so.
+/// A scene whose result changed: its key, and a description.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
     pub key: Key,
     pub words: String,
 }
 
-/// Sums over the scenes of a suite, an operator and a law that both records have.
+/// Sums over the scenes of a suite, an operator and a law in both records.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sums {
     scenes: usize,
-    /// Before and now.
+    /// Numbers before and now.
     right: [usize; 2],
     unclear: [usize; 2],
     solves: [u64; 2],
@@ -35,7 +35,7 @@ struct Sums {
 pub struct Comparison {
     pub worse: Vec<Change>,
     pub better: Vec<Change>,
-    /// Scenes that the new record lacks, and that it alone has.
+    /// Scenes missing in the new record, and scenes only there.
     pub missing: Vec<Key>,
     pub added: usize,
     sums: BTreeMap<[String; 3], Sums>,
@@ -58,7 +58,7 @@ impl Comparison {
         comparison
     }
 
-    /// True if any scene is worse than it was, or isn't there any more.
+    /// True if any scene is worse than before, or missing.
     pub fn is_worse(&self) -> bool {
         !(self.worse.is_empty() && self.missing.is_empty())
     }
@@ -95,7 +95,7 @@ fn badness(verdict: Verdict) -> usize {
     }
 }
 
-/// In what one row falls short of another; the words name the better value first.
+/// The respects in which one row falls short of another; the words name the better value first.
 fn falls_short(good: &Row, bad: &Row) -> Vec<String> {
     let mut words = Vec::new();
     if badness(bad.verdict) > badness(good.verdict) {
@@ -108,7 +108,7 @@ fn falls_short(good: &Row, bad: &Row) -> Vec<String> {
             exit(bad)
         ));
     } else if good.verdict != bad.verdict {
-        // Numbers of an answer that is worse say nothing against it.
+        // The counts of a worse answer don't matter.
         return words;
     }
     if let Some((good, bad)) = good.counts.zip(bad.counts) {
@@ -119,7 +119,7 @@ fn falls_short(good: &Row, bad: &Row) -> Vec<String> {
             }
         }
     }
-    // A number that isn't finite is no number in a report.
+    // A report leaves out numbers that aren't finite.
     let reported = |row: &Row| row.counts.map(|_| row.backward.unwrap_or(f64::INFINITY));
     if let Some((good, bad)) = reported(good).zip(reported(bad))
         && good <= BACKWARD_ERROR

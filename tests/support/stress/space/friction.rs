@@ -1,4 +1,4 @@
-//! Scenes in space with friction, whose loads turn and reverse.
+//! Scenes in space with friction, whose loads rotate and reverse.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,7 +6,7 @@ use super::super::draft::Draft;
 use super::super::friction::frictional;
 use super::super::{Family, matching};
 
-/// The families of scenes in space with friction: those without, pushed about, and one that is driven.
+/// The families of scenes in space with friction: the frictionless ones, pushed around, and a driven one.
 pub const FAMILIES: [Family; 7] = [
     frictional(matching("stack in space", stack)),
     frictional(matching("packing in space", packing)),
@@ -48,8 +48,7 @@ fn indenter(draft: &mut Draft) {
     pushed_about(draft);
 }
 
-/// Tractions along a side that is pressed, in none or up to five load steps, from one to the next of which they turn or
-/// reverse.
+/// Adds tractions along a pressed side, in none or up to five load steps, between which they rotate or reverse.
 fn pushed_about(draft: &mut Draft) {
     let at = draft.random.below(draft.pressed.len());
     let side = draft.pressed[at].clone();
@@ -86,8 +85,8 @@ fn pushed_about(draft: &mut Draft) {
     }
 }
 
-/// A block on a base, pressed, its upper side moved about further than it sticks, and turned; or it is pressed by that
-/// side, too.
+/// A block on a base, pressed, its upper side moved around further than it sticks, and rotated; or it is pressed by
+/// that side, too.
 fn driven(draft: &mut Draft) {
     let height = draft.random.magnitude(-1.0, 0.0);
     let n = draft.counts();
@@ -104,7 +103,7 @@ fn driven(draft: &mut Draft) {
     draft.hold_all("base z0");
     let size = draft.compression() * draft.random.magnitude(-1.0, 1.0);
     let pressed = draft.compression() * draft.random.magnitude(-1.0, 0.5);
-    // Prescribed along x, y and z, which are askew.
+    // Displacements are prescribed along x, y and z, which are tilted against the bodies' axes.
     let by_load = !draft.tilted && draft.random.chance(0.5);
     if by_load {
         draft.some_pressure("b z1");
