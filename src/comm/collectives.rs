@@ -92,9 +92,9 @@ impl Comm {
         }
     }
 
-    /// Brings a value along each of `ways`, from one rank to another, in their order. Collective.
+    /// Brings a value along each of `routes`, from one rank to another, in their order. Collective.
     ///
-    /// `make(i)` is called where way `i` begins, `take(i, value)` where it ends.
+    /// `make(i)` is called where route `i` begins, `take(i, value)` where it ends.
     pub fn route<T: Serialize + DeserializeOwned>(
         &self,
         routes: impl IntoIterator<Item = (usize, usize)>,
@@ -111,10 +111,10 @@ impl Comm {
         }
     }
 
-    /// Brings a list along each of `ways`, from one rank to another, all between two ranks in one message; returns those
-    /// that end here, by the number of their way. Collective.
+    /// Brings a list along each of `routes`, from one rank to another, all between two ranks in one message; returns those
+    /// that end here, by the number of their route. Collective.
     ///
-    /// `make(i)` is called where way `i` begins.
+    /// `make(i)` is called where route `i` begins.
     pub fn route_lists(
         &self,
         routes: &[(usize, usize)],
