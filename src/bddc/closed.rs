@@ -83,12 +83,8 @@ impl GroupBetween {
 
     /// The ties between unknowns due to closed conditions.
     pub fn ties(&self) -> Ties {
-        Ties {
-            direct: (self.replaced.iter())
-                .map(|replaced| (replaced.dof, replaced.staying.clone()))
-                .collect(),
-            resolved: BTreeMap::new(),
-        }
+        let replaced = self.replaced.iter();
+        Ties::new(replaced.map(|one| (one.dof, one.staying.clone())).collect())
     }
 
     /// The constants of tied unknowns for these `values` of closed limits, and of the jumps of ties after them.
@@ -145,6 +141,14 @@ pub struct Ties {
 type Terms = Vec<(InterfaceDof, f64)>;
 
 impl Ties {
+    /// The ties of unknowns to what is in their place, but for constants; not yet resolved.
+    pub fn new(direct: Vec<(InterfaceDof, Terms)>) -> Self {
+        Self {
+            direct,
+            resolved: BTreeMap::new(),
+        }
+    }
+
     /// The ties of all groups, in their order.
     pub fn join(all: Vec<Self>) -> Self {
         let mut joined = Self::default();

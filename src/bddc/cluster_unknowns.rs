@@ -100,3 +100,63 @@ impl ClusterUnknowns {
         (all, partial)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dof(node: u32) -> InterfaceDof {
+        InterfaceDof { node, axis: 0 }
+    }
+
+    /// All unknowns under `ties`, each with its clusters, sorted anew.
+    fn sorted_anew(unknowns: &ClusterUnknowns, ties: &Ties) -> ByClusters {
+        let mut clusters: BTreeMap<InterfaceDof, BTreeSet<MergeRootId>> = BTreeMap::new();
+        for (c, list) in unknowns.dofs.each() {
+            for &dof in list {
+                for (dof, _) in ties.terms(&dof) {
+                    clusters.entry(dof).or_default().insert(c);
+                }
+            }
+        }
+        let mut all = ByClusters::new();
+        for (dof, clusters) in clusters {
+            let clusters = clusters.into_iter().collect();
+            all.entry(clusters).or_default().push(dof);
+        }
+        all
+    }
+
+    #[test]
+    fn few_ties_leave_what_sorting_all_unknowns_anew_does() {
+        let list = |c: u32| (3 * c..3 * c + 6).map(dof).collect();
+        let unknowns = ClusterUnknowns::new((0..5).map(list).collect());
+        let ties: [&[(u32, &[u32])]; 8] = [
+            &[],
+            &[(4, &[0, 1])],
+            &[(4, &[9, 7]), (10, &[7])],
+            &[(0, &[1])],
+            &[(3, &[4])],
+            // What stays is tied by a group above, and in no cluster.
+            &[(3, &[5]), (5, &[12])],
+            &[(2, &[40])],
+            &[(3, &[]), (9, &[16]), (10, &[16]), (11, &[16])],
+        ];
+        for direct in ties {
+            let terms = |staying: &[u32]| staying.iter().map(|&at| (dof(at), 0.5)).collect();
+            let direct = direct
+                .iter()
+                .map(|&(tied, staying)| (dof(tied), terms(staying)));
+            let ties = Ties::join(vec![Ties::new(direct.collect())]);
+            let (all, partial) = unknowns.by_clusters_under(&ties);
+            assert_eq!(all, sorted_anew(&unknowns, &ties));
+            for (clusters, of_class) in &all {
+                let has = |c: &MergeRootId, at| unknowns.dofs[*c].contains(at);
+                let whole = of_class
+                    .iter()
+                    .all(|at| clusters.iter().all(|c| has(c, at)));
+                assert_eq!(partial.contains(clusters), !whole, "{clusters:?}");
+            }
+        }
+    }
+}
