@@ -227,8 +227,8 @@ fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
     let mean = centres().fold([0.0; 3], |sum, c| [0, 1, 2].map(|k| sum[k] + c[k] / count));
     let mut spread = nalgebra::Matrix3::<f32>::zeros();
     for centre in centres() {
-        let choice = nalgebra::Vector3::from_fn(|k, _| centre[k] - mean[k]);
-        spread += choice * choice.transpose();
+        let offset = nalgebra::Vector3::from_fn(|k, _| centre[k] - mean[k]);
+        spread += offset * offset.transpose();
     }
     let axes = spread.symmetric_eigen().eigenvectors;
     let in_space = axes.column_iter().map(|axis| [axis[0], axis[1], axis[2]]);

@@ -41,12 +41,12 @@ pub(super) fn adjust(
                 break;
             }
         }
-        let offsets = before.iter().zip(&bodies.mesh.points);
-        let offsets = offsets.map(|(before, after)| length(advance(*after, -1.0, *before)));
-        let (moved, farthest) = offsets
-            .filter(|&offset| offset > 0.0)
-            .fold((0, 0.0), |(n, most), offset| {
-                (n + 1, f64::max(most, offset))
+        let distances = before.iter().zip(&bodies.mesh.points);
+        let distances = distances.map(|(before, after)| length(advance(*after, -1.0, *before)));
+        let (moved, farthest) = distances
+            .filter(|&distance| distance > 0.0)
+            .fold((0, 0.0), |(n, most), distance| {
+                (n + 1, f64::max(most, distance))
             });
         if moved > 0 {
             warnings.push(format!(

@@ -88,7 +88,7 @@ fn spread(i: usize, attempt: usize) -> f64 {
 
 /// Jumps of all limits, then their forces, for a unit of each independent jump and of the force of each dependent row,
 /// and both with all of these at 0; in the scale of energies.
-fn system_of_ways(
+fn system_of_gaps(
     problem: &FrictionProblem<'_>,
     scale: &[f64],
     bounds: &[f64],
@@ -128,7 +128,7 @@ impl Path {
         let bounds: Vec<f64> = (contact.bounds.iter().zip(&scale))
             .map(|(bound, scale)| bound * scale)
             .collect();
-        let (start, at_start) = system_of_ways(problem, &scale, &bounds);
+        let (start, at_start) = system_of_gaps(problem, &scale, &bounds);
         let unit = largest(&at_start[count..]).max(f64::MIN_POSITIVE);
         let mut path = Self {
             responses: Responses::new(Mat::new()),
