@@ -1,9 +1,9 @@
-//! An interface solver that scales: conjugate gradients between clusters, preconditioned by balancing domain
-//! decomposition by constraints (BDDC).
+//! Scalable interface solver: conjugate gradients on the unknowns shared by clusters, preconditioned by balancing
+//! domain decomposition by constraints (BDDC).
 //!
-//! The clusters are those of the problem file. What they share is sorted into classes; of each class some
-//! combinations of unknowns, the coarse ones, are the same in all clusters, the others are solved for in
-//! every cluster by itself. Contact conditions between clusters are tied where they are closed.
+//! The clusters are those of the problem file. Unknowns shared by the same clusters form a class. Of each class, some
+//! linear combinations, the coarse unknowns, are equal in all of its clusters; the others are solved for in every
+//! cluster independently. Contact constraints between clusters are ties where they are closed.
 
 mod bases;
 mod between;
@@ -47,12 +47,12 @@ use crate::error::Failure;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 
-/// Clusters and what is between them.
+/// The clusters and the contact groups between them.
 #[derive(Debug)]
 pub struct Bddc {
     /// The owner of every cluster.
     owners: Numbered<MergeRootId, usize>,
-    /// Their unknowns, on all ranks.
+    /// The unknowns of all clusters, on all ranks.
     unknowns: ClusterUnknowns,
     /// The contact groups between clusters.
     between: Vec<Between>,
@@ -64,7 +64,7 @@ pub struct Bddc {
     level: PreconditionerLevel,
     /// The clusters of this rank, in the bases of their classes.
     locals: OnMergeRoots<Local>,
-    /// The clusters whose S isn't any more what their part of the preconditioner was made of, on all ranks.
+    /// Flags, on all ranks, of the clusters whose S has changed since their part of the preconditioner was computed.
     stale: Numbered<MergeRootId, bool>,
     coarse: Coarse,
     /// Number of coarse unknowns; on the root.
@@ -72,10 +72,10 @@ pub struct Bddc {
 }
 
 impl Bddc {
-    /// Between these `clusters`, by node; nothing is factorized yet. Collective.
+    /// The solver for these `clusters`, by node; nothing is factorized yet. Collective.
     ///
     /// # Errors
-    /// A contact point that nothing can be replaced for.
+    /// A contact point none of whose unknowns can be replaced by its jump.
     pub fn new(
         context: &Context<'_>,
         clusters: &OnTreeNodes<ClusterSchur>,
@@ -116,10 +116,10 @@ impl Bddc {
         })
     }
 
-    /// Fixes which conditions of the groups between clusters are `open`. Collective.
+    /// Fixes the set of `open` constraints of the groups between clusters. Collective.
     ///
     /// # Errors
-    /// A closed jump that replaces nothing.
+    /// A closed jump that replaces no unknown.
     fn fix_groups(
         &mut self,
         context: &Context<'_>,
@@ -139,8 +139,8 @@ impl Bddc {
         context.comm.agree(fixed)
     }
 
-    /// The classes whose basis is made anew: those that aren't as `before`, and, where they are to be `renewed`, those of
-    /// clusters that have `changed`.
+    /// The classes whose basis is recomputed: those that differ from the ones `before`, and, if the preconditioner is
+    /// to be `renewed`, those of clusters that have `changed`.
     fn made(
         &self,
         before: &Classes,
@@ -155,7 +155,7 @@ impl Bddc {
         self.classes.list.iter().map(made).collect()
     }
 
-    /// Replaces what clusters share.
+    /// Replaces the data of clusters on the unknowns that they share.
     fn refresh(&mut self, shared: OnMergeRoots<Shared>) {
         for (c, shared) in shared {
             let local = self.locals.entry(c);
@@ -163,12 +163,12 @@ impl Bddc {
         }
     }
 
-    /// Fixes which conditions are `open`, for `clusters` some of which were `touched` by that, with a `spring`,
-    /// relative to the diagonal, on all unknowns of conditions between them. The preconditioner is made anew where clusters
-    /// share other unknowns than before, and wherever S has changed if it is to be `renewed`. Collective.
+    /// Fixes the set of `open` constraints; `touched` are the clusters that this affects. A `spring`, relative to the
+    /// diagonal, acts on all unknowns of constraints between clusters. The preconditioner is recomputed where clusters
+    /// share other unknowns than before, and, if it is to be `renewed`, wherever S has changed. Collective.
     ///
     /// # Errors
-    /// A part of the scene can move.
+    /// A part of the scene has a free rigid-body motion.
     pub fn fix(
         &mut self,
         context: &Context<'_>,
@@ -230,11 +230,11 @@ impl Bddc {
         self.factorize_coarse(context, parts, &changed, &made)
     }
 
-    /// The factor of the coarse problem, made anew where clusters have `changed` or classes were `made`, by the `parts` of
-    /// these clusters. Collective.
+    /// The factor of the coarse problem, recomputed from the `parts` of clusters that have `changed` and of classes
+    /// that were `made` anew. Collective.
     ///
     /// # Errors
-    /// A part of the scene can move.
+    /// A part of the scene has a free rigid-body motion.
     fn factorize_coarse(
         &mut self,
         context: &Context<'_>,
@@ -251,8 +251,8 @@ impl Bddc {
         Ok(())
     }
 
-    /// Finds the classes anew; returns those before, and the clusters that share other unknowns than before, or, where they
-    /// are to be `renewed`, were `touched`. Collective.
+    /// Sorts the shared unknowns into classes again. Returns the classes before, and flags of the clusters that share
+    /// other unknowns than before or, if the preconditioner is to be `renewed`, were `touched`. Collective.
     fn classify(
         &mut self,
         context: &Context<'_>,
@@ -278,8 +278,8 @@ impl Bddc {
         (std::mem::replace(&mut self.classes, classes), changed)
     }
 
-    /// Improves a preconditioner that is too bad, or can't be made: classes are looked into, and where that
-    /// was in vain it is to be held, and as good as it is. Returns whether there was anything left to do.
+    /// Improves a preconditioner that converges too slowly or can't be factorized: first by more coarse unknowns in the
+    /// classes; once that is exhausted, by keeping it as good as it can be. Returns false if no improvement is left.
     pub fn look_deeper(&mut self) -> bool {
         let Some(deeper) = self.level.next() else {
             return false;
@@ -289,7 +289,7 @@ impl Bddc {
         true
     }
 
-    /// True if the preconditioner can be made better if it is too bad.
+    /// True if slow convergence may still be cured by a better preconditioner.
     pub fn is_judged(&self) -> bool {
         matches!(
             self.level,
@@ -297,23 +297,23 @@ impl Bddc {
         )
     }
 
-    /// The smallest pivot of the coarse problem, of this rank, relative to its diagonal entry.
+    /// The smallest pivot of the coarse problem on this rank, relative to its diagonal entry.
     pub fn coarse_pivot(&self) -> f64 {
         self.coarse.smallest_pivot()
     }
 
-    /// The smallest pivot of this rank relative to its diagonal entry, those of the coarse problem among them.
+    /// The smallest pivot on this rank, relative to its diagonal entry, including the coarse problem.
     pub fn smallest_pivot(&self) -> f64 {
         let pivots = (self.locals.values()).map(|local| local.shared.smallest_pivot);
         pivots.fold(self.coarse_pivot(), f64::min)
     }
 
-    /// True if S of a cluster isn't any more what the preconditioner was made of; the same on all ranks.
+    /// True if S of any cluster has changed since the preconditioner was computed; the same on all ranks.
     pub fn is_stale(&self) -> bool {
         self.stale.values().contains(&true)
     }
 
-    /// Open conditions of contact group g of this rank, between clusters.
+    /// Open constraints of contact group g of this rank, which lies between clusters.
     pub fn open(&self, g: GroupId) -> Option<&Vec<bool>> {
         self.groups.get(&g).map(|group| &group.open)
     }

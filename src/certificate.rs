@@ -16,14 +16,14 @@ use self::most::Most;
 use self::scales::{Scales, SlipScales};
 use crate::vector::{larger, largest};
 
-/// Resultant of forces, relative to its terms, below which there is no load.
+/// Resultant of forces, relative to the sum of their magnitudes, below which there is no load.
 const NO_LOAD: f64 = 1e-12;
 
-/// Moments, relative to forces at the rim of the scene, below which they count as zero.
+/// Moments, relative to the forces times the size of the scene, below which they count as zero.
 const SMALL_MOMENT: f64 = 1e-3;
 
-/// Bounds of friction, relative to contact forces and to the terms of nodal forces, below which friction is known less
-/// accurately than these.
+/// Friction bounds, relative to contact forces and to the terms of nodal forces, below which the friction check is less
+/// accurate than the other checks.
 const SMALL_BOUND: f64 = 1e-3;
 const BOUND_OF_TERMS: f64 = 1e-6;
 
@@ -118,8 +118,8 @@ impl Certificate {
 }
 
 /// The certificate of the whole solution from the checks of blocks, in their order, and the largest values `elsewhere`:
-/// at contact points and at shared nodes; in a plane state or in space. Values that vanish against the scales of the
-/// load steps `before` are measured by these scales.
+/// at contact points and at shared nodes; in a plane state or in space. Quantities that vanish against the scales of
+/// the load steps `before` are measured by these scales.
 pub fn certificate(
     checks: &[BlockCheck],
     elsewhere: Most,
@@ -132,7 +132,7 @@ pub fn certificate(
     let scales = Scales::of(&most);
     before.replace_nothing(&mut most);
     if most.scale < NO_LOAD * most.rest && most.load < f64::EPSILON * most.rest {
-        // Bodies that only came to rest: residuals and forces are round-off of their displacement.
+        // Bodies moved without load: residuals and forces are round-off of their displacement.
         most.scale = most.rest;
     }
     let force_scale = larger(most.scale, most.contact_force);
@@ -188,7 +188,7 @@ fn balances(external: &External, scale: f64) -> [f64; 2] {
         true => 1.0,
         false => external.force_scale / scale,
     };
-    // Where supports carry the load at each of their own nodes, moments are round-off only.
+    // Where each node's load is carried by a support at the same node, moments are round-off only.
     let moment_scale = larger(
         external.moment_scale,
         SMALL_MOMENT * external.force_scale * external.reach,

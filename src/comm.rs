@@ -1,7 +1,7 @@
-//! Messages between ranks. The only importer of `mpi`.
+//! Messages between ranks; the only module that uses `mpi`.
 //!
-//! Ranks agree on errors at the end of every phase: no rank leaves between matching calls, so no
-//! rank waits for one that is gone.
+//! Ranks agree on errors at the end of every phase. No rank returns between two matching calls, so that none waits
+//! forever for a message.
 
 pub mod clock;
 mod collectives;
@@ -35,7 +35,7 @@ use crate::error::Failure;
 /// The rank that assembles S_0 and writes the results.
 pub const ROOT: usize = 0;
 
-/// Most bytes in one piece of a message; MPI counts with 32 bits.
+/// Most bytes in one piece of a message, as MPI counts in 32 bits.
 const PIECE: usize = 1 << 30;
 
 /// All ranks of a run.
@@ -61,7 +61,7 @@ impl Comm {
         self.size
     }
 
-    /// The name of the host that this rank is on.
+    /// The name of this rank's host.
     pub fn host_name(&self) -> String {
         uname().nodename().to_string_lossy().into_owned()
     }
@@ -71,22 +71,23 @@ impl Comm {
         self.rank() == ROOT
     }
 
-    /// True if messages go through MPI, which a single rank doesn't need.
+    /// True if messages go through MPI; a single rank needs none.
     pub fn has_mpi(&self) -> bool {
         self.world.is_some()
     }
 
-    /// Number of hosts that they run on.
+    /// Number of hosts that the ranks run on.
     pub fn hosts(&self) -> usize {
         self.hosts
     }
 
-    /// Makes the failure of the lowest failing rank the result of all. Collective.
+    /// Turns the failure of any rank into that of all. Collective.
     ///
-    /// The failure that all ranks agree on; its message ends with the rank and the phase where others have no failure.
+    /// Where several ranks fail, the failure of the lowest one counts; its message ends with the rank and the phase if
+    /// other ranks haven't failed.
     ///
     /// # Errors
-    /// The failure that the ranks agreed on.
+    /// The failure of the lowest failing rank.
     pub fn agree<T>(&self, result: Result<T, Failure>) -> Result<T, Failure> {
         #[cfg(debug_assertions)]
         let result = on_purpose::failure(current_phase()).map_or(result, Err);
@@ -116,7 +117,7 @@ impl Comm {
         self.is_any(is_asked_to_stop())
     }
 
-    /// True if it is so on any rank. Collective.
+    /// True if `mine` is true on any rank. Collective.
     pub fn is_any(&self, mine: bool) -> bool {
         self.all_reduce(i32::from(mine), SystemOperation::max()) != 0
     }
@@ -140,12 +141,12 @@ impl Comm {
         all
     }
 
-    /// Hops of a message from one rank to all, or from all to all.
+    /// Number of consecutive messages in a broadcast, or in a reduction over all ranks.
     fn hops(&self) -> u32 {
         self.size.next_power_of_two().trailing_zeros()
     }
 
-    /// A rank to send to or to receive from.
+    /// MPI's handle of a rank, to send to or to receive from.
     #[expect(clippy::expect_used, reason = "a single rank sends itself nothing")]
     fn process(&self, rank: usize) -> Process<'_> {
         let world = self.world.as_ref();
@@ -158,7 +159,7 @@ impl Comm {
         decision
     }
 
-    /// Gives all ranks the root's `value`. Collective.
+    /// Sends the root's `value` to all ranks. Collective.
     pub fn broadcast<T: Serialize + DeserializeOwned>(&self, value: &mut T) {
         self.broadcast_from(ROOT, value);
     }
@@ -193,17 +194,17 @@ impl Comm {
         self.bytes_sent.get()
     }
 
-    /// Number of messages that it has sent, broadcasts counted once.
+    /// Number of messages that this rank has sent, broadcasts counted once.
     pub fn messages_sent(&self) -> u64 {
         self.messages_sent.get()
     }
 
-    /// The longest chain of messages, each sent after the one before it had come, that led here.
+    /// Length of the longest chain of messages up to now, each sent after the one before it had arrived.
     pub fn longest_chain(&self) -> u64 {
         self.clock.chain()
     }
 
-    /// Phase of the run that this rank is in.
+    /// Time that this rank has spent, by kind.
     pub fn times(&self) -> Times {
         self.clock.times()
     }
@@ -225,7 +226,7 @@ impl Comm {
             .unwrap_or_else(|why| self.give_up(&format!("of rank {from} can't be read"), &why))
     }
 
-    /// The other ranks wait for what can't be had: no error could be agreed on.
+    /// Aborts at a malformed message: the other ranks wait for the rest of it, so that no error could be agreed on.
     #[expect(clippy::panic, reason = "both ends are the same program")]
     fn give_up(&self, what: &str, why: &postcard::Error) -> ! {
         panic!("a message {what}: {why}");
@@ -257,7 +258,7 @@ impl Comm {
     }
 }
 
-/// Header of a message: its length, and the sender's stamp.
+/// Header of a message: its length, and the sender's clock.
 #[derive(Clone, Copy, Debug, Default)]
 struct Head([u64; 3]);
 
@@ -276,7 +277,7 @@ impl Head {
     }
 }
 
-/// The value that `bytes` stand for, all of them, in the encoding of postcard.
+/// The value encoded by `bytes`, all of them, in postcard's format.
 fn read<T: DeserializeOwned>(bytes: &[u8]) -> postcard::Result<T> {
     match postcard::take_from_bytes(bytes)? {
         (value, []) => Ok(value),

@@ -1,4 +1,4 @@
-//! Assembling and condensing the blocks of this rank.
+//! Assembly and condensation of the blocks of this rank.
 
 pub mod blocks;
 pub mod clusters;
@@ -29,7 +29,8 @@ use crate::schur::factor::FactorError;
 use crate::schur::local::LocalSchur;
 use crate::schur::substitution::Replaced;
 
-/// Least part of the largest by which the directions that are held resist every rigid motion of a block, squared, if they hold it.
+/// Smallest squared resistance of the held directions to a rigid motion of a block, relative to the largest, that holds
+/// the block.
 const HELD: f64 = 1e-12;
 
 /// The data of the condensation of any block.
@@ -39,15 +40,16 @@ pub struct Condensation<'a> {
     pub context: Context<'a>,
     /// Loads on the blocks of this rank in the first load step.
     pub loads: &'a Loads,
-    /// Springs that hold what nothing else does.
+    /// Springs that fix the free rigid-body motions.
     pub fixing_dofs: &'a [FixingDof],
 }
 
 impl Condensation<'_> {
-    /// Assembles, factorizes and condenses block `number`; what stays behind goes into `condensed`.
+    /// Assembles, factorizes and condenses block `number`; its factor, which back-substitution needs, goes into
+    /// `condensed`.
     ///
     /// # Errors
-    /// A block that can move although its boundary is held, or that is too large.
+    /// A block with a free rigid-body motion although its boundary is held, or a block that is too large.
     pub fn condense(
         &self,
         number: BlockId,
@@ -93,10 +95,10 @@ impl Condensation<'_> {
         Ok(of_block)
     }
 
-    /// Traces that the jumps of the contact group at node v replace; none without a group.
+    /// Traces that the jumps of the contact group at node v replace; none where the node has no group.
     ///
     /// # Errors
-    /// A contact point that nothing can be replaced for.
+    /// A contact point none of whose unknowns can be replaced by its jump.
     pub fn replaced(&self, v: TreeNodeId) -> Result<Vec<Replaced>, Failure> {
         let Context { plan, groups, .. } = self.context;
         let Some((g, group)) = plan.group_of(v).and_then(|g| Some((g, groups.get(&g)?))) else {
@@ -106,7 +108,7 @@ impl Condensation<'_> {
     }
 }
 
-/// The fixing dofs that lie in a block: node and component.
+/// The fixing dofs of a block: node and component.
 fn fixing_dofs_of(number: BlockId, all: &[FixingDof]) -> Vec<(u32, usize)> {
     let own = all
         .iter()
@@ -114,8 +116,8 @@ fn fixing_dofs_of(number: BlockId, all: &[FixingDof]) -> Vec<(u32, usize)> {
     own.map(|dof| (dof.node, dof.component as usize)).collect()
 }
 
-/// True if what holds the boundary of a block holds it wholly: its cells hang together across facets, and no rigid
-/// motion leaves its nodes on Γ, its supports and its `fixing_dofs` where they are.
+/// True if fixing the boundary fixes the whole block: its cells are connected across facets, and every rigid motion
+/// moves a node on Γ, a support or one of the `fixing_dofs`.
 fn is_held(block: &Block, fixing_dofs: &[(u32, usize)]) -> bool {
     let mesh = Mesh {
         dim: block.dim,

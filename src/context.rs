@@ -16,12 +16,13 @@ use crate::plan::Plan;
 
 /// The receiver of progress reports.
 pub trait Listener {
-    /// So much of the phase, or of a part of it such as a linear system, is done: 0, with which a part begins, to 1.
+    /// Reports the `share` done of the phase, or of a part of it such as a linear system: from 0, at the start of a
+    /// part, to 1.
     fn done(&self, share: f64);
 }
 
-/// Ratio of the stiffnesses of materials from which round-off of the stiffest, in the sums over a mesh, may be more than
-/// the softest.
+/// Ratio of the largest to the smallest stiffness of materials from which on the smallest may be below the round-off of
+/// the assembled largest.
 const INDISTINCT: f64 = 1e11;
 
 /// Data that every phase of a run works on.
@@ -43,12 +44,12 @@ pub struct Context<'a> {
     pub listener: &'a dyn Listener,
 }
 
-/// A place on the way through the load steps.
+/// A point of the load path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadPoint {
     /// The load step.
     pub step: usize,
-    /// Share of the way from the loads of the step before, none before the first, to those of the step.
+    /// Fraction of the change from the loads of the step before, none before the first, to those of this step.
     pub part: f64,
 }
 
@@ -75,7 +76,7 @@ impl Context<'_> {
         if moment.part < 1.0 {
             let before = (moment.step.checked_sub(1)).map(|step| self.loads_of_step(step));
             for (b, loads) in &mut loads.blocks {
-                // Nothing acts on what isn't there, whatever did before.
+                // Loads of the step before don't act on a body that is now absent.
                 if self.catalog.bodies[self.catalog.body_of(*b)].is_absent {
                     continue;
                 }
@@ -103,8 +104,9 @@ impl Context<'_> {
         }
     }
 
-    /// The failure of a factorization with a pivot that isn't positive: either something moves, or what holds it is less than
-    /// round-off. Where the materials' stiffnesses differ by more than digits tell, these are named instead.
+    /// The failure of a factorization at a non-positive pivot: either a part is free to move, or its support is weaker
+    /// than round-off. Where the ratio of the materials' stiffnesses exceeds double precision, the message names these
+    /// materials instead.
     pub fn of_pivot(&self, mut failure: Failure) -> Failure {
         let all = || self.catalog.materials.iter();
         let soft = all().map(|m| (m.stiffness.smallest(), &m.name));
@@ -118,7 +120,7 @@ impl Context<'_> {
         if failure.kind != FailureKind::IllPosed {
             return failure;
         }
-        // NaN doesn't count as small.
+        // A NaN ratio doesn't count as small.
         if ratio < INDISTINCT {
             failure
                 .message
@@ -135,7 +137,7 @@ impl Context<'_> {
         ))
     }
 
-    /// Contact point j in words: its node, its contact, the bodies that meet there, and where.
+    /// Description of contact point j: its node, its contact, the bodies in contact, and its position.
     pub fn point_name(&self, j: u32) -> String {
         let Catalog {
             points,
@@ -165,7 +167,7 @@ impl Context<'_> {
         )
     }
 
-    /// A failure that says in which load step it was.
+    /// The failure with the name of its load step added.
     pub fn in_step(&self, mut failure: Failure, k: usize) -> Failure {
         if let Some(step) = self.catalog.steps.get(k) {
             failure.message = format!("step '{}': {}", step.name, failure.message);

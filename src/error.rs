@@ -23,13 +23,13 @@ pub enum FailureKind {
     Interrupted = 6,
 }
 
-/// A failed run: one message, one exit code.
+/// A failed run: message and exit code.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 #[error("{message}")]
 pub struct Failure {
     /// The kind of the failure, which decides the exit code.
     pub kind: FailureKind,
-    /// Message: the place, and what was expected.
+    /// The message: where the failure is, and what was expected.
     pub message: String,
 }
 
@@ -59,8 +59,8 @@ impl Failure {
         Self::new(FailureKind::Interrupted, message)
     }
 
-    /// The failure with the place where a run that was asked to stop goes on, after `k` of `all` load steps whose
-    /// results are in `kept`; any other failure as it is.
+    /// The failure of an interrupted run, extended by where a restart continues: after `k` of `all` load steps, whose
+    /// results are in `kept`. Any other failure is unchanged.
     pub fn after(mut self, k: usize, all: usize, kept: &Path) -> Self {
         if self.kind == FailureKind::Interrupted {
             let kept = kept.display();

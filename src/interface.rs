@@ -1,4 +1,4 @@
-//! The interface problem S_0 U + S_CON(U) = F, (14), on Γ: its numbering, S_0, S_CON, and what solves it.
+//! The interface problem S_0 U + S_CON(U) = F, (14), on Γ: its numbering, S_0, S_CON, and its solvers.
 
 pub mod coupled;
 pub mod numbering;

@@ -20,13 +20,13 @@ fn main() -> ExitCode {
         return code;
     }
     if comm::is_launched() {
-        // Launchers show ranks a terminal whatever their output goes to.
+        // Launchers attach ranks to a terminal even if their output is redirected.
         event::without_colours();
     }
     let command_line = match CommandLine::of_this_program() {
         Ok(command_line) => command_line,
         Err(answer) if comm::is_first() => return tell(&answer),
-        // A launcher would end the first rank before it has told anything.
+        // Any failing rank would make the launcher kill the first one before that has printed its message.
         Err(_) => return ExitCode::SUCCESS,
     };
     match comm::start() {
@@ -35,9 +35,9 @@ fn main() -> ExitCode {
     }
 }
 
-/// Keeps memory that is freed for what needs some next: a page that the system gives anew is cleared first and takes
-/// longer than what most matrices are made for. Large ones go back to the system: their arithmetic takes much longer, and
-/// between them what is kept would be in pieces that none of them fits in.
+/// Lets the allocator keep freed memory for reuse: the system clears every page that it hands out, which takes longer
+/// than the arithmetic on most matrices. Blocks of at least `LARGE` bytes still go back to the system: their arithmetic
+/// takes much longer than the clearing, and kept memory would be too fragmented to hold another one.
 fn keep_freed_memory() {
     #[cfg(target_env = "gnu")]
     // SAFETY: sets parameters of the C library's allocator while nothing else runs.
@@ -48,11 +48,12 @@ fn keep_freed_memory() {
     }
 }
 
-/// Bytes from which on memory goes back to the system: the most that the C library allows, a matrix of 2048 rows.
+/// Size from which on freed memory goes back to the system (bytes): the largest that the C library allows, a matrix of
+/// 2048 rows.
 #[cfg(target_env = "gnu")]
 const LARGE: i32 = 32 << 20;
 
-/// Bytes that the allocator asks the system for beyond what it needs.
+/// Memory that the allocator requests from the system beyond its need (bytes).
 #[cfg(target_env = "gnu")]
 const TOP_PAD: i32 = 64 << 20;
 
@@ -66,7 +67,7 @@ fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {
     }
 }
 
-/// Answers a command line that asks for no run.
+/// Prints the answer to a command line that starts no run.
 fn tell(answer: &Answer) -> ExitCode {
     match answer {
         Answer::Refusal(why) => {
@@ -77,7 +78,7 @@ fn tell(answer: &Answer) -> ExitCode {
     }
 }
 
-/// Prints why the program ends.
+/// Prints the failure that ends the program.
 fn fail(log: LogFormat, failure: &Failure) -> ExitCode {
     event::error(log, failure.kind as u8, &failure.message);
     failure.exit_code()

@@ -1,9 +1,9 @@
-//! Everything that leaves the program: the result file, the report, the terminal.
+//! Output of the program: the result file, the report, the terminal.
 //!
-//! [`result`] holds what the ranks hand over, [`vtkhdf`] streams it into the result file in slabs of
-//! subdomains, [`report`] is the JSON of `--report` and of the file's attribute, [`terminal`] prints for
-//! people, [`event`] for programs and what went wrong, [`mod@bar`] draws the bar; [`lock`] keeps other runs from the
-//! same output. Only the root writes files and tells of the run.
+//! [`result`] holds the data that ranks send to the root, [`vtkhdf`] writes them to the result file in slabs of
+//! subdomains, [`report`] is the JSON of `--report` and of the file's attribute, [`terminal`] prints text for people,
+//! [`event`] JSON for programs, and errors; [`mod@bar`] draws the progress bar; [`lock`] keeps other runs from the same
+//! output. Only the root writes files and prints.
 
 pub mod bar;
 pub mod event;

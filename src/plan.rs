@@ -1,4 +1,4 @@
-//! The plan of condensation and merging, and the owners: blocks, their hierarchy, clusters.
+//! The plan of condensation and merging: blocks, their hierarchy, clusters, and their owners.
 
 mod assign;
 pub mod choice;
@@ -22,13 +22,14 @@ use self::assign::assign;
 use self::cluster::{ClusterPlan, Merging, cluster_nodes};
 use self::group::GroupPlan;
 
-/// Conditions of a cluster at a root, tangential ones among them, from which on its nodes of Γ are eliminated in it: its
-/// matrix has a row for each condition then and none for the nodes, and there is one problem for all conditions instead of
-/// two. A pin in a plate with 4218 takes 0.73 of the arithmetic time, and 0.84 of the memory.
+/// Number of constraints of a cluster at a root, tangential ones included, from which on its nodes of Γ are eliminated
+/// in the cluster: its matrix then has a row for each constraint and none for the nodes, and all constraints are solved
+/// for once instead of twice. For a pin in a plate with 4218 constraints this takes 0.73 times the arithmetic and 0.84
+/// times the memory.
 const MANY_CONDITIONS: usize = 1_000;
 
-/// The blocks, which are the subdomains, and the clusters in the order of the hierarchy; every sum runs in this
-/// order, whoever owns what.
+/// The blocks, which are the subdomains, and the clusters, in the order of the hierarchy. Every sum runs in this order,
+/// whichever ranks own the terms, so that results don't depend on the number of ranks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The hierarchy of the blocks.
@@ -41,7 +42,7 @@ pub struct Plan {
     pub clusters: Numbered<ClusterId, ClusterPlan>,
     /// The pairs: the clusters in contact.
     pub pairs: Numbered<PairId, ClusterId>,
-    /// Treatment of contact on the way.
+    /// How contact is merged.
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.
@@ -49,8 +50,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks
-    /// by estimated cost.
+    /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks by estimated cost.
     pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
         let tree = match merging {
             Merging::All | Merging::ActiveSet | Merging::Clusters => Tree::new(catalog),
@@ -76,7 +76,7 @@ impl Plan {
         plan
     }
 
-    /// Estimated time of what is done at node v of the hierarchy (flops).
+    /// Estimated cost of node v of the hierarchy (flops).
     pub fn time(&self, v: TreeNodeId, dim: usize) -> f64 {
         self.tree.time(v, dim, self.merging.has_active_set())
     }
@@ -134,23 +134,24 @@ impl Plan {
         nodes.iter().map(|&v| self.node_owners[v]).collect()
     }
 
-    /// True if fixed active sets are merged no further than to node v of the hierarchy.
+    /// True if node v of the hierarchy is where merging ends for fixed active sets.
     pub fn is_merge_root(&self, v: TreeNodeId) -> bool {
         self.merge_roots.values().binary_search(&v).is_ok()
     }
 
-    /// The node of the hierarchy that node v is merged into.
+    /// The node of the hierarchy that node v is merged into, if any.
     pub fn merged_into(&self, v: TreeNodeId) -> Option<TreeNodeId> {
         self.tree.nodes[v].parent.filter(|_| !self.is_merge_root(v))
     }
 
-    /// True if fixed active sets are merged up to the roots of the hierarchy, so that nothing is left between clusters.
+    /// True if merging for fixed active sets goes up to the roots of the hierarchy, so that no interface between
+    /// clusters is left.
     pub fn has_one_cluster(&self) -> bool {
         (self.merge_roots.iter()).all(|&v| self.tree.nodes[v].parent.is_none())
     }
 
-    /// The nodes of the hierarchy that are `sought`, the deepest first: what ranks share is near the roots, and none
-    /// waits for another before.
+    /// The nodes of the hierarchy that are `sought`, the deepest first: nodes shared by ranks are near the roots, so
+    /// that no rank waits for another in the nodes below.
     pub fn deepest_first(&self, is_sought: impl Fn(TreeNodeId) -> bool) -> Vec<TreeNodeId> {
         let nodes = &self.tree.nodes;
         let mut depth = nodes.like(0);
@@ -162,7 +163,7 @@ impl Plan {
         sought
     }
 
-    /// Marks whatever is above marked nodes of the hierarchy.
+    /// Marks all ancestors of marked nodes of the hierarchy.
     pub fn mark_above(&self, marked: &mut Numbered<TreeNodeId, bool>) {
         for v in marked.ids() {
             if let (true, Some(parent)) = (marked[v], self.tree.nodes[v].parent) {
@@ -171,7 +172,7 @@ impl Plan {
         }
     }
 
-    /// True if node v of the hierarchy is above the last ones that fixed active sets are merged to.
+    /// True if node v of the hierarchy is above a node where merging ends for fixed active sets.
     pub fn is_above_merge_roots(&self, v: TreeNodeId) -> bool {
         let mut above = Some(v);
         while let Some(v) = above {
@@ -183,7 +184,7 @@ impl Plan {
         true
     }
 
-    /// Estimated number of coarse unknowns between clusters, where an iterative interface solver works.
+    /// Estimated number of coarse unknowns of the iterative interface solver, if it is used.
     pub fn coarse_dofs(&self, dim: usize) -> Option<usize> {
         (self.merging == Merging::Clusters).then(|| coarse_dofs(&self.tree, dim))
     }
@@ -201,9 +202,9 @@ impl Plan {
         at.ok().map(GroupId::new)
     }
 
-    /// True if node v is a cluster at a root, whose nodes of Γ are left to the interface problem: its contact points
-    /// lie between several parts of the scene. Where it has many conditions their problem is solved in the cluster
-    /// alone, and not once more at the root.
+    /// True if node v is a cluster at a root that leaves its nodes of Γ to the interface problem, because its contact
+    /// points lie between several parts of the scene. A cluster with many constraints eliminates these nodes, so that
+    /// its contact problem is solved once and not once more at the root.
     pub fn leaves_its_nodes(&self, v: TreeNodeId) -> bool {
         let node = &self.tree.nodes[v];
         let is_root = node.parent.is_none() && node.children.len() > 1;
@@ -227,7 +228,7 @@ impl Plan {
         }
     }
 
-    /// The contact points of conditions of a pair: their places in `catalog`, each once, ascending.
+    /// The contact points of the constraints of a pair: their indices in `catalog`, each once, ascending.
     pub fn points_of_conditions(
         &self,
         catalog: &Catalog,
@@ -258,7 +259,7 @@ impl Plan {
         self.pairs.iter().map(|&c| self.clusters[c].owner).collect()
     }
 
-    /// The pair that cluster c is, if it is in contact.
+    /// The number of cluster c among the pairs, if it is in contact.
     pub fn pair_of(&self, c: ClusterId) -> Option<PairId> {
         let at = self.pairs.values().binary_search(&c);
         at.ok().map(PairId::new)
@@ -277,7 +278,7 @@ impl Plan {
         of
     }
 
-    /// Number of groups with contact points that aren't tied.
+    /// Number of groups with contact points that aren't ties.
     pub fn contact_groups(&self) -> usize {
         let nodes = self.groups.iter().map(|group| group.node);
         nodes.filter(|&v| self.tree.own_conditions(v) > 0).count()
@@ -289,7 +290,7 @@ impl Plan {
         clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
-    /// Pairs of the owner of every such group and that of its cluster, cluster by cluster.
+    /// For every such group, its owner and that of its cluster, cluster by cluster.
     pub fn routes_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|cluster| {

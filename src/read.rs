@@ -1,4 +1,4 @@
-//! Reading: every rank takes its own blocks from the problem file.
+//! Reading of the problem file: every rank reads its own blocks.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -19,13 +19,13 @@ use crate::fem::contact_group::ContactGroup;
 use crate::fem::contact_node::ContactNode;
 use crate::plan::Plan;
 
-/// Most subdomains that are read at once: what HDF5 hands over is there twice for a while.
+/// Most subdomains read at once: for a while their data exist twice, in HDF5's buffers and here.
 const AT_ONCE: usize = 64;
 
 /// Checks that the HDF5 library can read the problem file, on the root alone. Collective.
 ///
 /// # Errors
-/// It isn't there or is damaged, or a signal asked the run to stop.
+/// The file is missing or damaged, or a signal asked the run to stop.
 pub fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
     let check = || trial::check(path, is_asked_to_stop).err();
     let mut damage = comm.is_root().then(check).flatten().map(Failure::from);
@@ -42,7 +42,7 @@ pub fn check_problem(comm: &Comm, path: &Path) -> Result<(), Failure> {
 /// Reads the blocks of `plan` that `rank` owns, by their number.
 ///
 /// # Errors
-/// A slice of the problem file isn't what it should be.
+/// Inconsistent or malformed data of a subdomain in the problem file.
 pub fn read_blocks(
     rank: usize,
     file: &ProblemFile,
@@ -55,11 +55,11 @@ pub fn read_blocks(
         .collect())
 }
 
-/// The contact groups of this rank in a stage whose `catalog` this is, by their number, whose nodes the owners of `blocks`
-/// describe. Collective.
+/// The contact groups of this rank, by their number, in the stage described by `catalog`; the owners of `blocks` send
+/// the data of their nodes. Collective.
 ///
 /// # Errors
-/// A contact point that says something else than the mesh does.
+/// A contact point that contradicts the mesh.
 pub fn collect_groups(
     comm: &Comm,
     file: &ProblemFile,
@@ -109,7 +109,7 @@ pub fn collect_groups(
     comm.agree(groups.map_err(|error| Failure::from(file.refuse(error))))
 }
 
-/// The subdomains of `rank`, those that follow one another in the file read at once.
+/// The subdomains of `rank`; consecutive ones in the file are read together.
 fn read_subdomains(
     rank: usize,
     file: &ProblemFile,
@@ -132,11 +132,11 @@ fn read_subdomains(
     Ok(subdomains)
 }
 
-/// Checks that subdomains agree on the nodes that they share and that no others have one tag, every rank a part of
-/// the nodes. Collective.
+/// Checks that subdomains agree on the nodes that they share and that no two other nodes have the same tag; every rank
+/// checks a part of the nodes. Collective.
 ///
 /// # Errors
-/// The first node for which that isn't so.
+/// The first node at which that fails.
 pub fn check_copies(
     comm: &Comm,
     file: &ProblemFile,

@@ -40,7 +40,7 @@ pub use group_solution::GroupSolution;
 pub struct BlockSolution {
     /// Displacement, node by node (m).
     pub u: Vec<f64>,
-    /// Bᵀλ: what contact pushes its nodes with, less than nothing towards the other side (N/m).
+    /// Bᵀλ by node: minus the contact force on the block (N/m).
     pub pushes: Vec<(u32, [f64; 3])>,
 }
 
@@ -54,7 +54,7 @@ pub struct Slips {
 }
 
 impl Slips {
-    /// Jumps and work of a contact group.
+    /// Jumps and frictional work of a contact group.
     pub fn of(&self, g: GroupId) -> (&[f64], &[f64]) {
         let [jumps, work] = [&self.jumps, &self.work].map(|all| all.get(&g));
         (
@@ -63,7 +63,7 @@ impl Slips {
         )
     }
 
-    /// Counts the work of increments before this one, too.
+    /// Adds the work of `earlier` increments of the same load step.
     pub fn add_work(&mut self, earlier: &OnGroups<Vec<f64>>) {
         for (g, work) in &mut self.work {
             for (work, earlier) in work.iter_mut().zip(earlier.get(g).into_iter().flatten()) {
@@ -73,17 +73,17 @@ impl Slips {
     }
 }
 
-/// u and λ on what this rank has.
+/// u and λ on this rank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscreteSolution {
-    /// On its blocks, by their number.
+    /// Solutions of its blocks, by their number.
     pub blocks: OnBlocks<BlockSolution>,
-    /// On its contact groups, by their number.
+    /// Solutions of its contact groups, by their number.
     pub groups: OnGroups<GroupSolution>,
 }
 
 impl DiscreteSolution {
-    /// Slips and frictional work where the tangential jumps before the increment were `before` (m).
+    /// Slips and frictional work from the tangential jumps `before` the increment (m).
     pub fn slips(&self, context: &Context<'_>, before: &OnGroups<Vec<f64>>) -> Slips {
         let mut slips = Slips::default();
         for (&g, solution) in &self.groups {
@@ -102,7 +102,7 @@ impl DiscreteSolution {
         slips
     }
 
-    /// Adds this solution to the closest approaches of the contact points; on the root. Collective.
+    /// Updates the closest approaches of the contact points by this solution; on the root. Collective.
     pub fn add_approaches(&self, context: &Context<'_>, to: &mut ClosestApproaches) {
         let plan = context.plan;
         context.comm.gather(
@@ -133,7 +133,7 @@ impl DiscreteSolution {
         }
     }
 
-    /// Tells contact groups what gaps the displacements leave, and blocks what their forces push. Collective.
+    /// Sends remaining gaps to contact groups and nodal contact forces to blocks. Collective.
     pub fn share(&mut self, context: &Context<'_>, loads: &Loads) {
         let &Context { comm, plan, .. } = context;
         let dim = context.catalog.dim;
@@ -170,8 +170,8 @@ pub fn displacements(
     solutions.iter().map(|(&b, solution)| (b, &solution.u[..]))
 }
 
-/// Sends every cluster its part of U and recovers its interior. Collective; `root` holds U and the
-/// numbers of every cluster's traces.
+/// Sends every cluster its part of U and recovers its interior. Collective; `root` holds U and the numbers of every
+/// cluster's traces.
 pub fn recover(
     factors: Factors<'_>,
     step: &StepProblem<'_>,
@@ -197,15 +197,15 @@ pub fn recover(
     substitute_back(factors, step, boundaries, conditions)
 }
 
-/// The solution for the unknowns on the `boundaries` of all clusters and the force of every point, and whether it
-/// is closed. Collective.
+/// The solution of all blocks and groups from the unknowns on the `boundaries` of all clusters and from the force and
+/// the status, closed or not, of every contact constraint. Collective.
 pub fn substitute_back(
     factors: Factors<'_>,
     step: &StepProblem<'_>,
     boundaries: OnTreeNodes<Vec<f64>>,
     conditions: OnGroups<Vec<(f64, bool)>>,
 ) -> DiscreteSolution {
-    // Groups of ties alone are those of no cluster in contact.
+    // Groups that contain ties only belong to no cluster in contact.
     let all = factors.context.groups.iter();
     let none = all.map(|(&g, group)| (g, vec![(0.0, false); group.conditions().count()]));
     let mut known: OnGroups<Vec<(f64, bool)>> = none.collect();
@@ -248,8 +248,8 @@ pub fn substitute_back(
     solution
 }
 
-/// Forces of the points of every contact group, and which are closed, from the clusters that know.
-/// Collective.
+/// Force and status, closed or not, of every contact constraint, sent from the clusters that solved for them to the
+/// owners of groups. Collective.
 fn conditions(factors: Factors<'_>, pairs: &OnPairs<ContactPair>) -> OnGroups<Vec<(f64, bool)>> {
     let of_clusters = pairs.iter().map(|(&p, pair)| {
         let (forces, closed) = pair.conditions();

@@ -1,4 +1,4 @@
-//! Output of a run: the log on the way, and the report.
+//! Output of a run: the log while it runs, and the report.
 
 pub mod log;
 pub mod totals;
@@ -18,13 +18,13 @@ use crate::settings::Settings;
 use crate::settings::command_line::InterfaceMethod;
 use crate::sweep::{Method, SweepStatus};
 
-/// Pivot relative to its diagonal entry that may as well be zero.
+/// Pivot, relative to its diagonal entry, that can't be told from zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
 
 /// Condition number from which round-off is worth a warning.
 const BAD_CONDITION: f64 = 1e10;
 
-/// Brings every rank's times and memory to the root. Collective.
+/// Collects every rank's times and memory on the root. Collective.
 pub fn collect(comm: &Comm, seconds: &RankSeconds, plan: &Plan) -> Vec<RankReport> {
     let owners = plan.owners();
     let subdomains = owners.iter().filter(|&&owner| owner == comm.rank()).count();
@@ -144,7 +144,7 @@ fn warnings(totals: &Totals<'_>, settings: &Settings) -> Vec<String> {
     warnings
 }
 
-/// The operator with which contact conditions were solved, of the stage that came last.
+/// The operator with which contact constraints were solved in the last stage.
 fn contact_operator(plan: &Plan) -> ContactOperator {
     match plan.merging {
         Merging::All | Merging::Linear | Merging::Groups => ContactOperator::Dense,
@@ -168,7 +168,7 @@ fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     totals.catalog.has_friction().then(|| why.into())
 }
 
-/// Reason for which the interface problem was solved directly where the iterative solver was asked for.
+/// Reason why the interface problem was solved directly although the iterative solver was requested.
 fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_asked_for = settings.interface == Some(InterfaceMethod::Iterative);
     if !is_asked_for
@@ -189,7 +189,7 @@ fn solved_directly(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     ))
 }
 
-/// A warning for every material whose σ_zz isn't known.
+/// A warning for every material whose σ_zz is unknown.
 fn unknown_stress(catalog: &Catalog) -> Vec<String> {
     catalog
         .materials
@@ -237,7 +237,7 @@ fn skipped(comm: &Comm, totals: &Totals<'_>) -> Vec<String> {
     skipped
 }
 
-/// Reason for which the sweeps ended, in words.
+/// Reason why the sweeps ended, as text.
 pub fn reason(totals: &Totals<'_>) -> String {
     let sweeps: usize = totals.steps.iter().map(StepTotals::sweeps).sum();
     let in_the_end = match totals.catalog.steps.is_empty() {
@@ -257,7 +257,7 @@ pub fn reason(totals: &Totals<'_>) -> String {
     }
 }
 
-/// Reasons for which load steps didn't converge.
+/// Reasons why load steps didn't converge.
 pub fn failures(totals: &Totals<'_>) -> Vec<String> {
     let of_step = |(k, step): (usize, &StepTotals)| {
         let SweepStatus::NotConverged(why) = &step.outcome.status else {

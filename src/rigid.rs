@@ -1,15 +1,16 @@
-//! Rigid motions: those that neither supports nor contact hold, those by which bodies come to rest,
-//! and those that are free once contacts have opened.
+//! Rigid-body motions: those restrained by neither supports nor contact, closing motions, by which bodies come into
+//! contact, and those that become free once contacts have opened.
 //!
-//! Found from geometry alone, before anything is factorized, because a Cholesky factorization
-//! passes a free motion at a pivot of round-off. With R the rigid motions that the supports
-//! leave, a motion z is free if B R z = 0, and held by contact if B R z ≤ 0 doesn't allow it; the
-//! load balances if contact forces λ ≥ 0 with (B R)ᵀ λ = Rᵀ f exist. B R has no energy and (B R)ᵀ c
-//! is Rᵀ f in every contact problem: what round-off makes of both is taken out.
+//! They are found from geometry alone, before anything is factorized, because a Cholesky factorization may pass a free
+//! motion with a pivot of round-off. Let the columns of R be the rigid motions that the supports leave. A motion z is
+//! free if B R z = 0, and contact resists it if it violates B R z ≤ 0; the load is balanced if contact forces λ ≥ 0
+//! with (B R)ᵀ λ = Rᵀ f exist. In every contact problem with stiffness H and load c on the normal jumps, H B R = 0 and
+//! (B R)ᵀ c = Rᵀ f hold: round-off that violates either is removed.
 //!
-//! With friction B has tangential rows, too. No motion is free that these hold, and their forces help to balance the
-//! load within the law's bounds. That such forces exist is necessary: by which of them elastic bodies come to rest
-//! depends on their path, and a load that needs others is found by the solver not to converge.
+//! With friction B has tangential rows, too. They restrain motions, and their forces contribute to the balance of the
+//! load within the bounds of the friction law. Existence of such forces is necessary only: the forces under which
+//! elastic bodies come to rest depend on the load path, and if these don't balance the load, the solver doesn't
+//! converge.
 
 pub mod analysis;
 mod bodies;

@@ -1,4 +1,4 @@
-//! The whole solve on one page.
+//! The whole solution procedure in one module.
 //!
 //! for each stage: read → assemble → condense → S_0 at the root → for each load step: F → sweeps → recover → write
 
@@ -48,7 +48,7 @@ use crate::settings::command_line::CommandLine;
 use crate::step::state::{self, StepState, analyse_steps, stop_if_asked};
 use crate::step::working_set::{Outside, WorkingSet, pays};
 
-/// End of a run that didn't fail.
+/// Result of a run that didn't fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The sweeps converged, or there was nothing to solve for.
@@ -57,19 +57,19 @@ pub enum Ending {
     NotConverged,
 }
 
-/// The progress of a run: what its stages so far have come to.
+/// Progress of a run: results of its stages so far.
 #[derive(Default)]
 struct Progress {
     /// The time that each phase took.
     seconds: RankSeconds,
-    /// The plan of the last stage, and why contact conditions are solved for as they are.
+    /// The plan of the last stage, and the reason for its solver of the contact constraints.
     plan: Option<(Plan, String)>,
     files: RunFiles,
     /// The smallest pivot of all factorizations relative to its diagonal entry.
     smallest_pivot: f64,
-    /// Load steps that are done, those of an earlier run among them.
+    /// Load steps that are finished, including those of an earlier, restarted run.
     finished: Finished,
-    /// Linear problems that were solved for contact conditions since the last of them; on the root.
+    /// Number of linear systems solved for contact constraints since the last load step; on the root.
     linear_solves: Cell<usize>,
 }
 
@@ -92,7 +92,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
         1 => Par::Seq,
         n => Par::rayon(usize::from(n)),
     };
-    // Where faer's dense algebra takes no `par`, it would use all cores.
+    // faer's dense functions without a `par` argument would use all cores.
     faer::set_global_parallelism(par);
     let log = RunLog::new(comm, settings, began);
 
@@ -127,7 +127,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     (progress.seconds).add(|s| &mut s.read, comm.times() - start);
     let done = progress.finished.count;
     let left: Vec<Range<usize>> = (all.into_iter()).filter(|steps| steps.end > done).collect();
-    // What a later stage can't be is found before the first one is solved.
+    // Invalid later stages are found before the first one is solved.
     for steps in left.iter().skip(1) {
         stages.check(steps.clone())?;
     }
@@ -139,11 +139,11 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
 }
 
 impl Stages<'_> {
-    /// Solves the load `steps` in which the same is there, those from `next` on being another stage. Where the solver that
-    /// was chosen doesn't converge, a more robust one goes on from there. Collective.
+    /// Solves the load `steps` of a stage, with the same bodies and contacts; steps from `next` on belong to another
+    /// stage. Where the chosen solver doesn't converge, a more robust one continues from there. Collective.
     ///
     /// # Errors
-    /// As a whole run.
+    /// Those of the whole run.
     fn solve(
         &self,
         steps: Range<usize>,
@@ -163,7 +163,7 @@ impl Stages<'_> {
             match self.solve_from(handover.clone(), stage, next, progress) {
                 Ok(None) => return Ok(()),
                 Ok(again) => handover = again,
-                // Bodies that the points of the set don't hold may be held by others.
+                // Bodies that the contact points of the working set don't hold may be held by the others.
                 Err(failure)
                     if failure.kind == FailureKind::IllPosed
                         && stage.points.len() < whole.points.len() =>
@@ -175,11 +175,11 @@ impl Stages<'_> {
         }
     }
 
-    /// Solves the load steps of a `stage` that are left, from where another solver handed over, if one did; returns where
-    /// a more robust one is to take over. Collective.
+    /// Solves the remaining load steps of a `stage`, from the state of another solver's handover if there is one;
+    /// returns the handover to a more robust solver if one is needed. Collective.
     ///
     /// # Errors
-    /// As a whole run.
+    /// Those of the whole run.
     fn solve_from(
         &self,
         handover: Option<Handover>,
@@ -217,7 +217,7 @@ impl Stages<'_> {
         let operators = Operators::new(context, log, &loads, &analyses[0], &mut progress.seconds)
             .map_err(after)?;
 
-        // Load step by load step: each starts from the state that the one before it left.
+        // Each load step starts from the state that the one before it left.
         let robust = self.more_robust(&stage.catalog, parts.plan.merging);
         let steps = StageSteps {
             stage,
@@ -238,11 +238,11 @@ impl Stages<'_> {
         Ok(handover)
     }
 
-    /// Solves the load steps of a stage that are left, from a state; the first says why another solver took over, if one
-    /// did. Returns where a more robust one is to take over. Collective.
+    /// Solves the remaining load steps of a stage from a given state; the report of the first one gives the reason why
+    /// another solver took over, if one did. Returns the handover to a more robust solver if one is needed. Collective.
     ///
     /// # Errors
-    /// As a whole run.
+    /// Those of the whole run.
     fn solve_steps(
         &self,
         steps: &StageSteps<'_>,
@@ -306,8 +306,8 @@ impl Stages<'_> {
 }
 
 impl Progress {
-    /// Writes the solution of load step `step`, with the rows of contact points that are `absent`, and keeps its totals.
-    /// Collective.
+    /// Writes the solution of load step `step`, including the rows of contact points that are `absent`, and keeps its
+    /// totals. Collective.
     ///
     /// # Errors
     /// The file can't be written.
@@ -332,7 +332,7 @@ impl Progress {
         Ok(())
     }
 
-    /// Finishes the files of a run whose load steps are all done. Collective.
+    /// Writes the files of a run whose load steps are all done. Collective.
     ///
     /// # Errors
     /// A file that can't be written.

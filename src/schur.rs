@@ -1,5 +1,4 @@
-//! Local Schur complements, (11): ordering, sparse factorization with the boundary last, condensation
-//! and recovery.
+//! Local Schur complements, (11): ordering, sparse factorization with the boundary last, condensation and recovery.
 //!
 //! > S = K_BB − K_BI K_II⁻¹ K_IB,   u_I = K_II⁻¹ (f_I − K_IB u_B)
 

@@ -1,7 +1,7 @@
-//! The settings of a run, resolved.
+//! The settings of a run.
 //!
-//! [`command_line`] parses options, the problem file may hold some, and the former take precedence; [`Origins`]
-//! remembers which it was.
+//! [`command_line`] parses options; the problem file may hold settings, too, over which options take precedence.
+//! [`Origins`] records the origin of each.
 
 pub mod command_line;
 
@@ -106,7 +106,7 @@ impl Settings {
         }
     }
 
-    /// Checks that the results replace nothing that they are made from.
+    /// Checks that no output would overwrite an input or another output.
     ///
     /// # Errors
     /// One of the outputs is the problem file or the other output.
@@ -140,7 +140,7 @@ impl Settings {
         }
     }
 
-    /// The warning of a setting of this run that isn't used.
+    /// The warning of a setting given for this run that its method doesn't use.
     pub fn unused(&self) -> Option<String> {
         let is_asked_for = self.from.of("relaxation") == Origin::CommandLine;
         (is_asked_for && self.method != Method::Picard).then(|| {
@@ -151,7 +151,7 @@ impl Settings {
         })
     }
 
-    /// Wishes of the user for the solvers.
+    /// The user's choices of solvers.
     pub fn wishes(&self) -> Wishes {
         let interface = self.interface;
         Wishes {
@@ -161,7 +161,7 @@ impl Settings {
         }
     }
 
-    /// The settings by name, for people: those that aren't the default with what settled them.
+    /// The settings by name, as text; those that differ from the default with their origin.
     pub fn in_words(&self) -> Vec<(&'static str, String)> {
         let said = |title, name: &str, value: String| match self.from.of(name) {
             Origin::Default => (title, value),
@@ -233,7 +233,7 @@ impl fmt::Display for Origin {
 pub struct Origins(BTreeMap<&'static str, Origin>);
 
 impl Origins {
-    /// The value of a setting by the command line, else by the problem file.
+    /// The value of a setting from the command line, else from the problem file.
     fn choose<T: Clone>(
         &mut self,
         name: &'static str,
@@ -255,9 +255,9 @@ impl Origins {
     }
 }
 
-/// The result file that belongs to `problem`: the same stem with the extension `vtkhdf`.
+/// Default result file for `problem`: the same stem with the extension `vtkhdf`.
 ///
-/// A problem that has this extension itself gets a result beside it, never on top of it.
+/// A problem file with this extension gets a result file of another name, so that it isn't overwritten.
 fn default_result_path(problem: &Path) -> PathBuf {
     let result = problem.with_extension("vtkhdf");
     match result == problem {
@@ -266,12 +266,12 @@ fn default_result_path(problem: &Path) -> PathBuf {
     }
 }
 
-/// True if two paths lead to one place.
+/// True if two paths name the same file.
 fn same_file(a: &Path, b: &Path) -> bool {
     a == b || matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// A path of whatever bytes.
+/// A path as text, even if it isn't valid Unicode.
 fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(&path.display())
 }

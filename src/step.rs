@@ -1,4 +1,4 @@
-//! A load step: everything in it that depends on loads, condensed onto Γ.
+//! A load step: its loads, condensed onto Γ, and the interface problem that they lead to.
 
 pub mod halving;
 pub mod state;
@@ -28,18 +28,18 @@ use crate::schur::local::CondensedLoad;
 use crate::step::state::StepState;
 use crate::vector::largest;
 
-/// The problem of a load step, as this rank holds it.
+/// The problem of a load step, on this rank.
 #[derive(Debug)]
 pub struct StepProblem<'a> {
-    /// The loads on its blocks and contact groups.
+    /// The loads on this rank's blocks and contact groups.
     pub loads: Loads,
-    /// Displacements that supports prescribe in them.
+    /// Displacements that supports prescribe in these blocks.
     pub prescribed: OnBlocks<Prescribed>,
     /// The jumps of ties.
     pub tied: TiedJumps,
     /// The condensed load of every node of the hierarchy.
     pub condensed: OnTreeNodes<CondensedLoad>,
-    /// ϑ: the clusters in contact, by their place among those.
+    /// ϑ: the clusters in contact, by their number among the pairs.
     pub pairs: OnPairs<ContactPair>,
     /// S_0 U + S_CON(U) = F; on the root.
     pub interface: Option<InterfaceProblem<'a>>,
@@ -47,7 +47,7 @@ pub struct StepProblem<'a> {
     pub earlier: Scales,
 }
 
-/// The parts of a load step's problem beside its loads.
+/// The parts of a load step's problem that don't depend on its loads.
 #[derive(Clone, Copy)]
 pub struct Loading<'a> {
     /// The context of the run.
@@ -56,15 +56,15 @@ pub struct Loading<'a> {
     pub factors: &'a CondensedBlocks,
     /// Γ and the operators on it; on the root.
     pub interface: Option<&'a (Numbering, Interface)>,
-    /// The rigid motions in the step.
+    /// The rigid-body analysis of the step.
     pub analysis: &'a RigidBodyAnalysis,
 }
 
 impl<'a> Loading<'a> {
-    /// The problem under `loads`, which starts from the state that the step `before` left. Collective.
+    /// The problem under `loads`, started from the state that the step `before` left. Collective.
     ///
     /// # Errors
-    /// Supports that make two sides penetrate.
+    /// Prescribed displacements by which two sides of a contact penetrate.
     pub fn problem(&self, loads: Loads, before: StepState) -> Result<StepProblem<'a>, Failure> {
         let context = &self.context;
         let prescribed = |(&b, loads)| Some((b, Prescribed::new(context.blocks.get(&b)?, loads)));
@@ -90,8 +90,8 @@ impl<'a> Loading<'a> {
         })
     }
 
-    /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I; returns the load of every
-    /// node of this rank, and the largest one on any unknown of any block, which the root knows. Collective.
+    /// Condenses the loads of all blocks up the hierarchy, f_Γ − K_ΓI K_II⁻¹ f_I; returns the load of every node of
+    /// this rank and, on the root, the largest load on any unknown of any block. Collective.
     fn condense(
         &self,
         loads: &Loads,
@@ -142,7 +142,7 @@ impl<'a> Loading<'a> {
                 let (on_jumps, _) = load.split_at_mut(condensed.jumps);
                 make_load_exact(on_jumps, &limits.defining, drive, &condensed.diagonal);
             }
-            // Without load a pair is at rest: from elsewhere round-off would decide what closes.
+            // A pair without load is at rest; started elsewhere, round-off would decide which contacts close.
             let is_loaded = load.iter().any(|&f| f != 0.0);
             let before = before.pairs.remove(&p).filter(|_| is_loaded);
             Some((p, ContactPair::new(condensed.clone(), limits, load, before)))
@@ -150,7 +150,7 @@ impl<'a> Loading<'a> {
         self.factors.contact.iter().filter_map(pair).collect()
     }
 
-    /// Assembles F on the root; `elsewhere` forces are up to this large. Collective.
+    /// Assembles F on the root; `elsewhere` is the largest force outside Γ. Collective.
     fn assemble(
         &self,
         pairs: &OnPairs<ContactPair>,
@@ -188,7 +188,7 @@ impl<'a> Loading<'a> {
         ))
     }
 
-    /// The normal jumps of all pairs against the motions that supports leave to the bodies.
+    /// The normal jumps of all pairs in the rigid motions that supports leave to the bodies.
     fn modes_of_jumps(&self, interface: &Interface) -> RigidModes {
         let scene = self.analysis.scene.as_ref();
         let Some(scene) = scene.filter(|_| self.analysis.movable) else {

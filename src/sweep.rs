@@ -1,11 +1,11 @@
-//! Sweeps: how S_0 U + S_CON(U) = F, (14), is solved for U, from the bilateral start (16)-(17) or from the
-//! solution of the load step before.
+//! Sweeps: outer iterations for S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the solution of
+//! the load step before.
 //!
-//! A signal to any rank that asks the run to stop is heard between two sweeps.
+//! A signal to any rank that asks the run to stop takes effect between two sweeps.
 //!
-//! All methods share the residual r(U) = F − S_0 U − S_CON(U) and differ in what is inverted:
-//! M δ = r with M = S_0 ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem
-//! ([`anderson`]), or S_0 + S_CON(U + ·) as it is, the contact conditions included ([`newton`]).
+//! All methods use the residual r(U) = F − S_0 U − S_CON(U) and differ in the operator M of the correction M δ = r: S_0
+//! ([`picard`], the paper's (18)), S_0 + S_CON' of the bilateral problem ([`anderson`]), or S_0 + S_CON(U + ·) itself,
+//! contact constraints included ([`newton`]).
 
 pub mod anderson;
 pub mod newton;
@@ -26,10 +26,10 @@ use crate::interface::s_con::{ConState, ConTotals, Expected, SCon};
 use crate::settings::SweepSettings;
 use crate::vector::largest;
 
-/// Residual that is round-off and nothing else.
+/// Relative residual that is round-off only.
 const ROUND_OFF: f64 = 1e-15;
 
-/// Residual to which a method goes that took over: there may be nothing to refine with afterwards.
+/// Relative residual required of a method that took over from newton: there may be no factor for refinement afterwards.
 const FALL_BACK_TOLERANCE: f64 = 1e-13;
 
 /// The sweeps on the root.
@@ -40,7 +40,7 @@ pub struct Sweeps<'a, 'c> {
     settings: SweepSettings,
     /// Progress of the sweeps.
     outcome: SweepOutcome,
-    /// True if another method took over from newton: then nothing may refine afterwards.
+    /// True if another method took over from newton: then there may be no factor for refinement.
     has_fallen_back: bool,
     began: Instant,
     observer: &'a mut dyn FnMut(&SweepRecord),
@@ -53,7 +53,7 @@ pub struct Residual {
     pub r: Vec<f64>,
     /// ‖r‖∞ relative to the terms that r is a sum of.
     pub relative: f64,
-    /// Totals of the pairs' answers at U.
+    /// Totals over the evaluations of all pairs at U.
     pub totals: ConTotals,
 }
 
@@ -67,8 +67,8 @@ pub enum Start {
 }
 
 impl<'a, 'c> Sweeps<'a, 'c> {
-    /// Solves S_0 U + S_CON(U) = F, (14), from the `start`. On the root, while the other ranks serve
-    /// S_CON; `observer` sees every sweep.
+    /// Solves S_0 U + S_CON(U) = F, (14), from the `start`. On the root, while the other ranks evaluate S_CON on
+    /// request; `observer` receives the record of every sweep.
     ///
     /// # Errors
     /// A signal has asked the run to stop.
@@ -91,8 +91,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         Ok(sweeps.end(status))
     }
 
-    /// Before the first sweep, and the residual there: of the bilateral start (16)-(17), or of the load step
-    /// before.
+    /// The state before the first sweep, and its residual: at the bilateral start (16)-(17), or at the solution of the
+    /// load step before.
     pub fn begin(
         problem: &'a InterfaceProblem<'a>,
         s_con: &'a mut SCon<'c>,
@@ -121,25 +121,25 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         (sweeps, residual)
     }
 
-    /// U, to be moved; then [`evaluate`](Self::evaluate) makes a sweep of it.
+    /// U, for a method to update; [`evaluate`](Self::evaluate) then completes the sweep.
     pub fn u(&mut self) -> &mut [f64] {
         &mut self.outcome.u
     }
 
-    /// r(U), and a line of the history; the pairs' searches begin at what is `expected`, else at the statuses of last
-    /// time.
+    /// r(U), added to the history; the pairs' active-set iterations start from the `expected` statuses, else from those
+    /// of their last evaluation.
     pub fn evaluate(&mut self, expected: Option<&[Expected]>) -> Residual {
         let residual = self.residual(expected);
         self.record(&residual);
         residual
     }
 
-    /// Outcome of the sweeps, refined if it is the solution.
+    /// Ends the sweeps; a converged solution is refined.
     pub fn end(mut self, status: SweepStatus) -> SweepOutcome {
         if status == SweepStatus::Converged {
             self.refine();
         }
-        // The pairs keep the normal jumps and forces of their last evaluation: it has to be S_CON(U).
+        // The pairs keep the normal jumps and forces of their last evaluation, which must therefore be at this U.
         let last = self.residual(None);
         SweepOutcome {
             status,
@@ -149,7 +149,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         }
     }
 
-    /// True if the sweeps go on from here.
+    /// True if another sweep is needed.
     ///
     /// # Errors
     /// A signal has asked the run to stop.
@@ -165,7 +165,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         Ok(true)
     }
 
-    /// r(U), where the pairs' limits begin at what is `expected`, else at the statuses of last time.
+    /// r(U); the pairs' active-set iterations start from the `expected` statuses, else from those of their last
+    /// evaluation.
     fn residual(&mut self, expected: Option<&[Expected]>) -> Residual {
         let u = &self.outcome.u;
         let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);
@@ -197,8 +198,8 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         (self.observer)(&record);
     }
 
-    /// True if the residual is small and the active set settled, or the residual is round-off: S_CON
-    /// is evaluated exactly, so that then nothing is left that could change.
+    /// True if the residual is small and the active set unchanged, or the residual is round-off: as S_CON is evaluated
+    /// exactly, nothing can change then.
     pub fn is_converged(&self, residual: &Residual) -> bool {
         let small = residual.relative <= self.tolerance() && residual.totals.changed == 0;
         residual.totals.failed_pairs == 0 && (small || residual.relative <= ROUND_OFF)

@@ -1,8 +1,8 @@
-//! Many contact conditions: an active-set (semismooth Newton) step fixes which of them are open, makes every
-//! unknown linear with that, and eliminates again only the branches of the hierarchy above what changed.
+//! Direct solver for many contact constraints: an active-set (semismooth Newton) iteration fixes the open ones, which
+//! makes every unknown linear, and refactorizes only the branches of the hierarchy above the constraints that changed.
 //!
-//! No matrix holds all conditions: an open normal jump is eliminated in the front where it appears, like a
-//! displacement, a closed one is known there.
+//! No matrix holds all constraints: an open normal jump is eliminated in the front where it appears, like a
+//! displacement; a closed one has its known value there.
 
 mod active_set;
 pub mod contact;

@@ -1,11 +1,11 @@
 //! Products and norms of vectors.
 
-/// x·y over the components that both have.
+/// x·y over the components that both vectors have.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// y ← y + a x, over the components that both have.
+/// y ← y + a x, over the components that both vectors have.
 #[inline]
 pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -13,20 +13,20 @@ pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// The vector `part` of the way from x to y.
+/// The vector x + `part` (y − x).
 pub fn between(x: &[f64], y: &[f64], part: f64) -> Vec<f64> {
     x.iter().zip(y).map(|(x, y)| x + part * (y - x)).collect()
 }
 
-/// Part of the largest scale, of the load or of the load steps before, below which a scale is of their round-off alone.
+/// Fraction of the largest scale, of the load or of the load steps before, below which a scale is that of round-off.
 pub const NOTHING: f64 = 1e-12;
 
-/// ‖x‖∞; not a number where x has one.
+/// ‖x‖∞; NaN if x contains a NaN.
 pub fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most, &x| larger(most, x))
 }
 
-/// max(|a|, |b|); not a number if either isn't.
+/// max(|a|, |b|); NaN if either is.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::NAN
