@@ -1,4 +1,4 @@
-//! Free rigid motions: those that the load drives, and pins for those that it doesn't.
+//! Free rigid-body motions: an error if the load drives one, fixing dofs (pins) for those without load along them.
 
 mod many;
 
@@ -16,37 +16,37 @@ use crate::error::Failure;
 use crate::fem::assembly::FixingDof;
 use crate::fem::body_frame::BodyFrame;
 
-/// Load along a free motion, relative to all loads, that counts as none.
+/// Load along a free motion, relative to all loads, that counts as zero.
 const LOAD_TOLERANCE: f64 = 1e-10;
-/// Load that contact can't balance, relative to all loads, that counts as none.
+/// Load that contact can't balance, relative to all loads, that counts as zero.
 const BALANCE_TOLERANCE: f64 = 1e-9;
-/// Unbalanced load, relative to all loads, that may be more than round-off.
+/// Unbalanced load, relative to all loads, that may be more than round-off and leads to a warning.
 const UNDECIDED: f64 = 1e-12;
-/// Load that friction can't balance, relative to all loads, that is the round-off of their sum: a body slides
-/// from a given angle on.
+/// Load that friction can't balance, relative to all loads, up to which it is round-off of their sum. It is small
+/// because a body on a slope slides just beyond a known angle.
 const SLIDING: f64 = 2e-14;
 
-/// The rigid motions of a scene.
+/// The free rigid-body motions of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RigidMotions {
-    /// Free ones.
+    /// Free motions.
     pub free: Vec<FreeMotion>,
-    /// Fixing dofs: as many as there are free motions, and those of bodies that aren't there.
+    /// Fixing dofs: one for each free motion, and those of absent bodies.
     pub fixing_dofs: Vec<FixingDof>,
     /// Warnings.
     pub warnings: Vec<String>,
 }
 
 impl Scene {
-    /// True if supports leave any rigid motion to any body.
+    /// True if supports leave any body a rigid motion.
     pub fn is_movable(&self) -> bool {
         Kinematics::new(self.dim, &self.bodies).len > 0
     }
 
-    /// Pins the bodies that aren't there to where they are, so that their motions are none of the scene's.
+    /// Fixes absent bodies where they are, so that their motions don't count as free motions of the scene.
     ///
     /// # Errors
-    /// One of them on which something acts.
+    /// An absent body under load or contact.
     pub fn hold(&mut self, is_absent: impl Fn(usize) -> bool) -> Result<Vec<FixingDof>, Failure> {
         let mut pins = Vec::new();
         let bodies = self.bodies.iter_mut().zip(&self.names).enumerate();
@@ -61,7 +61,7 @@ impl Scene {
             let free = DMatrix::identity(kinematics.len, kinematics.len);
             pins.extend(kinematics.fixing_dofs(alone, &free));
             let modes = BodyFrame::count(self.dim);
-            // The last column is what supports prescribe.
+            // The last column is the prescribed displacement.
             let unit = |i: usize| (0..=modes).map(|k| f64::from(i == k)).collect();
             body.supports = (0..modes).map(unit).collect();
         }
@@ -71,7 +71,7 @@ impl Scene {
     /// Finds the free motions.
     ///
     /// # Errors
-    /// The load drives a motion that neither supports nor contact hold: body and motion are named.
+    /// The load drives a motion that neither supports nor contact restrain; the message names body and motion.
     pub fn analyse(&self) -> Result<RigidMotions, Failure> {
         let Self { bodies, names, .. } = self;
         let rows = &self.both_ways();
@@ -130,8 +130,8 @@ impl Scene {
         Ok(motions)
     }
 
-    /// The failure of bodies that only friction could hold, where it turns out that it doesn't: where elastic bodies
-    /// aren't pressed as much as rigid ones could be.
+    /// The failure of a scene whose bodies only friction could restrain, for use when the solver finds that it doesn't:
+    /// elastic bodies may be pressed together less than rigid ones could be.
     pub fn unheld(&self) -> Option<Failure> {
         let normals = self.both_ways().into_iter();
         let normals: Vec<RigidRow> = normals.filter(|row| row.friction.is_none()).collect();
@@ -189,7 +189,7 @@ impl Kinematics {
         ))
     }
 
-    /// The warning of an unbalanced load that counts as round-off of all loads.
+    /// The warning of an unbalanced load that is taken for round-off of all loads.
     fn nearly_held(
         &self,
         bodies: &[BodyState],
@@ -205,7 +205,7 @@ impl Kinematics {
         )
     }
 
-    /// The body that moves farthest in `motion`, and how.
+    /// The body that moves farthest in `motion`, and a description of its motion.
     fn of_worst(&self, bodies: &[BodyState], motion: &DVector<f64>) -> (usize, String) {
         let size = |b: usize| -> f64 {
             self.of_body(b, motion.as_slice())
@@ -223,7 +223,7 @@ impl Kinematics {
         (worst, bodies[worst].frame.describe(self.dim, &z))
     }
 
-    /// The free `motions`, pinned by `fixing_dofs`, with a warning of each.
+    /// The free `motions` with the `fixing_dofs` that stop them, and a warning of each.
     fn fix(
         &self,
         bodies: &[BodyState],
@@ -255,8 +255,8 @@ impl Kinematics {
         }
     }
 
-    /// Components of candidate nodes, as many as there are free motions, chosen one after the other where the motions
-    /// not yet stopped are largest.
+    /// Fixing dofs, one for each free motion: components of candidate nodes, chosen greedily where the motions not yet
+    /// stopped are largest.
     fn fixing_dofs(&self, bodies: &[BodyState], free: &DMatrix<f64>) -> Vec<FixingDof> {
         let mut candidates: Vec<(FixingDof, DVector<f64>)> = Vec::new();
         for (b, body) in bodies.iter().enumerate() {

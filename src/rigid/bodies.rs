@@ -1,4 +1,4 @@
-//! Bodies for the analysis of rigid motions, from the ranks that have their subdomains.
+//! Bodies for the rigid-body analysis, summed over the ranks that own their subdomains.
 
 use contact_dd_partition::element::geometry::{cross, difference, length};
 use contact_dd_partition::mesh::bounding_box::BoundingBox;
@@ -15,11 +15,10 @@ use crate::fem::load::BlockLoads;
 use crate::fem::springs::against_motions;
 use crate::vector::axpy;
 
-/// Stiffness of springs against a motion, relative to the largest, that is round-off.
+/// Stiffness of springs in a motion, relative to the largest, up to which it is round-off.
 const NO_SPRING: f64 = 1e-12;
 
-/// The frame of every body. Collective; what is asked of a subdomain is asked on its owner, which has
-/// read it.
+/// The frame of every body, from the bounding boxes of its subdomains on their owners. Collective.
 pub(super) fn body_frames(context: &Context<'_>) -> Vec<BodyFrame> {
     let Context { comm, catalog, .. } = *context;
     let mut bounds = vec![BoundingBox::EMPTY; catalog.bodies.len()];
@@ -39,7 +38,7 @@ pub(super) fn body_frames(context: &Context<'_>) -> Vec<BodyFrame> {
     frames
 }
 
-/// Every body as the analysis sees it under `loads`, on the root. Collective.
+/// The state of every body under `loads` for the rigid-body analysis, on the root. Collective.
 pub(super) fn body_states(
     context: &Context<'_>,
     frames: &[BodyFrame],
@@ -67,7 +66,7 @@ pub(super) fn body_states(
             let block = &context.blocks[&s];
             let mut part = of_subdomain(block, &loads.blocks[&s], frame);
             part.springs = against_motions(block, frame);
-            // No support moves a body along a motion that none has.
+            // Symmetry excludes these motions already, so that supports don't act along them.
             for held in held_by_symmetry(catalog) {
                 for row in &mut part.supports {
                     let free = row.iter_mut().zip(&held);
@@ -95,7 +94,7 @@ pub(super) fn body_states(
     states
 }
 
-/// The rows of rigid motions that no body has: around an axis all but the translation along it.
+/// Rows that restrain the rigid motions excluded by symmetry: around an axis all but the translation along it.
 fn held_by_symmetry(catalog: &Catalog) -> Vec<Vec<f64>> {
     match catalog.plane {
         Some(PlaneState::Axisymmetric) => {
@@ -105,7 +104,7 @@ fn held_by_symmetry(catalog: &Catalog) -> Vec<Vec<f64>> {
     }
 }
 
-/// The rows of the motions that springs hold with this stiffness, each with a 0 that it prescribes.
+/// Rows of the motions that springs of this `stiffness` restrain, each with a prescribed displacement of 0.
 fn held_by_springs(catalog: &Catalog, stiffness: DMatrix<f64>) -> Vec<Vec<f64>> {
     let eigen = stiffness.symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
@@ -154,7 +153,7 @@ fn of_subdomain(block: &Block, loads: &BlockLoads, frame: &BodyFrame) -> BodyPar
         axpy(1.0, &action, &mut load);
         load_scale += force.iter().map(|f| f.abs()).sum::<f64>();
     }
-    // What no cell has holds nothing that is pinned to it.
+    // Nodes without cells would not fix the body.
     let candidates = extreme_nodes(&points[..block.subdomain.cell_nodes()], dim).into_iter();
     BodyPart {
         supports: compressed(rows, modes + 1),
@@ -165,8 +164,7 @@ fn of_subdomain(block: &Block, loads: &BlockLoads, frame: &BodyFrame) -> BodyPar
     }
 }
 
-/// Rows with the same null space and least squares solution as `rows`, at most as many as their
-/// `entries`.
+/// At most `entries` rows with the same null space and least-squares solution as `rows`.
 pub(super) fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
     if rows.len() <= entries {
         return rows;
@@ -179,7 +177,7 @@ pub(super) fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The first and last node along every axis; in space also three that don't lie on a line, if there are any.
+/// The first and last node along every axis; in space also three nodes that aren't collinear, if there are any.
 fn extreme_nodes(points: &[[f64; 3]], dim: usize) -> Vec<usize> {
     let mut nodes: Vec<usize> = (0..dim)
         .flat_map(|axis| {

@@ -1,4 +1,4 @@
-//! Gathering what the analysis of rigid motions needs, and handing out what it found.
+//! Input of the rigid-body analysis, gathered on the root, and its results, sent to all ranks.
 
 use contact_dd_partition::element::geometry::{dot, length};
 use contact_dd_partition::id::{BlockId, OnBlocks, OnPairs};
@@ -16,19 +16,19 @@ use crate::error::Failure;
 use crate::fem::body_frame::BodyFrame;
 use crate::interface::rigid_modes::RigidModes;
 
-/// Free rigid motions, and the frames that they are written in.
+/// Free rigid-body motions, and the frames in which they are written.
 #[derive(Clone, Debug, Default)]
 pub struct RigidBodyAnalysis {
     /// The frame of every body.
     pub frames: Vec<BodyFrame>,
-    /// Free motions, their pins, and warnings.
+    /// Free motions, their fixing dofs, and warnings.
     pub motions: RigidMotions,
-    /// The rigid motion by which every body comes to rest.
+    /// The closing motion of every body, by which it comes into contact.
     pub closing_motions: Vec<Vec<f64>>,
-    /// Conditions of every cluster in contact of this rank against the motions that supports leave to the bodies that
-    /// lie wholly in it, which cost the cluster no energy.
+    /// Constraints of every cluster in contact of this rank in the motions that supports leave to the bodies that lie
+    /// wholly in it; these motions have no elastic energy in the cluster.
     pub cluster_modes: OnPairs<RigidModes>,
-    /// True if supports leave any rigid motion to any body.
+    /// True if supports leave any body a rigid motion.
     pub movable: bool,
     /// The scene of bodies and conditions, on the root.
     pub scene: Option<Scene>,
@@ -42,11 +42,11 @@ impl RigidBodyAnalysis {
     }
 }
 
-/// Finds the free rigid motions of the scene under `loads`, and those by which its bodies come to rest from
-/// where the closing motions of the step `before` left them, none for the first. Collective.
+/// Finds the free rigid-body motions of the scene under `loads`, and the closing motions, which start from those of the
+/// step `before`; there are none before the first step. Collective.
 ///
 /// # Errors
-/// The load drives a motion that nothing holds.
+/// The load drives a motion that neither supports nor contact restrain.
 pub fn analyse_bodies(
     context: &Context<'_>,
     loads: &Loads,
@@ -77,7 +77,7 @@ pub fn analyse_bodies(
                 motions,
             }
         });
-        // What was found after that may be half of it.
+        // After a signal the result may be incomplete.
         match is_asked_to_stop() {
             false => found,
             true => Err(Failure::interrupted(
@@ -102,7 +102,7 @@ pub fn analyse_bodies(
     })
 }
 
-/// The motions that the root found, for all ranks.
+/// Results of the root's analysis, for all ranks.
 #[derive(Default, Serialize, Deserialize)]
 struct Found {
     motions: RigidMotions,
@@ -110,11 +110,11 @@ struct Found {
     closing_motions: Vec<Vec<f64>>,
 }
 
-/// Rest of a length after a motion, relative to both, that is round-off: a body is stiff
-/// enough to make forces of it.
+/// Length left after the subtraction of a motion, relative to both, up to which it is round-off; a stiff body would
+/// turn it into forces.
 const ROUND_OFF: f64 = 1e-14;
 
-/// The loads on the blocks without the bodies' closing motions in gaps and supports.
+/// The loads on the blocks with the closing motions subtracted from gaps and prescribed displacements.
 pub fn without_closing_motions(
     context: &Context<'_>,
     mut loads: Loads,
@@ -156,7 +156,7 @@ pub fn without_closing_motions(
     loads
 }
 
-/// Takes the part of a motion along `row` out of a length.
+/// Subtracts from `whole` the displacement `moved` along `row`; round-off becomes 0.
 fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
     let given = whole.abs() + length(*row) * length(*moved);
     *whole -= dot(*row, *moved);
@@ -165,7 +165,7 @@ fn reduce(whole: &mut f64, row: &[f64; 3], moved: &[f64; 3]) {
     }
 }
 
-/// The displacement of every block, node by node: that of its solution and the bodies' closing motions.
+/// The displacement of every block, node by node: its solution plus its body's closing motion.
 pub fn with_closing_motions<'a>(
     context: &Context<'_>,
     solutions: impl Iterator<Item = (BlockId, &'a [f64])>,

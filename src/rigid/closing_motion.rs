@@ -1,8 +1,8 @@
-//! Closing motions: the rigid motions by which bodies come to rest.
+//! Closing motions: the rigid-body motions by which bodies come into contact.
 //!
-//! A body that falls 0.1 m until it touches another and deforms by 1 µm then has a displacement of
-//! which elasticity is the last digits. So the closing motion is found from geometry and load alone
-//! and taken out of the problem: what is left is small, and starts where contact holds.
+//! For a body that falls 0.1 m onto another and deforms by 1 µm, the elastic part is in the last digits of the
+//! displacement. The closing motion is therefore computed from geometry and load alone and subtracted from the problem.
+//! The remaining displacement is small, and the solver starts with contacts that hold the bodies.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,27 +14,27 @@ use super::scene::{BodyState, Friction, RigidRow};
 use crate::comm::is_asked_to_stop;
 use crate::fem::body_frame::BodyFrame;
 
-/// Drive that is left, relative to all, that counts as none.
+/// Unbalanced load, relative to all loads, that counts as zero.
 const BALANCED: f64 = 1e-9;
-/// Drive that counts as none where springs that hold many bodies take a part of it: these move some thousand times
-/// their gaps.
+/// The same where regularizing springs of the sparse solver for many bodies take a part of the load: they move bodies
+/// by some thousand times their gaps.
 const SPRINGS: f64 = 1e-6;
-/// Motions from which on dense matrices would take gigabytes: where sparse ones don't find how bodies come to rest, they
-/// stay where they are, and the solver moves them.
+/// Number of motions from which on dense matrices would take gigabytes. If the sparse method doesn't find the rest
+/// position of so many, they stay where they are, and the contact solver moves them.
 const TOO_MANY: usize = 3000;
-/// Distance, relative to the size of the scene, that counts as none.
+/// Distance, relative to the size of the scene, that counts as zero.
 const TOUCHING: f64 = 1e-12;
-/// Cosine between a motion and a condition's row below which the motion doesn't close it.
+/// Cosine between a motion and a constraint's row below which the motion doesn't close the contact.
 const ALONG: f64 = 1e-12;
-/// Weight, relative to the heaviest body, down to which one falls as fast.
+/// Weight, relative to the heaviest body, down to which bodies fall at the same speed.
 const LIGHTEST: f64 = 1e-4;
 
-/// Rigid motion that each of `bodies` makes until contact `rows` balance the load: first what its
-/// supports prescribe, as far as no gap closes, then downhill along the load until one closes, and
-/// again. Gaps that are closed from the beginning stay as they are.
+/// The rigid motion of each of `bodies` until contact `rows` balance the load: first the displacement that its supports
+/// prescribe, as far as no gap closes, then descent along the load until a gap closes, and so on. Initially closed gaps
+/// stay closed.
 ///
-/// Friction makes these motions depend on the path: they go on from those `before`, of which there are none in the
-/// first load step, what friction holds stays, and what comes to rest on it does so with no more slip than it must.
+/// Friction makes these motions path-dependent. They then continue from the motions `before`, zero in the first load
+/// step; what friction holds stays in place, and bodies that come to rest on it slip as little as possible.
 pub(super) fn closing_motions(
     dim: usize,
     bodies: &[BodyState],
@@ -58,7 +58,7 @@ pub(super) fn closing_motions(
     let left = gaps_left(rows, &motions);
     let is_open = left.iter().any(|&left| left > touching && left.is_finite());
     let resting = match is_open {
-        // No gap is left that could close.
+        // All gaps are closed already.
         false => Some(DVector::zeros(load.len())),
         true if kinematics.len >= MANY => {
             let found = rest(&kinematics, rows, &speed, &load, &left, touching);
@@ -88,7 +88,7 @@ pub(super) fn closing_motions(
     motions
 }
 
-/// The motions from a `start` along what supports prescribe, as far as no gap closes.
+/// The motions from `start` along the displacements that supports prescribe, as far as no gap closes.
 fn along_supports(
     dim: usize,
     bodies: &[BodyState],
@@ -118,7 +118,7 @@ fn along_supports(
     motions
 }
 
-/// The gaps that motions leave; what is tangential has none that could close.
+/// The gaps left after motions; infinite for tangential constraints, which have none.
 fn gaps_left(rows: &[RigidRow], motions: &[Vec<f64>]) -> Vec<f64> {
     let left = |row: &RigidRow| match row.friction {
         None => (row.gap - jump(row, motions)).max(0.0),
@@ -138,7 +138,7 @@ fn move_along(motions: &mut [Vec<f64>], kinematics: &Kinematics, y: &DVector<f64
     }
 }
 
-/// Change from `start` to the rigid motion that fits best what the supports of a body prescribe.
+/// Difference from `start` to the rigid motion that fits the prescribed displacements of a body's supports best.
 fn prescribed(dim: usize, body: &BodyState, start: &[f64]) -> Vec<f64> {
     let modes = BodyFrame::count(dim);
     let rows = &body.supports;
@@ -166,7 +166,7 @@ fn jump(row: &RigidRow, motions: &[Vec<f64>]) -> f64 {
     row.bodies.iter().map(of_body).sum()
 }
 
-/// One over the load of each unknown's body, so that light bodies fall as fast as heavy ones.
+/// Reciprocal of the load of each unknown's body, so that light bodies fall as fast as heavy ones.
 fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
     let heaviest = bodies.iter().fold(0.0, |m: f64, b| m.max(b.load_scale));
     let mut speed = DVector::from_element(kinematics.len, 1.0);
@@ -180,13 +180,13 @@ fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
             speed[i] = 1.0 / weight;
         }
     }
-    // The fastest moves as fast as the load says.
+    // Scaled so that the fastest body moves as fast as its load says.
     let fastest = speed.amax();
     speed / fastest
 }
 
-/// Rest position of many bodies, if that is found: they stay where they are if what touches balances the load.
-/// With friction nothing else is found.
+/// Rest position of many bodies; `None` if it isn't found. They stay in place if the closed contacts balance the load,
+/// which is the only case handled with friction.
 fn rest(
     kinematics: &Kinematics,
     rows: &[RigidRow],
@@ -225,8 +225,8 @@ fn rest(
     with(sparse, &gaps, SPRINGS).map(|rest| DVector::from_vec(rest.motion))
 }
 
-/// Descent along `load` within B y ≤ `left`: along what closed contacts leave of the load, until
-/// the next row closes. That drive becomes smaller with every row, so that this ends.
+/// Descent along `load` within B y ≤ `left`: along the part of the load that closed contacts don't balance, until the
+/// next row closes. This drive shrinks with every row, so that the descent ends.
 fn fall(
     rows: &[RigidRow],
     b: &DMatrix<f64>,
@@ -258,8 +258,8 @@ fn fall(
     y
 }
 
-/// The motion that takes back as much of the `slip` of closed contacts as these leave: sides that stick once they
-/// touch do so where they were above each other, however the bodies came there.
+/// Removes as much of the `slip` of closed contacts as motions allow: sides that stick once they touch have no slip,
+/// whatever path brought the bodies there.
 fn without_slip(
     rows: &[RigidRow],
     kinematics: &Kinematics,

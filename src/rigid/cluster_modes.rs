@@ -1,4 +1,4 @@
-//! Contact conditions against the rigid motions of the bodies that lie wholly in a cluster.
+//! Contact constraints in the rigid-body motions of the bodies that lie wholly in a cluster.
 
 use contact_dd_partition::id::{ClusterId, GroupId, OnPairs};
 use faer::Mat;
@@ -12,19 +12,19 @@ use crate::context::Context;
 use crate::fem::assembly::FixingDof;
 use crate::interface::rigid_modes::RigidModes;
 
-/// Jump of a condition in a motion, relative to others, that is none.
+/// Jump of a constraint in a motion, relative to others, that counts as zero.
 const ROUND_OFF: f64 = 1e-9;
 
 impl Scene {
-    /// The conditions with these numbers against the motions that supports leave to the bodies, and
-    /// the load along these.
+    /// The constraints with these numbers in the motions that supports leave to the bodies, and the load along these
+    /// motions.
     pub fn against(&self, conditions: &[usize]) -> RigidModes {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         self.drive(&kinematics, conditions, &[], |_| true)
     }
 
-    /// The same for the motions of some `bodies` alone, as far as they leave the `fixing_dofs` where they are:
-    /// others may hold a body's neighbours, and then it costs energy to move its pin.
+    /// The same for the motions of some `bodies` alone, restricted to those that leave the `fixing_dofs` in place: if
+    /// other constraints hold a body's neighbours, moving its fixing dof costs energy.
     fn drive(
         &self,
         kinematics: &Kinematics,
@@ -42,7 +42,7 @@ impl Scene {
             let sparse: Vec<SparseRow> = rows.map(|row| kinematics.sparse_row(&row)).collect();
             let mut b = DMatrix::zeros(sparse.len(), columns.len());
             for (j, row) in sparse.iter().enumerate() {
-                // A motion along a side moves it nowhere but by round-off.
+                // The jump of a motion along a contact's surface is round-off.
                 let largest = row
                     .iter()
                     .fold(0.0, |m: f64, (_, entry)| m.max(entry.abs()));
@@ -60,7 +60,7 @@ impl Scene {
         let mut load = kinematics.load(&self.bodies).select_rows(&columns);
         let pins = fixing_dofs.iter();
         let pins = pins.filter_map(|pin| self.fixing_row(pin, &own));
-        // Nor do ties let bodies move as they like.
+        // Ties restrict the motions as well.
         let ties = self.rows.iter().filter(|row| row.is_tied).cloned();
         let pinned = against(&mut pins.chain(ties));
         if pinned.iter().any(|&p| p != 0.0) {
@@ -73,7 +73,7 @@ impl Scene {
         }
     }
 
-    /// Displacement of a pin of one of `own` bodies by the motions.
+    /// Displacement of a fixing dof of one of `own` bodies in the motions.
     fn fixing_row(&self, fixing_dof: &FixingDof, own: &[usize]) -> Option<RigidRow> {
         own.iter().find_map(|&b| {
             let body = &self.bodies[b];
@@ -90,7 +90,7 @@ impl Scene {
         })
     }
 
-    /// The numbers of the conditions of these groups.
+    /// The numbers of the constraints of these groups.
     pub fn conditions_of(&self, groups: &[GroupId]) -> Vec<usize> {
         let of_group = |&g: &GroupId| {
             let first: usize = self.conditions[..g.index()].iter().sum();
@@ -100,8 +100,8 @@ impl Scene {
     }
 }
 
-/// Conditions of every cluster in contact of this rank against the motions of the bodies wholly in it that leave the
-/// `fixing_dofs` where they are. Collective; `scene` counts on the root alone.
+/// Constraints of every cluster in contact of this rank in the motions of the bodies wholly in it that leave the
+/// `fixing_dofs` in place. Collective; `scene` is used on the root only.
 pub(super) fn cluster_modes(
     context: &Context<'_>,
     scene: &Scene,
@@ -119,7 +119,7 @@ pub(super) fn cluster_modes(
     context.comm.scattered(&plan.pair_owners(), |p| {
         let cluster = plan.pairs[p];
         let conditions = scene.conditions_of(&plan.clusters[cluster].groups);
-        // Where the cluster leaves its nodes to the interface problem, bodies move these.
+        // A cluster that leaves its nodes to the interface problem has no such motions: bodies move these nodes.
         let inside = !plan.leaves_its_nodes(plan.clusters[cluster].node);
         let within = |body: usize| inside && !elsewhere[body] && home[body] == Some(cluster);
         scene.drive(&kinematics, &conditions, fixing_dofs, within)

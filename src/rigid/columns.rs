@@ -1,12 +1,12 @@
-//! A QR factorization whose columns come and go.
+//! QR factorization with insertion and removal of columns.
 
 use crate::vector::axpy;
 use nalgebra::{DMatrix, DVector};
 
-/// Part of a column that is new, relative to it, below which it depends on the others.
+/// Norm of the part of a column orthogonal to the others, relative to the column, below which it depends on them.
 const DEPENDENT: f64 = 1e-12;
 
-/// Q R of the columns that were pushed and not removed, in O(rows · columns) each time.
+/// Q R of the columns pushed and not removed; each update costs O(rows · columns).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Columns {
     /// Numbers of the columns, in the order of R.
@@ -17,13 +17,12 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Appends column `number` of `a`. Returns whether it is independent of those that are in; it
-    /// stays out if it isn't.
+    /// Appends column `number` of `a` if it is linearly independent of the others; returns whether it is.
     pub fn push(&mut self, a: &DMatrix<f64>, number: usize) -> bool {
         let mut column: DVector<f64> = a.column(number).into_owned();
         let size = column.norm();
         let mut r = vec![0.0; self.q.len()];
-        // Twice is enough for orthogonality to rounding.
+        // Two passes of Gram-Schmidt give orthogonality to round-off.
         for _ in 0..2 {
             for (r, q) in r.iter_mut().zip(&self.q) {
                 let along = q.dot(&column);
@@ -42,11 +41,11 @@ impl Columns {
         true
     }
 
-    /// Takes the column at `place` out.
+    /// Removes the column at `place`.
     pub fn remove(&mut self, place: usize) {
         self.numbers.remove(place);
         self.r.remove(place);
-        // What stands below the diagonal in the columns behind it is turned away.
+        // Givens rotations zero the subdiagonal entries of the columns behind it.
         for k in place..self.r.len() {
             let (a, b) = (self.r[k][k], self.r[k][k + 1]);
             let size = a.hypot(b);
@@ -66,7 +65,7 @@ impl Columns {
         self.q.truncate(self.r.len());
     }
 
-    /// The coefficients with which the columns come nearest to `b`.
+    /// Coefficients of the least-squares solution: the combination of columns nearest to `b`.
     pub fn solve(&self, b: &DVector<f64>) -> Vec<f64> {
         let mut x: Vec<f64> = self.q.iter().map(|q| q.dot(b)).collect();
         for k in (0..x.len()).rev() {
@@ -78,7 +77,7 @@ impl Columns {
         x
     }
 
-    /// The residual of `b` after the columns.
+    /// The residual of that least-squares problem.
     pub fn residual(&self, b: &DVector<f64>) -> DVector<f64> {
         let mut left = b.clone();
         for _ in 0..2 {

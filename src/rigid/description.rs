@@ -1,4 +1,4 @@
-//! Rigid motions in words.
+//! Descriptions of rigid-body motions.
 
 use std::collections::BTreeSet;
 
@@ -9,15 +9,15 @@ use super::kinematics::Kinematics;
 use super::scene::BodyState;
 use crate::fem::body_frame::BodyFrame;
 
-/// Motions up to which each is described: more are any basis of what bodies can do together.
+/// Number of motions up to which each is described; a larger set has no natural basis.
 const MOTIONS: usize = 3;
 /// Bodies up to which all are named.
 const BODIES: usize = 6;
-/// Part of a motion that isn't worth a word.
+/// Part of a motion, relative to the whole, that is left out of its description.
 const NO_PART: f64 = 1e-6;
 
 impl Kinematics {
-    /// The parts that move in `motions`, a clause for each warning.
+    /// Descriptions of the parts of the scene that move in `motions`, a clause for each warning.
     pub(super) fn described(
         &self,
         bodies: &[BodyState],
@@ -45,7 +45,7 @@ impl Kinematics {
     }
 }
 
-/// Motions that span the same, as many of them without a rotation as can be, and each of few bodies.
+/// A basis of the span of motions with as few rotations as possible and each of few bodies.
 fn simplest(motions: &[FreeMotion], dim: usize) -> Vec<FreeMotion> {
     let bodies: BTreeSet<usize> = motions.iter().flat_map(taking_part).collect();
     let bodies: Vec<usize> = bodies.into_iter().collect();
@@ -58,7 +58,7 @@ fn simplest(motions: &[FreeMotion], dim: usize) -> Vec<FreeMotion> {
             }
         }
     }
-    // Rotations first: what is left without one is a translation.
+    // Rotations are eliminated first: the motions left without one are translations.
     let columns = (dim..rigid).chain(0..dim);
     let columns = columns.flat_map(|k| (0..bodies.len()).map(move |place| rigid * place + k));
     let (mut done, mut rotations) = (0, 0);
@@ -106,7 +106,7 @@ fn taking_part(motion: &FreeMotion) -> impl Iterator<Item = usize> + '_ {
     (motion.bodies.iter()).filter_map(move |(b, z)| moves(z).then_some(*b))
 }
 
-/// The first of many names, and how many there are besides.
+/// The first of many names, and the number of the others.
 fn listed(mut names: Vec<String>) -> String {
     let more = names.len().saturating_sub(BODIES);
     if more == 0 {
@@ -122,7 +122,7 @@ mod tests {
     use crate::rigid::scene::Scene;
     use crate::rigid::squares::{body, scene};
 
-    /// `n` squares in a row, and one free motion of each, along x.
+    /// Descriptions for `n` squares in a row, each with one free motion along x.
     fn described(n: usize, motions: Vec<FreeMotion>) -> Vec<String> {
         let state = |b: f64| body([b, 0.0, 0.0], [b + 1.0, 1.0, 0.0], &[0.0; 3]);
         let bodies = (0..n).map(|b| state(b as f64)).collect();

@@ -1,4 +1,4 @@
-//! The forces that contact can give: what normals press and friction holds.
+//! Admissible contact forces: normal pressure, and friction within its bound.
 
 use std::collections::BTreeMap;
 
@@ -10,52 +10,52 @@ use super::null_space::{RANK_TOLERANCE, null_space};
 use super::proof::Loaded;
 use super::scene::{Friction, RigidRow};
 
-/// Part of the fastest motion of a condition with which sides slip.
+/// Slip in a motion, relative to its largest jump, from which on the sides count as slipping.
 const SLIPS: f64 = 0.1;
-/// Rest of a load, relative to it, that is round-off.
+/// Remaining load, relative to the whole, that is round-off.
 const NOTHING: f64 = 1e-15;
-/// Part of what is left that more forces leave if they aren't worth it.
+/// Ratio of the remaining load after a refinement to that before it, above which refinement ends.
 const WORTH_IT: f64 = 0.9;
-/// Coefficient of friction from which cones are nearly half spaces.
+/// Coefficient of friction from which on cones are nearly half spaces.
 const STEEP: f64 = 1e3;
-/// Work along a motion that proves that nothing balances a load, relative to that along the one before, if it is worth
-/// another one: the motion is told, and the steepest one tells most.
+/// Ratio of the work of the load along successive motions, each proof that no forces balance it, above which refinement
+/// continues: the reported motion should be the one with the most work.
 const WORTH_TURNING: f64 = 1.0 + 1e-10;
-/// Most refinements of the cones' polygons.
+/// Most refinements of the polygons that approximate the cones.
 const REFINEMENTS: usize = 40;
-/// Half of the directions in a tangential plane that stand for all.
+/// Half the number of initial directions in a tangential plane.
 const DIRECTIONS: usize = 4;
 
-/// A force on conditions, which can be given up to so many times.
+/// A unit force on constraints; admissible forces contain it with a factor from 0 to `largest`.
 #[derive(Clone, Debug, PartialEq)]
 struct Generator {
     normal: Option<usize>,
-    /// Tangential conditions, and their part.
+    /// Tangential constraints and their components.
     tangential: Vec<(usize, f64)>,
     largest: f64,
 }
 
-/// Part of a load that forces don't balance.
+/// Part of a load that the admissible forces don't balance.
 #[derive(Debug)]
 pub(super) struct Unbalanced {
-    /// The unbalanced load, 0 where forces balance it.
+    /// The unbalanced load, 0 where forces balance all of it.
     pub left: DVector<f64>,
-    /// A motion along which the load does more work than forces take.
+    /// A motion along which the load does more work than the forces can absorb.
     pub proof: Option<DVector<f64>>,
 }
 
-/// Forces that contact can give: the sums of these.
+/// Admissible contact forces: non-negative combinations of generators.
 #[derive(Debug, Default)]
 pub(super) struct Forces {
     generators: Vec<Generator>,
-    /// The circular ones: normal and tangential conditions, and the coefficient.
+    /// The circular friction cones: normal constraint, tangential constraints, and coefficient.
     cones: Vec<(usize, [usize; 2], f64)>,
     pub has_friction: bool,
 }
 
 impl Forces {
-    /// The forces of the conditions of `rows` where the contact of a normal one is `closed`; in space a prism stands for
-    /// what is bounded beside the cones, at most 8 % wider.
+    /// The forces of the constraints `rows`, where `closed` tells whether the contact of a normal constraint is closed.
+    /// In space the friction bound without pressure becomes a prism around the circular one, at most 8 % wider.
     pub fn new(rows: &[RigidRow], closed: impl Fn(usize) -> bool) -> Self {
         let mut tangents: Vec<Vec<usize>> = vec![Vec::new(); rows.len()];
         for (i, row) in rows.iter().enumerate() {
@@ -95,7 +95,8 @@ impl Forces {
             add(Some(normal), Vec::new(), f64::INFINITY);
         } else if closed {
             if slope > STEEP {
-                // The edges are nearly against each other: pressure alone would be a difference of large forces.
+                // The edges of a steep cone are nearly opposite: pure pressure would be a small difference of large
+                // forces.
                 add(Some(normal), Vec::new(), f64::INFINITY);
             }
             for direction in &along {
@@ -118,7 +119,8 @@ impl Forces {
         }
     }
 
-    /// Work of the forces on motions whose jumps at the conditions are the columns of `b`, a column each.
+    /// Work of the unit forces in motions whose jumps at the constraints are the columns of `b`; a column for each
+    /// force.
     fn actions(&self, b: &DMatrix<f64>) -> DMatrix<f64> {
         let mut actions = DMatrix::zeros(b.ncols(), self.generators.len());
         for (generator, mut action) in self.generators.iter().zip(actions.column_iter_mut()) {
@@ -130,8 +132,8 @@ impl Forces {
         actions
     }
 
-    /// The work, on motions of which `rows` hold what each condition makes, of those that can be given any number of
-    /// times; of prisms those around the circular cones instead of those within, if they are to be `wider`.
+    /// Work of the unbounded generators in motions, where `rows` are the jumps of the motions at each constraint; if
+    /// `wider`, the polygons circumscribe the circular cones instead of being inscribed.
     pub fn cones(&self, rows: &[SparseRow], wider: bool) -> Vec<SparseRow> {
         let factor = match wider && !self.cones.is_empty() {
             true => 1.0 / half_angle().cos(),
@@ -153,7 +155,7 @@ impl Forces {
         unbounded.map(of_generator).collect()
     }
 
-    /// λ_t of all conditions where each of the [`cones`](Self::cones) is given so many times, and those are within.
+    /// λ_t of all constraints for the factors `lambda` of the inscribed [`cones`](Self::cones).
     pub fn tangential_of_cones(&self, lambda: &[f64], conditions: usize) -> DVector<f64> {
         let mut lambda = lambda.iter();
         let given = self.generators.iter().map(|g| match g.largest {
@@ -167,8 +169,8 @@ impl Forces {
         self.generators.iter().map(|g| g.largest).collect()
     }
 
-    /// The part of a load that these forces don't balance, and the motion that proves that none balance it; a norm up
-    /// to `nothing` is balance. Circular cones get more forces until one or the other is certain.
+    /// The part of a load that these forces don't balance, and a motion that proves that none do; a norm up to
+    /// `nothing` counts as balance. Polygons of circular cones are refined until one of both is certain.
     pub fn unbalanced(&mut self, loaded: &Loaded<'_>, nothing: f64) -> Unbalanced {
         let Loaded { b, load, .. } = *loaded;
         let in_span = self.in_span(b, load);
@@ -222,7 +224,8 @@ impl Forces {
         }
     }
 
-    /// The part of a load that they leave in their span, and the motion along which it drives there.
+    /// The part of a load that the forces leave unbalanced in their span, and the motion along which it drives the
+    /// bodies.
     fn in_span(
         &self,
         b: &DMatrix<f64>,
@@ -233,17 +236,18 @@ impl Forces {
             let found = residual_in_span(&actions, load, &largest, RANK_TOLERANCE)?;
             return Some((found.left, found.drive));
         }
-        // What conditions hold along tangents spans as much as they do, however little friction they have.
+        // Friction, however small, doesn't change the span of the constraints, so that the reduction uses these.
         let held = null_space(&null_space(b).transpose());
         let (actions, load) = (held.tr_mul(&actions), held.tr_mul(load));
         let found = residual_in_span(&actions, &load, &largest, NOTHING)?;
         Some((&held * (found.left + found.outside), held * found.drive))
     }
 
-    /// Part of a `load` that drives the bodies, as these forces don't balance it.
+    /// Part of a `load` that drives the bodies, because the forces don't balance it.
     ///
-    /// With friction they slip that way and don't fly as high as the friction angle: the tangential forces that
-    /// come nearest are taken from the load, and normal ones balance what they can of the rest.
+    /// With friction the bodies slide along their contacts rather than rise at the friction angle: the tangential
+    /// forces of the nearest combination are subtracted from the load, and normal forces balance as much of the rest as
+    /// they can.
     pub fn drive(&mut self, b: &DMatrix<f64>, load: &DVector<f64>) -> DVector<f64> {
         let Nearest { lambda, left } = self.nearest(b, load);
         if !self.has_friction {
@@ -256,7 +260,7 @@ impl Forces {
         residual(&b.select_rows(&normals).transpose(), &rest)
     }
 
-    /// The forces that come nearest to a `load`; circular cones get more of them as long as that brings it nearer.
+    /// The forces nearest to a `load`; polygons of circular cones are refined as long as that reduces the distance.
     fn nearest(&mut self, b: &DMatrix<f64>, load: &DVector<f64>) -> Nearest {
         let mut found = nearest(&self.actions(b), load, &self.largest());
         for _ in 0..REFINEMENTS {
@@ -278,7 +282,7 @@ impl Forces {
         found
     }
 
-    /// Adds to every circular cone its force along tangential `parts` of the conditions that are more than
+    /// Adds to every circular cone its generator along the tangential `parts` of its constraints, where these exceed
     /// `nothing`.
     fn refine(&mut self, parts: &DVector<f64>, nothing: f64) {
         for &(normal, [t, s], slope) in &self.cones {
@@ -294,7 +298,7 @@ impl Forces {
         }
     }
 
-    /// λ_n of all conditions, of which `b` has rows.
+    /// λ_n of all constraints, the rows of `b`.
     fn normal(&self, lambda: &[f64], b: &DMatrix<f64>) -> Vec<f64> {
         let mut forces = vec![0.0; b.nrows()];
         for (generator, lambda) in self.generators.iter().zip(lambda) {
@@ -305,7 +309,7 @@ impl Forces {
         forces
     }
 
-    /// λ_t of all conditions.
+    /// λ_t of all constraints.
     fn tangential(&self, lambda: &[f64], conditions: usize) -> DVector<f64> {
         let mut forces = DVector::zeros(conditions);
         for (generator, lambda) in self.generators.iter().zip(lambda) {
@@ -317,7 +321,7 @@ impl Forces {
     }
 }
 
-/// True if sides with friction slip on each other in a motion that has `moved` the conditions so far.
+/// True if sides with friction slip on each other in a motion with the jumps `moved` at the constraints.
 pub(super) fn slips(rows: &[RigidRow], moved: &[f64]) -> bool {
     let far = moved
         .iter()
@@ -329,7 +333,7 @@ pub(super) fn slips(rows: &[RigidRow], moved: &[f64]) -> bool {
     })
 }
 
-/// Directions in a tangential plane, each with its parts along `tangents`: both in the plane.
+/// Directions in a tangential plane by components along `tangents`; in the plane there are two.
 fn directions(tangents: &[usize]) -> Vec<Vec<(usize, f64)>> {
     match *tangents {
         [t] => vec![vec![(t, 1.0)], vec![(t, -1.0)]],
@@ -343,7 +347,7 @@ fn directions(tangents: &[usize]) -> Vec<Vec<(usize, f64)>> {
     }
 }
 
-/// Half the angle between neighbouring ones of these.
+/// Half the angle between neighbouring directions.
 fn half_angle() -> f64 {
     std::f64::consts::PI / (2 * DIRECTIONS) as f64
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A free rigid motion without load along it: for each body that takes part its coefficients.
+/// A free rigid-body motion without load along it: for each body that moves, its coefficients.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FreeMotion {
     /// Bodies and their coefficients.

@@ -1,5 +1,5 @@
-//! The limit of friction: a rigid motion that only friction resists, with all the force that it can give, which is the same
-//! wherever bodies slide to.
+//! The friction limit: a rigid motion that only friction at its bound resists. As friction stays at the bound wherever
+//! the bodies slide, their position is indeterminate.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,9 +7,9 @@ use super::kinematics::Kinematics;
 use super::released_modes::ConditionState;
 use super::scene::{RigidRow, Scene};
 
-/// Part of what friction can give from which it is at its limit.
+/// Ratio of the work of friction to its bound from which on it counts as being at its limit.
 const AT_LIMIT: f64 = 1.0 - 1e-6;
-/// Singular value relative to the largest one that is none.
+/// Singular value, relative to the largest, that counts as zero.
 const RANK: f64 = 1e-9;
 
 /// A point whose friction is at its bound.
@@ -19,18 +19,18 @@ struct AtBound {
     bound: f64,
 }
 
-/// Resistance to rigid motions in a solution.
+/// Resistance of a solution's contacts to rigid motions.
 #[derive(Default)]
 struct Resistance {
-    /// Points that press, and stick under less than their bound.
+    /// Points under pressure, and points that stick below their bound.
     rows: Vec<RigidRow>,
     at_bound: Vec<AtBound>,
 }
 
 impl Scene {
-    /// The motion, in words, along which bodies may slide under the same forces: no contact presses against it or sticks,
-    /// and friction does all but a millionth of the work that it can. It is sought where sides have slipped, and where
-    /// friction acts.
+    /// Descriptions of motions along which bodies may slide under the same forces: no pressure or sticking contact
+    /// resists them, and friction does all of its largest possible work but a millionth. Only sides that have slipped
+    /// and carry friction are considered.
     pub fn friction_limit(&self, conditions: &[ConditionState]) -> Vec<String> {
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         let Resistance { rows, at_bound } = self.resistance(conditions);
@@ -109,7 +109,7 @@ impl Scene {
     }
 }
 
-/// The combination of motions that comes nearest to a `target`, where `slips` are those of the motions, a column each.
+/// The combination of motions nearest to a `target`, where the columns of `slips` are the slips of the motions.
 fn nearest(
     slips: &DMatrix<f64>,
     weights: &DVector<f64>,
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
     use crate::rigid::squares::{coulomb, scene, square};
 
-    /// The description of a square on a floor below its corners, on each of which this presses and this is held.
+    /// The description for a square on a floor with these normal and tangential forces at its lower corners.
     fn said(forces: [[f64; 2]; 2], sticks: bool) -> Vec<String> {
         let body = square([0.0; 3]);
         let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
@@ -157,7 +157,7 @@ mod tests {
         for (forces, sticks, is_at_limit) in [
             ([[2.0, 1.0], [4.0, 2.0]], false, true),
             ([[2.0, 1.0], [4.0, 2.0]], true, true),
-            // They slip against each other.
+            // The friction forces are opposite.
             ([[2.0, 1.0], [4.0, -2.0]], false, false),
             ([[2.0, 1.0], [4.0, 2.0 * (1.0 - 1e-9)]], false, true),
             ([[2.0, 1.0], [4.0, 1.9]], false, false),

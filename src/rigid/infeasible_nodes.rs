@@ -1,4 +1,4 @@
-//! Nodes to which rigid obstacles and supports leave no place.
+//! Nodes whose obstacles and supports are contradictory.
 
 use std::collections::BTreeMap;
 
@@ -9,16 +9,16 @@ use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 use crate::rigid::nonnegative::residual;
 
-/// Largest overlap of obstacles, relative to the gaps and displacements that they prescribe.
+/// Largest overlap of obstacles, relative to the gaps and prescribed displacements.
 const OVERLAP: f64 = 1e-9;
 
-/// ‖r‖ up to which conditions count as contradictory; it is 1 where they leave most room.
+/// ‖r‖ up to which constraints count as contradictory; it is 1 at most.
 const CONTRADICTORY: f64 = 1e-6;
 
 /// n·u ≤ g.
 type HalfSpace = ([f64; 3], f64);
 
-/// Checks that every node on which several obstacles act can keep to them and to its supports.
+/// Checks that every node with several obstacles can satisfy them and its supports at once.
 ///
 /// # Errors
 /// The first node that can't, with its contacts.
@@ -57,8 +57,7 @@ pub fn check(group: &ContactGroup, loads: &GroupLoads, catalog: &Catalog) -> Res
     Ok(())
 }
 
-/// True if some u keeps to all half spaces: if not, by Farkas, λ ≥ 0 exist with Σ λ n = 0 and Σ λ g
-/// < 0.
+/// True if some u lies in all half spaces. Otherwise, by Farkas' lemma, λ ≥ 0 exist with Σ λ n = 0 and Σ λ g < 0.
 fn leave_a_place(half_spaces: &[HalfSpace]) -> bool {
     let scale = half_spaces
         .iter()
@@ -92,7 +91,7 @@ mod tests {
             (vec![along(0.0, -0.2), along(90.0, -0.2)], true),
             (vec![along(0.0, 0.0), along(180.0, 0.0)], true),
             (vec![along(0.0, 1e-9), along(180.0, -1.0)], false),
-            // Three walls around a point, which lie 1 apart from it on one side or the other.
+            // Three walls around a point, each at a distance of 1 on either side.
             (
                 vec![along(0.0, 1.0), along(120.0, 1.0), along(240.0, 1.0)],
                 true,

@@ -1,4 +1,4 @@
-//! The motions that supports leave to the bodies of a scene.
+//! The rigid-body motions that supports leave to the bodies of a scene.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,7 +9,7 @@ use super::scene::{BodyState, RigidRow};
 use super::unheld_motions::unheld_motions;
 use crate::fem::body_frame::BodyFrame;
 
-/// The motions that supports leave to all bodies, side by side.
+/// The motions that supports leave to all bodies; their coefficients are the unknowns of the analysis.
 pub(super) struct Kinematics {
     /// Dimension of space.
     pub dim: usize,
@@ -39,7 +39,7 @@ impl Kinematics {
         Self::of_bases(dim, bases, bodies.iter().map(|body| body.frame.center))
     }
 
-    /// The kinematics of bodies about these `centers` that have these bases of motions.
+    /// The kinematics of bodies with these bases of motions about `centers`.
     fn of_bases(
         dim: usize,
         bases: Vec<DMatrix<f64>>,
@@ -62,7 +62,7 @@ impl Kinematics {
         }
     }
 
-    /// B against them, a row a condition.
+    /// B on these motions, a row for each constraint.
     pub fn rows(&self, rows: &[RigidRow]) -> DMatrix<f64> {
         let mut b = DMatrix::zeros(rows.len(), self.len);
         for (i, row) in rows.iter().enumerate() {
@@ -81,7 +81,7 @@ impl Kinematics {
         b
     }
 
-    /// The jumps that `motions`, a column each, make of conditions.
+    /// The jumps of constraints in `motions`, one motion per column.
     pub fn jumps(&self, rows: &[RigidRow], motions: &DMatrix<f64>) -> DMatrix<f64> {
         if self.len < MANY {
             return self.rows(rows) * motions;
@@ -96,8 +96,8 @@ impl Kinematics {
         jumps
     }
 
-    /// An orthonormal basis of the motions that the conditions `rows` don't hold, without those `known`, a column each;
-    /// nothing where a signal stopped that.
+    /// An orthonormal basis of the motions that the constraints `rows` don't restrain, orthogonal to those `known`, one
+    /// per column; `None` if a signal stopped the computation.
     pub fn unheld(&self, rows: &[RigidRow], known: &[FreeMotion]) -> Option<DMatrix<f64>> {
         if self.len < MANY {
             let mut b = self.rows(rows).insert_rows(0, known.len(), 0.0);
@@ -123,7 +123,7 @@ impl Kinematics {
         Some(unheld)
     }
 
-    /// A row of B, sparse as it touches few bodies.
+    /// A row of B, sparse because it touches few bodies.
     pub fn sparse_row(&self, row: &RigidRow) -> SparseRow {
         let mut sparse = SparseRow::new();
         for (body, action) in &row.bodies {
@@ -131,7 +131,7 @@ impl Kinematics {
             let along = self.bases[*body].tr_mul(&action);
             sparse.extend(self.unknowns(*body).zip(along.iter().copied()));
         }
-        // A body comes twice where two of its nodes do.
+        // A body with two nodes in the constraint occurs twice.
         sparse.sort_by_key(|&(i, _)| i);
         sparse.dedup_by(|(i, value), (kept, sum)| {
             let same = i == kept;
@@ -141,7 +141,8 @@ impl Kinematics {
         sparse
     }
 
-    /// Motions of every body that conditions `rows` touch, and those that no condition touches, which are free.
+    /// The motions of the bodies that the constraints `rows` touch, and the motions that no constraint touches, which
+    /// are free.
     pub fn touched(&self, rows: &[RigidRow]) -> (Self, Vec<FreeMotion>) {
         let mut of_body: Vec<Vec<Vec<f64>>> = vec![Vec::new(); self.bodies()];
         for (body, action) in rows.iter().flat_map(|row| &row.bodies) {
@@ -162,7 +163,7 @@ impl Kinematics {
         (Self::of_bases(self.dim, bases, centers), free)
     }
 
-    /// The load against them.
+    /// The load along the motions.
     pub fn load(&self, bodies: &[BodyState]) -> DVector<f64> {
         let mut load = DVector::zeros(self.len);
         for (body, (basis, &first)) in bodies.iter().zip(self.bases.iter().zip(&self.first)) {
@@ -178,7 +179,7 @@ impl Kinematics {
         self.first[b]..self.first[b] + self.bases[b].ncols()
     }
 
-    /// The part of motion `x` that body `b` takes, in its own frame.
+    /// The part of motion `x` of body `b`, in its frame.
     pub fn of_body(&self, b: usize, x: &[f64]) -> Vec<f64> {
         let basis = &self.bases[b];
         let own = DVector::from_column_slice(&x[self.first[b]..self.first[b] + basis.ncols()]);
@@ -190,7 +191,7 @@ impl Kinematics {
         self.bases.len()
     }
 
-    /// A motion, given body by body, in the unknowns of these bodies.
+    /// A motion, given body by body, as sparse coefficients on the unknowns.
     pub fn sparse_motion(&self, motion: &FreeMotion) -> SparseRow {
         let mut sparse = SparseRow::new();
         for (b, z) in &motion.bodies {
@@ -200,7 +201,7 @@ impl Kinematics {
         sparse
     }
 
-    /// A motion, given body by body, in the unknowns.
+    /// A motion, given body by body, as coefficients on the unknowns.
     pub fn unknowns_of(&self, motion: &FreeMotion) -> DVector<f64> {
         let mut x = DVector::zeros(self.len);
         for (b, z) in &motion.bodies {

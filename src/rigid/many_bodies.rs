@@ -1,9 +1,9 @@
-//! Rigid motions of many bodies, where each condition touches a few of them: sparse matrices and an interior-point
-//! method say what dense ones would take the cube of the number of bodies for.
+//! Rigid-body motions of many bodies, each constraint touching few of them: sparse matrices and an interior-point
+//! method avoid the cubic cost of dense matrices.
 //!
 //! > min ½ ε‖y‖² − f·y   subject to   B y ≤ g
 //!
-//! is how the bodies come to rest: the forces λ ≥ 0 on its conditions balance the load up to ε y, Bᵀ λ = f − ε y.
+//! is the rest position of the bodies: the forces λ ≥ 0 of its constraints balance the load up to ε y, Bᵀ λ = f − ε y.
 
 use faer::Par;
 
@@ -14,35 +14,35 @@ use crate::schur::ordering::nested_dissection;
 use crate::schur::pattern::{Cliques, LowerPattern, SparseSymmetric};
 use crate::vector::{axpy, dot, largest};
 
-/// Motions from which on there are many.
+/// Number of motions from which on the sparse method is used.
 pub(super) const MANY: usize = 100;
-/// ε by which bodies come to rest, where load and gaps are about 1.
+/// ε of the rest position, for loads and gaps scaled to about 1.
 const SPRING: f64 = 1e-9;
-/// Largest rest of load and gaps, and of the products of gaps and forces: round-off of the load grows as
-/// these vanish.
+/// Largest residuals of load and of gaps, and largest product of gap and force; as these products vanish, the round-off
+/// in the load residual grows.
 const ENOUGH: [f64; 3] = [1e-10, 1e-12, 1e-13];
-/// Most steps; 6 to 20 are usual.
+/// Most iterations; 6 to 20 are usual.
 const MOST_STEPS: usize = 60;
-/// Refinements of a change by what it leaves of the load: high towers are badly conditioned.
+/// Steps of iterative refinement of a Newton step: the matrices of high towers are ill-conditioned.
 const REFINEMENTS: usize = 2;
-/// Fraction of the way to the boundary of the positive variables in a step.
+/// Fraction of the longest step that keeps all variables positive.
 const TO_THE_BOUNDARY: f64 = 0.995;
-/// Springs beside BᵀB, relative to the largest of it, that let inverse iteration find what nothing holds.
+/// Shift of BᵀB, relative to its largest entry, that makes it definite for inverse iteration on its null space.
 const SHIFT: f64 = 1e-14;
-/// Steps of inverse iteration, after which what is held as weakly as by these springs is gone.
+/// Inverse iterations, after which components restrained as weakly as by the shift have vanished.
 const ITERATIONS: usize = 12;
 
 /// A row of B.
 pub(super) type SparseRow = Vec<(usize, f64)>;
 
-/// Conditions against the motions of many bodies.
+/// Contact constraints on the motions of many bodies.
 #[derive(Debug)]
 pub(super) struct ManyBodies {
-    /// B, its unknowns in the order in which they are eliminated.
+    /// B, its unknowns in elimination order.
     rows: Vec<SparseRow>,
     /// The place of every unknown in that order.
     place: Vec<usize>,
-    /// BᵀB's.
+    /// The pattern of BᵀB.
     pattern: LowerPattern,
 }
 
@@ -65,8 +65,8 @@ impl Rest {
 }
 
 impl ManyBodies {
-    /// The conditions `rows` against unknown motions of bodies at these `points`; `None` where they are too many for
-    /// a sparse matrix.
+    /// The constraints `rows` on unknown motions of bodies at these `points`; `None` if they are too many for a sparse
+    /// matrix.
     pub fn new(points: &[[f64; 3]], mut rows: Vec<SparseRow>) -> Option<Self> {
         let order = nested_dissection(points, &cliques(&rows));
         let mut place = vec![0; points.len()];
@@ -83,15 +83,15 @@ impl ManyBodies {
         })
     }
 
-    /// Number of conditions.
+    /// Number of constraints.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// An orthonormal basis of the motions that none of the conditions holds, were they all closed, one after the other by
-    /// inverse iteration, each pinned before the next is sought; nothing where a signal stopped that.
+    /// An orthonormal basis of the motions that no constraint would restrain if all were closed, by inverse iteration;
+    /// each is fixed before the next is computed. `None` if a signal stopped the computation.
     ///
-    /// The hold on a motion is summed up from B itself: BᵀB has lost the half of its digits.
+    /// The resistance to a motion is evaluated with B: BᵀB has half as many accurate digits.
     pub fn unheld(&self) -> Option<Vec<Vec<f64>>> {
         let n = self.place.len();
         let gram = self.products(|_| 1.0, 0.0);
@@ -109,7 +109,7 @@ impl ManyBodies {
                 matrix.add(&[pin as u32], |_, _| most);
             }
             let factor = factorized(&matrix)?;
-            // No motion is orthogonal to this one for a reason.
+            // An arbitrary vector, so that no motion is orthogonal to it by symmetry.
             let mut x: Vec<f64> = (0..n).map(|i| 1.0 + (12.9898 * i as f64).sin()).collect();
             for _ in 0..ITERATIONS {
                 factor.solve(&mut x);
@@ -134,19 +134,19 @@ impl ManyBodies {
         Some(motions.into_iter().map(given).collect())
     }
 
-    /// The rest position under `load` where the conditions have these `gaps`; nothing if that wasn't found.
+    /// The rest position under `load` with these `gaps` at the constraints; `None` if it isn't found.
     pub fn rest(&self, load: &[f64], gaps: &[f64]) -> Option<Rest> {
         self.rest_on(SPRING, load, gaps)
     }
 
-    /// The part of a `load` left by the forces λ ≥ 0 that come nearest to balancing it; nothing if that wasn't found.
+    /// The part of a `load` that the nearest forces λ ≥ 0 leave unbalanced; `None` if it isn't found.
     ///
-    /// It is the part of the load along the motions that the conditions allow, as which ε = 1 makes y (Moreau).
+    /// It is the projection of the load onto the motions that the constraints allow, which is y for ε = 1 (Moreau).
     pub fn residual(&self, load: &[f64]) -> Option<Rest> {
         self.rest_on(1.0, load, &vec![0.0; self.len()])
     }
 
-    /// The rest position where ε is `spring`, by Mehrotra's predictor and corrector.
+    /// The rest position with ε = `spring`, by Mehrotra's predictor-corrector method.
     fn rest_on(&self, spring: f64, load: &[f64], gaps: &[f64]) -> Option<Rest> {
         let n = load.len();
         let force = dot(load, load).sqrt() / (n as f64).sqrt();
@@ -207,7 +207,7 @@ impl ManyBodies {
         None
     }
 
-    /// The rest position at a point, where the load f is in units of `force` and gaps are in units of `length`.
+    /// The rest position at an iterate whose load f has the unit `force` and whose gaps have the unit `length`.
     fn at_rest(&self, point: &Iterate, f: &[f64], force: f64, length: f64) -> Rest {
         let of_forces = self.actions(&point.lambda);
         let missing = |&at: &usize| force * (f[at] - of_forces[at]);
@@ -218,7 +218,7 @@ impl ManyBodies {
         }
     }
 
-    /// Bᵀ diag(`weight`) B, and a `spring` on its diagonal.
+    /// Bᵀ diag(`weight`) B + `spring` I.
     fn products(&self, weight: impl Fn(usize) -> f64, spring: f64) -> SparseSymmetric {
         let mut matrix = SparseSymmetric::zeros(self.pattern.clone());
         for (j, row) in self.rows.iter().enumerate() {
@@ -257,7 +257,7 @@ fn normalize(x: &mut [f64]) {
     x.iter_mut().for_each(|x| *x /= size);
 }
 
-/// The unknowns that rows share.
+/// For each row its unknowns, which are mutually coupled.
 fn cliques(rows: &[SparseRow]) -> Cliques {
     let mut cliques = Cliques::default();
     (rows.iter()).for_each(|row| cliques.push(row.iter().map(|&(i, _)| i as u32)));
@@ -268,7 +268,7 @@ fn factorized(matrix: &SparseSymmetric) -> Option<BoundaryLastCholesky> {
     BoundaryLastCholesky::new(matrix, matrix.pattern.n(), Par::Seq).ok()
 }
 
-/// An interior point, or a change of one.
+/// An iterate of the interior-point method, or a step between two.
 #[derive(Clone, Debug)]
 struct Iterate {
     y: Vec<f64>,
@@ -299,8 +299,7 @@ impl Iterate {
         dot(&self.left, &self.lambda) / self.left.len().max(1) as f64
     }
 
-    /// Newton's change that takes the residual away and adds `aim` to s λ, where `matrix` is the factor of
-    /// ε + Bᵀ diag(λ/s) B.
+    /// Newton's step that removes the residual and adds `aim` to s λ; `matrix` is the factor of ε + Bᵀ diag(λ/s) B.
     fn change(
         &self,
         bodies: &ManyBodies,
@@ -343,7 +342,7 @@ impl Iterate {
         change
     }
 
-    /// The part of a change, 1 at most, at which something ceases to be positive.
+    /// The largest step length, at most 1, that keeps all variables non-negative.
     fn longest(&self, change: &Self) -> f64 {
         let variables = self.left.iter().chain(&self.lambda);
         let changes = change.left.iter().chain(&change.lambda);

@@ -1,5 +1,5 @@
-//! min ‖b − A λ‖₂ over 0 ≤ λ ≤ c, non-negative least squares where no c is finite: can contact forces
-//! balance a load?
+//! Least squares with bounds, min ‖b − A λ‖₂ over 0 ≤ λ ≤ c; non-negative least squares if no c is finite. It decides
+//! whether contact forces balance a load.
 
 use faer::Mat;
 use nalgebra::{DMatrix, DVector};
@@ -7,10 +7,10 @@ use nalgebra::{DMatrix, DVector};
 use super::columns::Columns;
 use crate::comm::is_asked_to_stop;
 
-/// Slope along a column, relative to b, that is round-off of r.
+/// Slope of ‖r‖ along a column, relative to b, that is round-off.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// The λ that come nearest.
+/// Minimizer λ and its residual.
 #[derive(Clone, Debug)]
 pub struct Nearest {
     /// λ.
@@ -19,22 +19,21 @@ pub struct Nearest {
     pub left: DVector<f64>,
 }
 
-/// r = b − A λ for the λ ≥ 0 that minimizes ‖r‖₂.
+/// r = b − A λ of the λ ≥ 0 that minimizes ‖r‖₂.
 pub fn residual(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     nearest(a, b, &vec![f64::INFINITY; a.ncols()]).left
 }
 
-/// The λ between 0 and `largest` that minimizes the ‖r‖₂ of r = b − A λ, after Lawson and Hanson, with upper
-/// bounds after Stark and Parker.
+/// The λ with 0 ≤ λ ≤ `largest` that minimizes ‖r‖₂, r = b − A λ: Lawson and Hanson's active-set method with the upper
+/// bounds of Stark and Parker.
 ///
-/// r = 0 up to round-off where such λ balance b. Otherwise r is a direction along which b does more work than
-/// any of them could take up: b·r = ‖r‖² + Σ c (a·r) over the columns a at their bound, along which a·r ≥ 0,
-/// and a·r ≤ 0 for those at 0 (Farkas).
+/// r = 0 up to round-off if such λ balance b. Otherwise b does more work along r than any such λ absorb: b·r = ‖r‖² + Σ
+/// c (a·r) over the columns a at their upper bound, with a·r ≥ 0 for these and a·r ≤ 0 for those at 0 (Farkas' lemma).
 pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
     let n = a.ncols();
     let norms: Vec<f64> = a.column_iter().map(|c| c.norm()).collect();
     let longest = norms.iter().copied().fold(0.0, f64::max);
-    // A column that is round-off would have a direction all the same.
+    // A column of round-off must not be normalized.
     let is_column: Vec<bool> = norms.iter().map(|&norm| norm > 1e-12 * longest).collect();
     let mut point = Iterate {
         passive: Columns::default(),
@@ -43,7 +42,7 @@ pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
         b: b.clone(),
         r: b.clone(),
     };
-    // Columns whose slope has turned out to be round-off where r is.
+    // Columns whose slope was round-off at the current r.
     let mut is_tried = vec![false; n];
     for _ in 0..10 * (n + a.nrows()) + 10 {
         let slopes = a.tr_mul(&point.r);
@@ -54,7 +53,7 @@ pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
         let Some((steepest, entering)) = best else {
             break;
         };
-        // Whoever is asked to stop asks for no answer.
+        // After a signal no result is needed.
         if steepest <= ROUND_OFF * b.norm() || is_asked_to_stop() {
             break;
         }
@@ -72,11 +71,11 @@ pub fn nearest(a: &DMatrix<f64>, b: &DVector<f64>, largest: &[f64]) -> Nearest {
     }
 }
 
-/// The same r where that is zero, or nearly so: found where A's rows are orthonormal, so that it
-/// tells a direction in which columns hardly act from one in which they don't.
+/// r where it is zero or nearly so, computed with orthonormal rows of A: these tell a direction in which columns act
+/// weakly from one in which they don't act.
 ///
-/// With A = V Σ Uᵀ, A λ = b where Uᵀ λ = Σ⁻¹ Vᵀ b; what is left there is V Σ times it here. What
-/// A's columns don't span at all, singular values up to `least` of the largest, is left out.
+/// With A = V Σ Uᵀ, A λ = b means Uᵀ λ = Σ⁻¹ Vᵀ b; r is V Σ times the residual of that equation. The part of b outside
+/// the span of A's columns, with singular values up to `least` of the largest, is left out.
 pub fn residual_in_span(
     a: &DMatrix<f64>,
     b: &DVector<f64>,
@@ -111,18 +110,18 @@ pub fn residual_in_span(
     })
 }
 
-/// The residual that [`residual_in_span`] finds.
+/// Result of [`residual_in_span`].
 pub struct InSpan {
     /// r.
     pub left: DVector<f64>,
-    /// Part of b that A's columns don't span.
+    /// Part of b outside the span of A's columns.
     pub outside: DVector<f64>,
-    /// The direction that r is in the turned problem, V Σ⁻¹ times it: along it b does more work than such λ take up, as
-    /// Farkas says of r in [`nearest`].
+    /// V Σ⁻¹ times the residual of the equation with orthonormal rows: a direction along which b does more work than
+    /// any such λ absorb, as with r in [`nearest`].
     pub drive: DVector<f64>,
 }
 
-/// The part of the way of some columns from λ to `trial` at which the first of them reaches a bound; infinite where none
+/// Fraction of the step of some columns from λ to `trial` at which the first of them reaches a bound; infinite if none
 /// does.
 fn way_to_bound(numbers: &[usize], trial: &[f64], lambda: &[f64], largest: &[f64]) -> f64 {
     let reached = |(&j, t): (&usize, &f64)| {
@@ -139,19 +138,19 @@ fn way_to_bound(numbers: &[usize], trial: &[f64], lambda: &[f64], largest: &[f64
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A λ within its bounds whose entries between these, those of the passive columns, come nearest to b.
+/// An admissible λ that minimizes ‖r‖₂ over its passive entries, which lie strictly between their bounds.
 #[derive(Clone)]
 struct Iterate {
     passive: Columns,
     at_largest: Vec<bool>,
     lambda: Vec<f64>,
-    /// b without what the columns at their bound make.
+    /// b without the contribution of the columns at their upper bound.
     b: DVector<f64>,
     r: DVector<f64>,
 }
 
 impl Iterate {
-    /// Into which direction λ of a column can move; `None` where that is settled.
+    /// Sign of the change that moves λ of a column off its bound; `None` if it is passive.
     fn inward(&self, j: usize) -> Option<f64> {
         match self.lambda[j] {
             0.0 => Some(1.0),
@@ -160,8 +159,7 @@ impl Iterate {
         }
     }
 
-    /// The point with a column more between its bounds, and without those that λ reaches the bound of; `None`
-    /// where that is no nearer to b.
+    /// The iterate with one more passive column, without those whose λ reaches a bound; `None` if it is no nearer to b.
     fn entered(&self, a: &DMatrix<f64>, largest: &[f64], entering: usize) -> Option<Self> {
         let mut point = self.clone();
         if !point.passive.push(a, entering) {

@@ -1,10 +1,10 @@
-//! The null space of a matrix: the x with B x = 0.
+//! The null space of a matrix: all x with B x = 0.
 
 use faer::Mat;
 use nalgebra::DMatrix;
 
-/// Relative size below which a singular value is zero: a support that is this much shorter than
-/// the body it holds doesn't hold it.
+/// Relative size below which a singular value is zero: a support so much shorter than its body doesn't restrain
+/// rotation.
 pub(super) const RANK_TOLERANCE: f64 = 1e-9;
 
 /// An orthonormal basis of the x with B x = 0.
@@ -13,7 +13,7 @@ pub(super) fn null_space(b: &DMatrix<f64>) -> DMatrix<f64> {
     if b.nrows() == 0 {
         return DMatrix::identity(n, n);
     }
-    // Rows beyond the number of unknowns are folded into R first: R x = 0 is B x = 0.
+    // Padded with zero rows to be square at least, then reduced by QR: R x = 0 is B x = 0.
     let full = Mat::from_fn(b.nrows().max(n), n, |i, j| {
         if i < b.nrows() { b[(i, j)] } else { 0.0 }
     });

@@ -1,4 +1,4 @@
-//! Taking rigid motions out of a field on nodes, of displacements or of forces.
+//! Projection of rigid-body motions out of nodal displacements or forces.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ pub struct BodyProducts {
 }
 
 impl BodyProducts {
-    /// Sums over no nodes, for `n` motions.
+    /// Sums over no nodes yet, for `n` motions.
     pub fn zeros(n: usize) -> Self {
         Self {
             gram: vec![0.0; n * n],
@@ -26,7 +26,7 @@ impl BodyProducts {
         }
     }
 
-    /// Adds a node that the motions displace by `moves`.
+    /// Adds a node whose displacements in the motions are `moves`.
     pub fn add_node(&mut self, moves: &[[f64; 3]]) {
         let n = moves.len();
         for i in 0..n {
@@ -36,7 +36,7 @@ impl BodyProducts {
         }
     }
 
-    /// Adds a value `v` of the field at such a node.
+    /// Adds the value `v` of the field at such a node.
     pub fn add_value(&mut self, moves: &[[f64; 3]], v: &[f64]) {
         for (sum, z) in self.field.iter_mut().zip(moves) {
             *sum += dot(z, v);
@@ -50,7 +50,7 @@ impl BodyProducts {
     }
 }
 
-/// The products of rigid motions of many bodies with each other, where they have a body in common, and with a field.
+/// Inner products of rigid motions of many bodies with each other, if they have a body in common, and with a field.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionProducts {
     /// Σ z_i·z_j.
@@ -60,7 +60,7 @@ pub struct MotionProducts {
 }
 
 impl MotionProducts {
-    /// The products of `n` motions without a body.
+    /// The products of `n` motions with no body added yet.
     pub fn zeros(n: usize) -> Self {
         Self {
             gram: BTreeMap::new(),
@@ -68,8 +68,8 @@ impl MotionProducts {
         }
     }
 
-    /// Adds what a body has, `of_body` with its own rigid motions, where `shares` are those of some motions, by their
-    /// numbers, in these.
+    /// Adds the sums of a body, `of_body`, over its own rigid motions; `shares` are the coefficients on these of the
+    /// motions with the given numbers.
     pub fn add_body(&mut self, shares: &[(usize, &[f64])], of_body: &BodyProducts) {
         let modes = of_body.field.len();
         for &(i, z_i) in shares {
@@ -92,7 +92,7 @@ impl MotionProducts {
         gram
     }
 
-    /// Coefficients of the motions in the field.
+    /// Coefficients of the projection of the field onto the motions.
     pub fn coefficients(&self) -> Vec<f64> {
         let mut coefficients = vec![0.0; self.field.len()];
         for together in self.sharing_bodies() {
@@ -112,7 +112,7 @@ impl MotionProducts {
         coefficients
     }
 
-    /// The motions whose products with each other aren't nothing, directly or by others.
+    /// Sets of motions coupled by non-zero products, directly or through others.
     fn sharing_bodies(&self) -> Vec<Vec<usize>> {
         let mut sets = DisjointSets::new(self.field.len());
         for (&(i, j), _) in self.gram.iter().filter(|(_, product)| **product != 0.0) {

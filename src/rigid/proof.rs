@@ -1,9 +1,9 @@
-//! The proof that nothing balances a load: a motion along which it does more work than contact forces can take.
+//! Proof that no contact forces balance a load: a motion along which it does more work than they can absorb.
 //!
-//! Contact forces with |λ_t| ≤ c + μ λ_n that balance a load f take the work f·z along every motion z, where a point
-//! with jumps z_n, z_t takes at most c |z_t| + λ_n (z_n + μ |z_t|). So there are none where z_n + μ |z_t| ≤ 0 at all
-//! points and f·z > Σ c |z_t| (Farkas; Moreau's polar cone). Of numbers with round-off, z_n + μ |z_t| ≤ ω shows that
-//! normal forces would have to be (f·z − Σ c |z_t|) / ω at least.
+//! Contact forces with |λ_t| ≤ c + μ λ_n that balance a load f absorb the work f·z along every motion z; a point with
+//! jumps z_n, z_t absorbs at most c |z_t| + λ_n (z_n + μ |z_t|). Thus none exist if z_n + μ |z_t| ≤ 0 at all points and
+//! f·z > Σ c |z_t| (Farkas' lemma; Moreau's polar cone). With round-off, z_n + μ |z_t| ≤ ω shows that the sum of normal
+//! forces would have to be (f·z − Σ c |z_t|) / ω at least.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,34 +12,34 @@ use super::many_bodies::{SparseRow, jump};
 use super::scene::RigidRow;
 use crate::contact::friction::ForceBound;
 
-/// Sum of normal forces, relative to all loads, that no contact has: one that would need more has no equilibrium.
+/// Upper limit of the sum of normal forces, relative to all loads: a load that needs more has no equilibrium.
 const MOST_FORCE: f64 = 1e2;
-/// Work relative to the terms that it is a sum of, that is round-off.
+/// Work, relative to the sum of the magnitudes of its terms, that is round-off.
 const ROUND_OFF: f64 = 1e-14;
-/// Distance from its limit, relative to what the motion may make there, within which a point is taken to be at it: the
-/// motion that is to be proof is known to some digits only.
+/// Distances from the limit z_n + μ |z_t| = 0, relative to the largest possible jump, within which a point is moved to
+/// it; a candidate motion is accurate to some digits only.
 const AT_LIMIT: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1e-3];
-/// Most updates of the directions of slip for a motion that is brought to their limits; they converge quadratically.
+/// Most Newton updates of the slip directions of a motion at its limits; they converge quadratically.
 const TURNS: usize = 5;
-/// Force, relative to the largest one, that is none.
+/// Force, relative to the largest, that counts as zero.
 const NO_FORCE: f64 = 1e-9;
-/// Slip, relative to the farthest jump, of a point that sticks.
+/// Slip, relative to the largest jump, up to which a point sticks.
 const STUCK: f64 = 1e-9;
-/// Slip, relative to the farthest jump, of a point that slides, and how near it is to its limit.
+/// Slip, relative to the largest jump, from which on a point slides, and tolerance of its limit.
 const SLIDES: f64 = 1e-6;
-/// Singular value, relative to the largest one, that is none.
+/// Singular value, relative to the largest, that counts as zero.
 const SINGULAR: f64 = 1e-12;
-/// Part of a motion that is left of it if it was nearly one that keeps to the limits.
+/// Smallest norm of a unit motion after projection onto the limits for which it counts as near to them.
 const MOST_CHANGE: f64 = 0.5;
 
-/// A contact point, by its conditions.
+/// A contact point by its constraints.
 struct FrictionPoint {
     normal: usize,
     tangents: Vec<usize>,
     bound: ForceBound,
 }
 
-/// The points of which conditions are `rows`.
+/// The points of the constraints `rows`.
 fn points(rows: &[RigidRow]) -> Vec<FrictionPoint> {
     let mut place = vec![None; rows.len()];
     let mut points = Vec::new();
@@ -79,8 +79,8 @@ impl FrictionPoint {
     }
 }
 
-/// True if a motion that makes these `jumps` of the conditions `rows` proves that no forces balance a load which does
-/// `work` along it, a sum of terms whose magnitudes are `terms` together; all loads are `scale`.
+/// True if a motion with these `jumps` of the constraints `rows` proves that no forces balance a load; the load's
+/// `work` along it is a sum of terms of total magnitude `terms`, and `scale` is the sum of all loads.
 pub(super) fn proves(rows: &[RigidRow], jumps: &[f64], [work, terms, scale]: [f64; 3]) -> bool {
     let (mut taken, mut worst) = (0.0, 0.0);
     for point in points(rows) {
@@ -91,7 +91,7 @@ pub(super) fn proves(rows: &[RigidRow], jumps: &[f64], [work, terms, scale]: [f6
     surplus > ROUND_OFF * (terms + taken) && surplus > MOST_FORCE * scale * worst
 }
 
-/// The proof by a `motion` of many bodies against which conditions are sparse.
+/// The same for a `motion` of many bodies and sparse constraints.
 pub(super) fn proves_sparse(
     rows: &[RigidRow],
     sparse: &[SparseRow],
@@ -103,7 +103,7 @@ pub(super) fn proves_sparse(
     proves(rows, &jumps, work(load, motion, scale))
 }
 
-/// The work of a load along a motion, the sum of the magnitudes of its terms, and the scale of all loads.
+/// Work of a load along a motion, the sum of the magnitudes of its terms, and the scale of all loads.
 fn work(load: &[f64], motion: &[f64], scale: f64) -> [f64; 3] {
     let terms = load.iter().zip(motion).map(|(f, z)| f * z);
     let (mut work, mut magnitudes) = (0.0, 0.0);
@@ -114,7 +114,7 @@ fn work(load: &[f64], motion: &[f64], scale: f64) -> [f64; 3] {
     [work, magnitudes, scale]
 }
 
-/// A load against the motions of bodies, and the conditions `rows`, whose jumps these make by `b`.
+/// A load on the motions of bodies, and the constraints `rows` with their jumps B z.
 pub(super) struct Loaded<'a> {
     /// The conditions.
     pub rows: &'a [RigidRow],
@@ -122,13 +122,13 @@ pub(super) struct Loaded<'a> {
     pub b: &'a DMatrix<f64>,
     /// f.
     pub load: &'a DVector<f64>,
-    /// All loads together.
+    /// Sum of all loads.
     pub scale: f64,
 }
 
 impl Loaded<'_> {
-    /// The motion near `along` that proves that no forces balance the load; nothing where none is found. It is brought to
-    /// the limits that points are near to, where the conditions take these `forces`, if they are known.
+    /// The motion near `along` that proves that no forces balance the load; `None` if none is found. It is moved to the
+    /// limits of nearby points, with the `forces` of the constraints if they are known.
     pub fn proof(&self, along: &DVector<f64>, forces: &[f64]) -> Option<DVector<f64>> {
         let points = points(self.rows);
         let along = along.try_normalize(0.0)?;
@@ -137,7 +137,7 @@ impl Loaded<'_> {
         if forces.is_empty() || !points.iter().any(is_circular) {
             return found;
         }
-        // Corners of polygons have turned it aside. Near the limit its work is round-off of a sum, and left out.
+        // Polygonal cones have turned the motion. Near the limit its work is round-off of a sum, and left out.
         let turned = |has_work: bool| {
             let mut z = found.as_ref().unwrap_or(&along).clone();
             for _ in 0..TURNS {
@@ -155,7 +155,7 @@ impl Loaded<'_> {
         ))
     }
 
-    /// The motion at the limits that `along` is near to, if it is proof.
+    /// The motion at the limits near to `along`, if it is a proof.
     fn near_limits(&self, points: &[FrictionPoint], along: &DVector<f64>) -> Option<DVector<f64>> {
         let sizes: Vec<f64> = self.b.row_iter().map(|row| row.norm()).collect();
         AT_LIMIT.into_iter().find_map(|near| {
@@ -169,8 +169,8 @@ impl Loaded<'_> {
         })
     }
 
-    /// The motion z without what opens points that are at their limit in it, as sides slide that don't fly as high as the
-    /// friction angle.
+    /// The motion z without the opening of points at their limit: bodies slide along their contacts rather than rise at
+    /// the friction angle.
     pub fn along_sides(&self, z: &DVector<f64>) -> DVector<f64> {
         let jumps = self.b * z;
         let far = jumps.amax();
@@ -192,8 +192,8 @@ impl Loaded<'_> {
         columns.residual(z)
     }
 
-    /// A step of Newton's method for the z of length 1 along which the load does most work within the limits of the
-    /// points that press with these `forces`:
+    /// A step of Newton's method for the z of length 1 along which the load does the most work within the limits of the
+    /// points with these normal `forces`:
     ///
     /// > f = ν z + Σ λ_n ∇(z_n + μ |z_t|),  z_n + μ |z_t| = 0
     fn turned(
@@ -255,8 +255,8 @@ impl Loaded<'_> {
     }
 }
 
-/// The motion of length 1 nearest to z that keeps those points at their limits, in the direction in which z slips
-/// there, which z has that `near` to it; nothing where that is another one.
+/// The unit motion nearest to z with those points at their limits whose distance from it in z is up to `near`,
+/// linearized at their slip directions in z; `None` if it is far from z.
 fn at_limits(
     points: &[FrictionPoint],
     b: &DMatrix<f64>,
@@ -316,7 +316,7 @@ mod tests {
         ((s as f64 * 78.233).sin() * 43758.5453).fract()
     }
 
-    /// Points with a normal and two tangents each against some motions: their conditions, and B.
+    /// Points with a normal and two tangents each for some motions: their constraints, and B.
     fn random(seed: usize, points: usize, motions: usize) -> (Vec<RigidRow>, DMatrix<f64>) {
         let coefficient = 0.1 + noise(seed + 1).abs();
         let bound = coulomb(coefficient);
@@ -335,7 +335,7 @@ mod tests {
         (rows.collect(), b)
     }
 
-    /// Part of a load that is left by cones whose polygons have so many corners, `reach` times as far as the circle.
+    /// Norm of the load left by cones with polygons of 256 corners, `reach` times as wide as the circle.
     fn left(rows: &[RigidRow], b: &DMatrix<f64>, load: &DVector<f64>, reach: f64) -> f64 {
         let corners = 256;
         let mut columns = Vec::new();
@@ -354,7 +354,7 @@ mod tests {
         nonnegative::residual(&DMatrix::from_columns(&columns), load).norm() / load.norm()
     }
 
-    /// Polygons in the circles that balance a load, and polygons around them that don't, say the same as proofs do.
+    /// Inscribed polygons that balance a load, and circumscribed ones that don't, agree with the proof.
     #[test]
     fn a_proof_is_found_where_nothing_balances_a_load_and_nowhere_else() {
         let around = 1.0 / (std::f64::consts::PI / 256.0).cos();

@@ -1,4 +1,4 @@
-//! Rigid motions that are free in a solution, because no contact force is left that resists them.
+//! Rigid-body motions that are free in a solution because no remaining contact force resists them.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -11,20 +11,20 @@ use super::projection::MotionProducts;
 use super::scene::{Friction, RigidRow, Scene};
 use crate::vector::largest;
 
-/// Largest contact force that counts as round-off, over what is missing to the equilibrium of a body.
+/// Largest contact force that counts as round-off, over the residual of a body's equilibrium.
 const IN_DOUBT: f64 = 4.0;
 
-/// Work of loads along a motion, relative to the sum of all, that is no round-off.
+/// Work of loads along a motion, relative to the sum of the magnitudes, that is more than round-off.
 const DRIVEN: f64 = 1e-7;
 
-/// A condition in a solution.
+/// State of a constraint in a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionState {
-    /// True if it carries force.
+    /// True if it carries a force.
     pub carrying: bool,
-    /// True if it is closed; a tangential one: sticks.
+    /// True if it is closed or, if tangential, sticks.
     pub closed: bool,
-    /// The gap that it has left (m).
+    /// The remaining gap (m).
     pub gap: f64,
     /// Force (N/m).
     pub force: f64,
@@ -33,22 +33,24 @@ pub struct ConditionState {
 /// The released modes of a solution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReleasedModes {
-    /// The released modes, first those that are free with every contact closed.
+    /// The released modes; those that are free even with all contacts closed come first.
     pub motions: Vec<FreeMotion>,
-    /// B of the conditions without force against them.
+    /// B of the constraints without force, in these modes.
     rows: DMatrix<f64>,
     /// g − B u of these conditions (m).
     gaps: Vec<f64>,
-    /// The normal conditions whose forces hold nothing: they are round-off of the equilibrium of nodes or of rigid bodies.
+    /// Normal constraints whose forces are round-off of the equilibrium of nodes or of rigid bodies, and restrain
+    /// nothing.
     pub unneeded: Vec<usize>,
-    /// True if loads work along motions that nothing resists, so that the solution is none; these aren't among the motions then.
+    /// True if loads do work along unrestrained motions, so that there is no solution; `motions` then doesn't contain
+    /// these.
     pub is_driven: bool,
     /// Warnings.
     pub warnings: Vec<String>,
 }
 
 impl Scene {
-    /// The motions that no support and no contact force resists, nor could resist, where `free` ones are known
+    /// The motions that neither supports nor contact forces restrain, nor could restrain; `free` ones are known
     /// already.
     pub fn released_modes(
         &self,
@@ -69,8 +71,8 @@ impl Scene {
         let of_conditions = |numbers: &[usize]| -> Vec<RigidRow> {
             numbers.iter().map(|&j| self.rows[j].clone()).collect()
         };
-        // Motions that are free anyway come first; the rest is orthogonal to it. Where a signal stopped that, the run ends before
-        // it matters.
+        // Motions that are free anyway come first; the others are orthogonal to them. After a signal the run ends
+        // before the result matters.
         let found = kinematics.unheld(&of_conditions(&held), free);
         let found = found.unwrap_or_else(|| DMatrix::zeros(kinematics.len, 0));
         let mut motions = free.to_vec();
@@ -108,9 +110,8 @@ impl Scene {
         }
     }
 
-    /// The conditions that press with no more than what is missing to the equilibrium of some rigid body, Rᵀ f − (B R)ᵀ λ,
-    /// and without which no more is missing to that of any: the round-off of bodies that are pushed elsewhere, or were
-    /// before.
+    /// The constraints whose forces are at most the residual Rᵀ f − (B R)ᵀ λ of some rigid body, and whose removal
+    /// increases no body's residual: their forces are round-off on bodies that are pushed elsewhere, or were before.
     fn unneeded_forces(
         &self,
         kinematics: &Kinematics,
@@ -154,8 +155,8 @@ impl Scene {
         }
     }
 
-    /// True if condition j holds what moves it. A tangential one does where friction can give any force: sides that
-    /// stick stay, and sides that slip came where they are by their path, not to one of many places.
+    /// True if constraint j restrains motions. A tangential one does if friction can carry any force: sticking sides
+    /// stay in place, and the position of slipping ones is determined by their load path.
     fn holds(&self, j: usize, conditions: &[ConditionState]) -> bool {
         let can_resist = |friction: &Friction| {
             let ConditionState {
@@ -168,9 +169,9 @@ impl Scene {
 }
 
 impl ReleasedModes {
-    /// Coefficients of the motions to take out of a displacement u to make it the smallest one that
-    /// leaves no gap negative: min ‖u − Z c‖ subject to g − B u + B Z c ≥ 0, by Lawson and Hanson's
-    /// least-distance programming.
+    /// Coefficients of the motions to subtract from a displacement u so that it becomes the smallest one with
+    /// non-negative gaps: min ‖u − Z c‖ subject to g − B u + B Z c ≥ 0, by Lawson and Hanson's least-distance
+    /// programming.
     pub fn coefficients(&self, products: &MotionProducts) -> Vec<f64> {
         let free = products.coefficients();
         let n = free.len();
@@ -185,7 +186,7 @@ impl ReleasedModes {
         let Some(factor) = products.gram().cholesky() else {
             return free;
         };
-        // With c = free + L⁻ᵀ y, ‖y‖ is to be least.
+        // With c = free + L⁻ᵀ y the problem is to minimize ‖y‖.
         let Some(rows) = factor.l().solve_lower_triangular(&self.rows.transpose()) else {
             return free;
         };
@@ -193,7 +194,8 @@ impl ReleasedModes {
         for (e, missing) in e.row_mut(n).iter_mut().zip(&missing) {
             *e = missing / most;
         }
-        // Gaps are wide beside what is missing: only the directions of columns count.
+        // Feasible gaps can be large against the infeasible ones; columns are normalized, as only their directions
+        // count.
         for mut column in e.column_iter_mut() {
             column.try_normalize_mut(0.0);
         }
@@ -206,7 +208,7 @@ impl ReleasedModes {
             Some(change) if change.iter().all(|c| c.is_finite()) => {
                 free.iter().zip(change.iter()).map(|(c, d)| c + d).collect()
             }
-            // Nothing is nearer than where it is.
+            // The constraints are contradictory: u stays as it is.
             _ => vec![0.0; n],
         }
     }
@@ -219,7 +221,7 @@ mod tests {
     use crate::rigid::projection::BodyProducts;
     use crate::rigid::squares::{coulomb, scene, square};
 
-    /// A displacement of one node along two motions, x and y.
+    /// The displacement of one node in the motions along x and y.
     fn products(u: [f64; 2]) -> MotionProducts {
         let mut of_node = BodyProducts::zeros(2);
         let moves = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -255,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_gap_that_would_close_stops_it() {
-        // Taking out c opens the gap by −c_x: at most 2 of x.
+        // Subtracting c opens the gap by −c_x: at most 2 of x.
         let c = released(&[[-1.0, 0.0]], &[2.0]).coefficients(&products([3.0, -1.0]));
         close(&c, [2.0, -1.0]);
     }
@@ -293,11 +295,11 @@ mod tests {
             let found = scene.released_modes(&[], &[pressed; 2]);
             (found.motions.len(), found.unneeded)
         };
-        // It slides on its weight, however small that is.
+        // It slides under its weight, however small that is.
         assert_eq!(left(0.5, 1.0), (1, vec![]));
         assert_eq!(left(0.5e-9, 1e-9), (1, vec![]));
         assert_eq!(left(1e-9, 0.0), (3, vec![0, 1]));
-        // A millionth of what it weighs is missing.
+        // The residual is a millionth of the weight.
         assert_eq!(left(0.5 * (1.0 - 1e-6), 1.0), (1, vec![]));
     }
 
@@ -319,8 +321,8 @@ mod tests {
         }
     }
 
-    /// A square on a floor below its corners: what is left to it where their normal and tangential conditions carry
-    /// force or not, and are closed or not.
+    /// Number of motions left to a square on a floor where the constraints at its lower corners carry forces as in
+    /// `carrying`, and are closed or not.
     fn motions_left(bound: Option<ForceBound>, carrying: [bool; 2], closed: bool) -> usize {
         let body = square([0.0; 3]);
         let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
@@ -356,10 +358,10 @@ mod tests {
         for (law, carrying, closed, left) in [
             (None, [true, false], true, 1),
             (None, [false, false], true, 3),
-            // On its weight alone, without a push that friction would answer.
+            // Under its weight alone, without a push that friction would resist.
             (coulomb(0.3, 0.0), [true, false], true, 0),
             (coulomb(0.3, 0.0), [false, false], true, 3),
-            // Both tangential conditions are along the floor.
+            // Both tangential constraints are along the floor.
             (coulomb(0.3, 2.0), [false, false], true, 2),
             (coulomb(0.3, 2.0), [false, false], false, 3),
             (coulomb(0.0, 2.0), [true, true], true, 0),

@@ -1,4 +1,4 @@
-//! Contact conditions for the analysis of rigid motions, from the ranks that have them.
+//! Contact constraints for the rigid-body analysis, gathered from the ranks that own their groups.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use crate::fem::body_frame::BodyFrame;
 use crate::fem::contact_group::{Condition, ContactGroup, GroupLoads};
 use crate::vector::{axpy, largest};
 
-/// Action of a tie on a body, relative to those of its entries, that is round-off of these.
+/// Action of a tie on a body, relative to its terms, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// The conditions against the rigid motions of the bodies, group by group, and how many each group has;
-/// on the root. Collective.
+/// The constraints in the rigid motions of the bodies, group by group, and their number in each group; on the root.
+/// Collective.
 pub(super) fn rigid_rows(
     context: &Context<'_>,
     frames: &[BodyFrame],
@@ -68,7 +68,7 @@ fn of_group(group: &ContactGroup, frames: &[BodyFrame], loads: &GroupLoads) -> V
     rows
 }
 
-/// Actions on bodies, summed for each: what one body has on both sides of a tie moves with it, and leaves round-off.
+/// Actions summed over each body: those of a body on both sides of a tie cancel up to round-off.
 fn summed(all: Vec<(usize, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
     let mut of_bodies: BTreeMap<usize, [Vec<f64>; 2]> = BTreeMap::new();
     for (body, action) in all {

@@ -4,7 +4,7 @@ use super::scene::{BodyState, Friction, RigidRow, Scene};
 use crate::contact::friction::ForceBound;
 use crate::fem::body_frame::BodyFrame;
 
-/// A body within these bounds, of the plane where its load has three components, in space where it has six.
+/// A body in this bounding box: plane if its load has three components, spatial if it has six.
 pub fn body(low: [f64; 3], high: [f64; 3], load: &[f64]) -> BodyState {
     BodyState {
         frame: BodyFrame::new(low, high),
@@ -22,7 +22,7 @@ pub fn square(load: [f64; 3]) -> BodyState {
 }
 
 impl BodyState {
-    /// The same, held at `x` along an axis, where that is displaced by `value`.
+    /// The same body, supported at `x` along an axis with the prescribed displacement `value`.
     pub fn held(mut self, x: [f64; 3], along: [f64; 3], value: f64) -> Self {
         let mut row = self.frame.action(2, &x, &along);
         row.push(value);
@@ -30,7 +30,7 @@ impl BodyState {
         self
     }
 
-    /// A closed condition of it, body number `b`, along a direction at `x`.
+    /// A closed constraint of this body, number `b`, along a direction at `x`.
     pub fn row(&self, b: usize, x: [f64; 3], along: [f64; 3]) -> RigidRow {
         let dim = if self.load.len() == 6 { 3 } else { 2 };
         RigidRow {
@@ -43,19 +43,19 @@ impl BodyState {
 }
 
 impl RigidRow {
-    /// The same with a gap.
+    /// The same constraint with a gap.
     pub fn open(self, gap: f64) -> Self {
         Self { gap, ..self }
     }
 
-    /// The same along a tangent of the point whose normal one has this number.
+    /// The same constraint as a tangential one of the point whose normal constraint has this number.
     pub fn rough(self, normal: usize, bound: ForceBound) -> Self {
         let friction = Some(Friction { normal, bound });
         Self { friction, ..self }
     }
 }
 
-/// Bodies, called brick 0, brick 1 and so on, with their conditions.
+/// Bodies named brick 0, brick 1 and so on, with their constraints.
 pub fn scene(dim: usize, bodies: Vec<BodyState>, rows: Vec<RigidRow>) -> Scene {
     Scene {
         dim,

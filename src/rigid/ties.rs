@@ -1,4 +1,4 @@
-//! Ties in the analysis of rigid motions: two opposite unilateral conditions for each.
+//! Ties in the rigid-body analysis: each is two opposite unilateral constraints.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,11 @@ use super::bodies::compressed;
 use super::scene::{Friction, RigidRow, Scene};
 use crate::vector::{axpy, largest};
 
-/// Row of ties that join the same bodies, relative to the largest one, that is round-off of others.
+/// Row of ties between the same bodies, relative to the largest one, that is round-off of others.
 const ROUND_OFF: f64 = 1e-12;
 
 impl Scene {
-    /// The conditions of contacts, then the fewest that are equivalent to those of ties, each in both directions.
+    /// The constraints of contacts, then the fewest constraints equivalent to the ties, each in both directions.
     pub(super) fn both_ways(&self) -> Vec<RigidRow> {
         let mut place = 0;
         let places: Vec<usize> = (self.rows.iter())
@@ -34,7 +34,7 @@ impl Scene {
         rows
     }
 
-    /// The conditions of ties by the bodies that they join: actions body by body, the jump last.
+    /// The constraints of ties by the bodies that they connect: actions body by body, the jump last.
     fn ties(&self) -> BTreeMap<Vec<usize>, Vec<Vec<f64>>> {
         let mut ties: BTreeMap<Vec<usize>, Vec<Vec<f64>>> = BTreeMap::new();
         for row in self.rows.iter().filter(|row| row.is_tied) {
@@ -51,7 +51,8 @@ impl Scene {
     }
 }
 
-/// The conditions of ties of the same bodies in at most as many as these have motions, each in both directions.
+/// The ties between the same bodies, reduced to at most as many constraints as these have motions, each in both
+/// directions.
 fn joined(bodies: &[usize], of_bodies: Vec<Vec<f64>>) -> Vec<RigidRow> {
     let entries = of_bodies.first().map_or(0, Vec::len);
     let modes = (entries - 1) / bodies.len();

@@ -1,4 +1,4 @@
-//! The rigid motions of many bodies that no condition holds.
+//! The rigid-body motions of many bodies that no constraint restrains.
 
 use std::collections::BTreeMap;
 
@@ -8,9 +8,9 @@ use nalgebra::DMatrix;
 use super::many_bodies::{MANY, ManyBodies, SparseRow};
 use super::null_space::null_space;
 
-/// An orthonormal basis of the motions x with B x = 0, where unknowns belong to bodies at these `points`: parts of the
-/// scene that no row connects are looked at by themselves, small ones by dense matrices. Nothing where a signal stopped
-/// that, or there is too much of it.
+/// An orthonormal basis of the motions x with B x = 0, where unknowns belong to bodies at these `points`. Connected
+/// parts of the scene are treated separately, small ones with dense matrices. `None` if a signal stopped the
+/// computation, or a part is too large.
 pub(super) fn unheld_motions(points: &[[f64; 3]], rows: &[SparseRow]) -> Option<Vec<SparseRow>> {
     let n = points.len();
     let mut sets = DisjointSets::new(n);
@@ -66,13 +66,13 @@ mod tests {
         ((s as f64 * 78.233).sin() * 43758.5453).fract()
     }
 
-    /// Chains of bodies of two motions each, which the rows between them leave two motions together: as dense matrices
-    /// say. Rows are differences, weighted, so that each chain moves as a whole.
+    /// Chains of bodies with two motions each; the rows are weighted differences within a chain, which leave two
+    /// motions of each chain as a whole. Dense matrices give the same.
     #[test]
     fn chains_move_as_wholes_and_in_no_other_way() {
         for (chains, bodies) in [(1, 3), (1, 120), (3, 80), (40, 4)] {
             let n = 2 * chains * bodies;
-            // Unknowns in no order at all; n is no multiple of 7.
+            // Unknowns are numbered out of order; n is no multiple of 7.
             let number =
                 |chain: usize, body: usize, k: usize| (2 * (chain * bodies + body) + k) * 7 % n;
             assert!(n % 7 != 0);
@@ -103,7 +103,7 @@ mod tests {
                     assert!(jump.abs() < 1e-10, "{jump:e}");
                 }
             }
-            // What holds one body of each chain holds all.
+            // Fixing one body of each chain fixes the chain.
             for chain in 0..chains {
                 rows.push(vec![(number(chain, 0, 0), 1.0)]);
                 rows.push(vec![(number(chain, 0, 1), 1.0)]);
@@ -113,15 +113,15 @@ mod tests {
         }
     }
 
-    /// A tower as a beam of joints that resist shifts and turns: its smallest stiffness falls as the fourth power of its
-    /// height, 1e-13 of the largest here, and it is held all the same.
+    /// A tower as a beam whose joints resist shear and rotation: its smallest stiffness falls as the fourth power of
+    /// the height, here to 1e-13 of the largest, and still restrains it.
     #[test]
     fn a_high_tower_is_held() {
         let high = 3000;
         let mut rows: Vec<SparseRow> = Vec::new();
         for body in 0..high {
             let (shift, turn) = (2 * body, 2 * body + 1);
-            // u' = u + turn of the one below, and both joints half a height away.
+            // u' = u + rotation of the body below; both joints are half a height away.
             let mut row = vec![(shift, 1.0), (turn, 0.5)];
             let mut bend = vec![(turn, 1.0)];
             if body > 0 {
@@ -132,7 +132,7 @@ mod tests {
         }
         let points: Vec<_> = (0..2 * high).map(|i| [0.0, 0.0, (i / 2) as f64]).collect();
         assert!(unheld_motions(&points, &rows).unwrap().is_empty());
-        // On a floor that lets it slide and tip it moves as a whole.
+        // On a floor that lets it slide and tip, it moves as a rigid body.
         let free = unheld_motions(&points, &rows[2..]).unwrap();
         assert_eq!(free.len(), 2);
     }

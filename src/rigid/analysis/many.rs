@@ -1,5 +1,5 @@
-//! The analysis of many bodies: motions of one body that no condition touches are free, and sparse matrices show
-//! which others the conditions leave and whether they balance the load.
+//! Analysis of many bodies. Motions of single bodies that no constraint touches are free; sparse matrices find the
+//! other free motions and decide whether contact forces balance the load.
 
 use nalgebra::DVector;
 
@@ -15,10 +15,10 @@ use crate::rigid::proof::proves_sparse;
 use crate::rigid::unheld_motions::unheld_motions;
 use crate::vector::dot;
 
-/// Unknown motions up to which dense matrices decide what sparse ones don't.
+/// Number of unknown motions up to which dense matrices decide where sparse ones don't.
 const FEW: usize = 300;
 
-/// The conditions against the motions that they touch.
+/// The contact constraints on the rigid motions of the bodies that they touch.
 struct Touched<'a> {
     rows: &'a [RigidRow],
     kinematics: Kinematics,
@@ -30,15 +30,16 @@ struct Touched<'a> {
 enum Balance {
     /// Contact forces balance the load.
     Holds,
-    /// A motion along which it does more work than they can take, and whether bodies slide in it.
+    /// A motion along which the load does more work than contact forces can absorb; true if bodies slide on each other
+    /// in it.
     Fails(DVector<f64>, bool),
     /// Neither balance nor its failure is certain.
     Undecided,
 }
 
 impl Scene {
-    /// The free motions of many bodies, where all loads are `scale`; nothing where dense matrices are to tell. Where they
-    /// would take too long, a load of which it isn't certain that nothing balances it is left to the solver.
+    /// The free motions of many bodies, where `scale` is the sum of all loads; `None` if dense matrices are to decide.
+    /// Where these would take too long, a load whose imbalance isn't certain is left to the solver.
     pub(super) fn analyse_many(
         &self,
         kinematics: &Kinematics,
@@ -68,7 +69,7 @@ impl Scene {
         }
         let together = unheld_motions(&touched.kinematics.centers, &touched.sparse);
         let together = match kinematics.len > FEW {
-            // Where a signal stopped that, nothing is asked for.
+            // After a signal the run ends, and no result is needed.
             true => together.unwrap_or_default(),
             false => together?,
         };
@@ -100,7 +101,7 @@ impl Scene {
         }
     }
 
-    /// The motion that the bodies' own loads drive, along free motions of bodies `alone`.
+    /// The motion driven by the load among free motions of single bodies, `alone`.
     fn driven_alone(&self, kinematics: &Kinematics, alone: &[FreeMotion]) -> DVector<f64> {
         let mut driven = DVector::zeros(kinematics.len);
         for motion in alone {
@@ -112,7 +113,7 @@ impl Scene {
         driven
     }
 
-    /// The load that normal forces can't balance, if it is more than round-off.
+    /// The part of the load that normal forces can't balance, if it is more than round-off.
     pub(super) fn unpressed_many(
         &self,
         kinematics: &Kinematics,
@@ -126,7 +127,7 @@ impl Scene {
         (rest.unbalanced() > BALANCE_TOLERANCE * scale).then(|| DVector::from_vec(rest.left))
     }
 
-    /// Pins motions of single bodies, and those that bodies have `together`.
+    /// Fixes the free motions of single bodies, `alone`, and those of several bodies, `together`.
     fn fix_all(
         &self,
         kinematics: &Kinematics,
@@ -135,7 +136,7 @@ impl Scene {
     ) -> RigidMotions {
         let mut motions = alone;
         motions.extend(together);
-        // Each with those that have a body in common, one after the other.
+        // Motions with bodies in common are fixed one after the other.
         let mut part_of_body: Vec<Option<usize>> = vec![None; self.bodies.len()];
         let mut parts: Vec<Vec<usize>> = Vec::new();
         for (k, motion) in motions.iter().enumerate() {
@@ -161,7 +162,7 @@ impl Scene {
         kinematics.fix(&self.bodies, &self.names, motions, fixing_dofs)
     }
 
-    /// Pins for motions of few bodies.
+    /// Fixing dofs for motions of few bodies.
     fn pins<'a>(&self, motions: impl Iterator<Item = &'a FreeMotion> + Clone) -> Vec<FixingDof> {
         let mut own: Vec<usize> = motions
             .clone()
@@ -187,14 +188,14 @@ impl Scene {
 }
 
 impl Touched<'_> {
-    /// A motion by its unknowns, body by body.
+    /// A motion from its coefficients on the unknowns, body by body.
     fn motion(&self, motion: &SparseRow) -> FreeMotion {
         let mut x = DVector::zeros(self.kinematics.len);
         motion.iter().for_each(|&(i, z)| x[i] = z);
         self.kinematics.motion(&x)
     }
 
-    /// Balance of the load by forces that contact can give, along normals or with friction.
+    /// Balance of the load by admissible contact forces, normal ones and friction.
     fn balance(&self, scale: f64) -> Balance {
         if self.kinematics.len == 0 {
             return Balance::Holds;
@@ -213,7 +214,7 @@ impl Touched<'_> {
         self.fails(&forces, scale).unwrap_or(Balance::Undecided)
     }
 
-    /// The motion that proves that the load isn't balanced; nothing where none is found.
+    /// A motion that proves that no contact forces balance the load; `None` if none is found.
     fn fails(&self, forces: &Forces, scale: f64) -> Option<Balance> {
         let left = self.residual(forces.cones(&self.sparse, true), &self.load)?;
         let load = self.load.as_slice();
@@ -226,7 +227,8 @@ impl Touched<'_> {
         if !forces.has_friction {
             return Some(Balance::Fails(unbalanced, false));
         }
-        // As a few bodies slip: tangential forces are taken from the load, and normal ones balance what they can.
+        // If only a few bodies slip: tangential forces are subtracted from the load, and normal forces balance as much
+        // of the rest as they can.
         let held = forces.tangential_of_cones(&left.forces, self.rows.len());
         let mut rest = self.load.clone();
         for (row, held) in self.sparse.iter().zip(held.iter()) {

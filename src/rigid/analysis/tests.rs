@@ -1,4 +1,4 @@
-//! Scenes of a few blocks, judged by hand.
+//! Scenes of a few blocks with known answers.
 
 use super::*;
 use crate::rigid::closing_motion::closing_motions;
@@ -54,8 +54,8 @@ fn a_lifted_block_and_a_toppling_one_have_no_equilibrium() {
     assert!(analyse(steady, rows).is_ok());
 }
 
-/// Blocks on top of each other, the lowest on the ground, their joints level but for slopes of
-/// about `slope` up and down by turns; each is pushed aside by a part of what its joint can hold.
+/// Blocks on top of each other, the lowest on the ground; the joints are tilted by about `slope` with alternating sign.
+/// Each block is pushed sideways by a fraction of its joint's resistance.
 fn tower(count: usize, slope: f64, unit: f64, push: f64) -> Scene {
     let state = |i: usize| {
         let (low, high) = (i as f64 * unit, (i as f64 + 1.0) * unit);
@@ -94,7 +94,7 @@ fn rough_joints_hold_a_tower_however_high_and_in_any_unit() {
     let stands = |count, slope, unit| {
         let motions = tower(count, slope, unit, 0.3).analyse();
         assert_eq!(motions, Ok(RigidMotions::default()), "{count} {slope}");
-        // A push that is a load, and more than the joints can hold.
+        // This push is more than round-off, and more than the joints resist.
         if slope >= 1e-6 {
             let pushed = tower(count, slope, unit, 30.0).analyse();
             assert!(pushed.is_err(), "{count} {slope}");
@@ -107,14 +107,14 @@ fn rough_joints_hold_a_tower_however_high_and_in_any_unit() {
             }
         }
     }
-    // A high one takes seconds.
+    // A tower of 50 blocks takes seconds.
     for (slope, unit) in [(1e-2, 1e3), (1e-5, 1.0), (1e-7, 1e-3)] {
         stands(50, slope, unit);
     }
 }
 
-/// Cubes on top of each other, the lowest on the ground, with friction in their joints where there is a coefficient;
-/// the uppermost is pushed aside.
+/// Cubes on top of each other, the lowest on the ground, with friction in their joints if there is a coefficient; the
+/// uppermost one is pushed sideways.
 fn cubes(count: usize, friction: Option<f64>, push: f64) -> Scene {
     let state = |i: usize| {
         let (z, push) = (i as f64, if i + 1 == count { push } else { 0.0 });
@@ -144,7 +144,7 @@ fn cubes(count: usize, friction: Option<f64>, push: f64) -> Scene {
     scene(3, bodies, rows)
 }
 
-/// Cubes of a tower that is analysed by sparse matrices.
+/// Height of a tower that sparse matrices analyse.
 const HIGH: usize = 100;
 
 #[test]
@@ -178,8 +178,7 @@ fn friction_holds_the_uppermost_cube_of_a_tower_up_to_its_coefficient() {
     assert!(slides.starts_with("body 'brick 11' slides"), "{slides}");
 }
 
-/// On two slopes of 1e-5 and 2e-5 below its middle: 3e-10 of the load are more than they hold, and less
-/// than counts.
+/// Slopes of 1e-5 and 2e-5 hold the block; an excess of 3e-10 of the load is below the tolerance, but is reported.
 #[test]
 fn a_load_that_contact_hardly_fails_to_hold_is_told() {
     for (beyond, told) in [(0.0, false), (3e-10, true)] {

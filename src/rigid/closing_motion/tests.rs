@@ -1,4 +1,4 @@
-//! Squares that come to rest, judged by hand.
+//! Squares that come to rest at known positions.
 
 use super::*;
 use crate::rigid::squares::{coulomb, square};
@@ -26,7 +26,7 @@ fn a_square_falls_onto_an_uneven_floor_and_leans_on_it() {
     let z = closing_motions(2, std::slice::from_ref(&body), &rows, &[]).remove(0);
     let motions = [z.clone()];
     close(&[0, 1].map(|j| jump(&rows[j], &motions)), &[0.1, 0.3]);
-    // It sinks by the mean, and turns by the difference over its width.
+    // It sinks by the mean gap, and turns by the difference of the gaps over the width.
     close(&z[1..], &[-0.2, -0.1 * body.frame.size]);
 }
 
@@ -85,7 +85,7 @@ fn rough_floor(body: &BodyState, gap: f64, wall: f64, friction: f64) -> Vec<Rigi
     rows
 }
 
-/// A push on the base, where it topples nothing.
+/// A push on the base, where it has no overturning moment.
 fn pushed(push: f64) -> BodyState {
     let frame = square([0.0; 3]).frame;
     let action = frame.action(2, &[0.0, -1.0, 0.0], &[push, -2.0, 0.0]);
@@ -112,7 +112,7 @@ fn what_falls_askew_onto_a_floor_that_holds_it_rests_without_slip() {
     }
 }
 
-/// Pushed to the wall, let go, and pulled back so far as a second wall lets it.
+/// A body is pushed to the wall, released, and pulled back as far as a second wall allows.
 #[test]
 fn a_body_goes_on_from_where_the_step_before_left_it() {
     let body = pushed(1.1);

@@ -1,4 +1,4 @@
-//! Bodies that friction holds, and some that it doesn't, judged by hand.
+//! Bodies with and without enough friction to hold them, with known answers.
 
 mod bricks;
 
@@ -58,7 +58,7 @@ fn slides(found: Result<RigidMotions, Failure>, along: &str) {
     assert_eq!(failure.exit_code(), 4.into());
 }
 
-/// The weight acts at the middle of the base, so that it doesn't topple.
+/// The load acts at the middle of the base, so that the block doesn't topple.
 #[test]
 fn a_block_on_an_incline_slides_from_the_friction_angle_on() {
     for coefficient in [0.03_f64, 0.1, 0.3, 0.6, 1.0, 2.5] {
@@ -71,7 +71,7 @@ fn a_block_on_an_incline_slides_from_the_friction_angle_on() {
                 let body = block(&[x, y, 0.0]);
                 let size = body.frame.size;
                 let mut body = body;
-                // The force acts at the base's middle, half below the center.
+                // The force acts at the middle of the base, half a side below the center.
                 body.load[2] = 0.5 * slope * weight / size;
                 body.load_scale = x.abs() + y.abs();
                 let corners = [-0.5, 0.1, 0.5].map(|x| (turn(x, -0.5), turn(0.0, -1.0)));
@@ -105,14 +105,14 @@ fn without_friction_the_floor_holds_no_push() {
         on_floor([0.0, -1.0, 0.0], FRICTIONLESS).unwrap().free.len(),
         1
     );
-    // What friction could hold isn't free.
+    // Motions that friction can resist aren't free.
     assert_eq!(
         on_floor([0.0, -1.0, 0.0], coulomb(0.1)),
         Ok(RigidMotions::default())
     );
 }
 
-/// As an expression may give it in places.
+/// An expression may give a bound of 0 in places.
 #[test]
 fn a_law_that_bounds_friction_by_nothing_holds_nothing() {
     for none in [given(0.0), coulomb(0.0)] {
@@ -125,7 +125,7 @@ fn a_law_that_bounds_friction_by_nothing_holds_nothing() {
 fn friction_lifts_nothing_and_keeps_nothing_from_toppling() {
     let lifted = on_floor([0.0, 1.0, 0.0], coulomb(0.5)).unwrap_err();
     assert!(lifted.message.contains("is under-constrained"), "{lifted}");
-    // A push at half the height, beyond half the width over it.
+    // A push at half the height topples the block when its moment, push · ½, exceeds the weight's, 1 · ½.
     for (push, topples) in [(0.99, false), (1.01, true)] {
         let found = on_floor([push, -1.0, 0.0], coulomb(2.0));
         assert_eq!(found.is_err(), topples, "{push}");
@@ -134,8 +134,8 @@ fn friction_lifts_nothing_and_keeps_nothing_from_toppling() {
     }
 }
 
-/// A force drives a wedge out from between two planes, each this angle from its axis: friction of the
-/// tangent of that angle holds whatever presses it.
+/// A force drives a wedge out from between two planes, each at this angle to its axis: friction with the tangent of
+/// that angle holds at any pressure.
 #[test]
 fn a_wedge_between_two_frictional_walls_locks_itself_at_the_angle_of_friction() {
     let half: f64 = 0.2;
@@ -161,7 +161,7 @@ fn given_friction_holds_a_pull_up_to_its_bound() {
     assert_eq!(floor(3e5 * (1.0 - 1e-12)), Ok(RigidMotions::default()));
     slides(floor(3e5 * (1.0 + 1e-12)), "(1.0000, 0.0000)");
     slides(floor(-4e5), "(-1.0000, 0.0000)");
-    // It doesn't ask for pressure.
+    // Tresca friction needs no pressure.
     let wall = [
         ([0.5, -0.5, 0.0], [1.0, 0.0, 0.0]),
         ([0.5, 0.5, 0.0], [1.0, 0.0, 0.0]),
@@ -182,8 +182,7 @@ fn cohesion_holds_beside_friction() {
     slides(pushed(11.0 * (1.0 + 1e-12)), "(1.0000, 0.0000)");
 }
 
-/// A plate between two clamped ones, pressed by a load on it against the lower: what the upper one gives, it gives
-/// twice.
+/// A plate between two clamped ones, pressed against the lower by its load; the upper plate's forces act on it twice.
 #[test]
 fn what_is_clamped_between_two_plates_is_held_by_friction_alone() {
     let up = [0.0, 1.0, 0.0];
@@ -201,8 +200,8 @@ fn what_is_clamped_between_two_plates_is_held_by_friction_alone() {
     assert_eq!(found, Ok(RigidMotions::default()));
 }
 
-/// A bar leans against a wall without friction: the floor holds it up to the angle that textbooks tell, here a push
-/// half as large as the weight.
+/// A bar leans against a wall without friction: friction at the floor holds up to the textbook angle, here a push half
+/// as large as the weight.
 #[test]
 fn friction_at_one_contact_works_beside_another_without() {
     let leaning = |coefficient| {
@@ -211,7 +210,7 @@ fn friction_at_one_contact_works_beside_another_without() {
             ([0.5, 0.5, 0.0], [1.0, 0.0, 0.0]),
         ];
         let mut scene = scene(block(&[0.0, -1.0, 0.0]), &points, coulomb(coefficient));
-        // The second point's friction goes.
+        // The second point has no friction.
         scene.rows.truncate(3);
         scene.conditions = vec![3];
         scene.analyse()
@@ -220,7 +219,7 @@ fn friction_at_one_contact_works_beside_another_without() {
     assert!(leaning(0.5 * (1.0 - 1e-11)).is_err());
 }
 
-/// In whatever direction the plane is inclined, tangents along none of which it slides.
+/// The incline's direction is arbitrary and agrees with no tangent.
 #[test]
 fn a_cube_on_an_incline_slides_from_the_friction_angle_on_in_every_direction() {
     let down = [0.0, 0.0, -1.0];
@@ -230,7 +229,7 @@ fn a_cube_on_an_incline_slides_from_the_friction_angle_on_in_every_direction() {
         let pushed = |push: f64| {
             let (y, x) = direction.sin_cos();
             let mut body = block(&[push * x, push * y, -1.0, 0.0, 0.0, 0.0]);
-            // It acts on the base.
+            // The load acts on the base.
             let moment = body
                 .frame
                 .action(3, &[0.0, 0.0, -0.5], &[push * x, push * y, 0.0]);
@@ -244,7 +243,7 @@ fn a_cube_on_an_incline_slides_from_the_friction_angle_on_in_every_direction() {
     }
 }
 
-/// On nine points, in a direction in which none of the tangents nor a corner of a polygon lies.
+/// Nine points and a direction that agrees with no tangent and no corner of a polygon.
 #[test]
 fn a_cube_on_many_points_is_held_up_to_its_friction_along_no_special_direction() {
     let down = [0.0, 0.0, -1.0];

@@ -1,14 +1,14 @@
-//! Sparse matrices against dense ones.
+//! Sparse matrices compared with dense ones.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::rigid::nonnegative;
 
-/// Bodies in a row, each of two motions, on the next one or on the ground by `rows` conditions.
+/// Bodies in a row with two motions each; `rows` constraints connect each to the next one or to the ground.
 fn chain(bodies: usize, rows: usize, seed: usize) -> (Vec<SparseRow>, DMatrix<f64>) {
     let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();
-    // Unknowns in no order at all.
+    // Unknowns are numbered out of order.
     let number = |i: usize| i * 7 % (2 * bodies);
     let row = |j: usize| -> SparseRow {
         let body = j % bodies;
@@ -25,7 +25,7 @@ fn chain(bodies: usize, rows: usize, seed: usize) -> (Vec<SparseRow>, DMatrix<f6
     (sparse, dense)
 }
 
-/// Conditions against as many motions, the bodies along a line.
+/// Constraints on this number of motions of bodies along a line.
 fn bodies(motions: usize, rows: Vec<SparseRow>) -> ManyBodies {
     let points: Vec<_> = (0..motions).map(|i| [i as f64, 0.0, 0.0]).collect();
     ManyBodies::new(&points, rows).unwrap()
@@ -38,7 +38,7 @@ fn forces_balance_what_those_of_least_squares_do() {
         let rows = 12 + seed % 9;
         let (sparse, b) = chain(4, rows, seed);
         let n = b.ncols();
-        // Half of the loads are within the cone.
+        // Half of the loads lie in the cone of the forces.
         let lambda = DVector::from_fn(rows, |j, _| ((j + seed) % 3) as f64);
         let any = DVector::from_fn(n, |i, _| ((i * i + seed) as f64).sin());
         let load = if seed % 2 == 0 {
@@ -78,7 +78,7 @@ fn bodies_rest_where_no_motion_within_the_gaps_does_more_work() {
         for (jump, gap) in jumps.iter().zip(&gaps) {
             assert!(*jump <= gap + 1e-12, "{jump}, expected at most {gap}");
         }
-        // What the closed ones can't balance would do more work.
+        // A load that the closed constraints can't balance would do more work.
         let closed: Vec<usize> = (0..40).filter(|&j| jumps[j] > gaps[j] - 1e-9).collect();
         let drive = nonnegative::residual(&b.select_rows(&closed).transpose(), &load);
         assert!(drive.norm() <= 1e-7 * load.norm(), "{drive}");
@@ -91,7 +91,7 @@ fn motions_are_held_unless_some_combination_is_free() {
         let (sparse, _) = chain(6, 30, seed);
         let hold_all = |rows| bodies(12, rows).unheld().unwrap().is_empty();
         assert!(hold_all(sparse.clone()));
-        // The last column becomes a combination of others, as far as the rows have both.
+        // The last column becomes a combination of others in the rows that contain both.
         let with_one_less = sparse.iter().map(|row| {
             let all = row.iter().filter(|(i, _)| *i != 3);
             all.copied().collect()

@@ -1,8 +1,8 @@
-//! Bricks that friction holds on each other.
+//! Bricks held on each other by friction.
 
 use super::*;
 
-/// Rows of bricks in a wall, each under its weight and a push aside.
+/// A wall of rows of bricks, each under its weight and a sideways push.
 fn wall(rows: usize, columns: usize, coefficient: f64, push: impl Fn(usize) -> f64) -> Scene {
     let place = |b: usize| {
         let (i, k) = (b / columns, b % columns);
