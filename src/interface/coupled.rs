@@ -6,10 +6,9 @@
 //! A δ + C τ = r,    λ = d − Cᵀ δ − H τ ≥ 0,    τ ≤ s,    λ (s − τ) = 0
 //! ```
 //!
-//! is what the interface problem (14) asks of a change δ of U and τ of the normal jumps: r is its
-//! residual, d and s are the forces and gaps at U. Eliminating δ leaves a contact problem with
-//! H − Cᵀ A⁻¹ C in the normal jumps of all pairs and nothing else. Linearly dependent constraints of a pair,
-//! D τ ≤ d − D t, stay what they are.
+//! determines the changes δ of U and τ of the normal jumps that solve the interface problem (14), where r is its
+//! residual and d and s are the forces and gaps at U. Elimination of δ leaves a contact problem in the normal jumps of
+//! all pairs, with the matrix H − Cᵀ A⁻¹ C. Linearly dependent constraints of a pair, D τ ≤ d − D t, remain unchanged.
 
 use faer::MatRef;
 use serde::{Deserialize, Serialize};
@@ -26,8 +25,7 @@ use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::s_con::{ConState, Expected};
 use crate::schur::local::multiply_add;
 
-/// Most normal jumps of all pairs together for which their problem is solved at once: its matrix is
-/// dense.
+/// Most normal jumps of all pairs for which the coupled problem is solved; its matrix is dense.
 pub const MAX_JUMPS: usize = 6_000;
 
 /// The coupled contact problem.
@@ -38,7 +36,7 @@ pub struct CoupledContact<'a> {
     /// H − Cᵀ A⁻¹ C.
     h: MatRef<'a, f64>,
     diagonal: Vec<f64>,
-    /// No change.
+    /// The zero change.
     center: Vec<f64>,
     /// D of all pairs.
     rows: DependentConstraints,
@@ -52,29 +50,29 @@ pub struct CoupledContact<'a> {
 pub struct CoupledStep {
     /// δ.
     pub u: Vec<f64>,
-    /// The statuses of every pair then, and τ.
+    /// For every pair the statuses after the step, and τ.
     pub expected: Vec<Expected>,
     /// The solution of the contact problem of all pairs.
     pub contact: ContactSolution,
-    /// The conditions of every pair whose status is wrong, where friction kept it from converging.
+    /// The constraints of every pair with wrong status, if friction kept the iteration from converging.
     pub unsettled: Vec<Vec<usize>>,
 }
 
-/// A change of the solution on the interface and of all pairs.
+/// A change of U and of all pairs.
 #[derive(Clone, Debug)]
 pub struct CoupledChange<L> {
     /// The change of U.
     pub u: Vec<f64>,
-    /// The pairs.
+    /// The changes of the pairs.
     pub pairs: Vec<PairChange<L>>,
 }
 
-/// The change of the jumps of a pair, and what is asked for of its limits: the changes of their forces, or their states then.
+/// The change of the jumps of a pair, and a value for each limit: the change of its force, or its new state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PairChange<L> {
     /// Changes of jumps (m).
     pub jumps: Vec<f64>,
-    /// The answer at every limit.
+    /// The value of every limit.
     pub limits: Vec<L>,
 }
 
@@ -89,7 +87,7 @@ struct Condensed {
 }
 
 impl<'a> CoupledContact<'a> {
-    /// The contact problem of all pairs; `None` where they have too many normal jumps.
+    /// The contact problem of all pairs; `None` if they have too many normal jumps.
     pub fn new(problem: &'a InterfaceProblem<'_>) -> Option<Self> {
         let (interface, motions) = (problem.interface, &problem.motions);
         let laws = &interface.laws;
@@ -105,7 +103,7 @@ impl<'a> CoupledContact<'a> {
         })
     }
 
-    /// The step to the solution from U, where the pairs answered `state` and the residual is `r`.
+    /// The step from U to the solution, where `state` are the responses of the pairs at U and `r` is the residual.
     pub fn solve(&self, u: &[f64], r: &[f64], state: &ConState) -> CoupledStep {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
             state.responses.iter().flat_map(of).copied().collect()
@@ -156,8 +154,8 @@ impl<'a> CoupledContact<'a> {
         }
     }
 
-    /// Distance of another solution with friction from U, the largest difference of a jump (m). U is a solution, at which
-    /// the pairs answered `state` and the residual is `r`.
+    /// Distance of another solution with friction from the solution U, as the largest difference of a jump (m); `state`
+    /// are the responses of the pairs at U and `r` is the residual.
     pub fn other_solution(&self, u: &[f64], r: &[f64], state: &ConState) -> Option<f64> {
         let all = |of: fn(&PairResponse) -> &Vec<f64>| -> Vec<f64> {
             state.responses.iter().flat_map(of).copied().collect()
@@ -178,8 +176,8 @@ impl<'a> CoupledContact<'a> {
         problem.other_solution(&vec![0.0; jumps.len()], largest(&jumps).max(largest(u)))
     }
 
-    /// The change of U, and of jumps and forces of every pair, that balances `r` on Γ and `loads` on the normal jumps of every pair where limits keep their
-    /// statuses. What nothing resists stays where it is unless it `moves`.
+    /// The change of U, and of jumps and forces of every pair, under loads `r` on Γ and `loads` on the normal jumps,
+    /// where limits keep their statuses. Motions that nothing restrains are zero unless it `moves`.
     pub fn solve_fixed(
         &self,
         r: &[f64],
@@ -195,7 +193,7 @@ impl<'a> CoupledContact<'a> {
         let problem = FrictionProblem {
             contact: ContactProblem {
                 scale: match moves {
-                    // No load is round-off of the displacements that it changes.
+                    // A load, however small, counts: displacements are the unknowns here, not a scale of its round-off.
                     true => 0.0,
                     false => self.scale,
                 },
@@ -211,9 +209,9 @@ impl<'a> CoupledContact<'a> {
         }
     }
 
-    /// The change of U and of the jumps of every pair that solves the laws of contact from these `states` of all limits, where
-    /// `r` on Γ and `loads` on the normal jumps are left unbalanced, with the states then; and whether it does. Round-off is
-    /// that of the change: the displacements so far are no scale of it.
+    /// The change of U and of the jumps of every pair that satisfies the contact laws, from these `states` of all
+    /// limits, under the unbalanced `r` on Γ and `loads` on the normal jumps; the new states; and whether the iteration
+    /// converged. Round-off is measured by the change, not by the displacements so far.
     pub fn solve_laws(
         &self,
         r: &[f64],
@@ -264,7 +262,7 @@ impl<'a> CoupledContact<'a> {
         (change, solution.converged)
     }
 
-    /// The part of every pair in a change of all jumps, with the values of all limits.
+    /// Splits a change of all jumps, with the values of all limits, by pair.
     fn pair_changes<L: Copy>(&self, jumps: &[f64], limits: &[L]) -> Vec<PairChange<L>> {
         let pairs = self.by_pair(jumps).into_iter().zip(self.by_pair(limits));
         let of_pair = |(jumps, limits)| PairChange { jumps, limits };
@@ -326,18 +324,18 @@ impl<'a> CoupledContact<'a> {
         u
     }
 
-    /// True if a pair has friction.
+    /// True if any pair has friction.
     pub fn has_friction(&self) -> bool {
         !self.tangents.is_empty()
     }
 
-    /// True if a point slips in a plane.
+    /// True if any point can slip in two directions.
     pub fn has_cones(&self) -> bool {
         let mut tangents = self.tangents.iter();
         tangents.any(|tangent| tangent.other != OtherTangent::Nothing)
     }
 
-    /// Entries of every pair's normal jumps, then those of every pair's linearly dependent constraints.
+    /// Concatenation of the values of all pairs: those of normal jumps, then those of linearly dependent constraints.
     fn side_by_side<'b, T: Copy + 'b>(
         &self,
         of_pairs: impl Iterator<Item = &'b [T]> + Clone,
@@ -349,7 +347,7 @@ impl<'a> CoupledContact<'a> {
         jumps.chain(dependent).copied().collect()
     }
 
-    /// The part of every pair in all normal jumps, and of linearly dependent constraints if these follow.
+    /// Splits values of all normal jumps, and of linearly dependent constraints if included, by pair.
     fn by_pair<T: Copy>(&self, all: &[T]) -> Vec<Vec<T>> {
         let (mut jumps, mut dependent) = all.split_at(self.h.nrows());
         let mut take = |law: &CondensedContact| {
@@ -362,8 +360,8 @@ impl<'a> CoupledContact<'a> {
     }
 }
 
-/// The limits of tangential jumps of all pairs, where jumps of all come before the linearly dependent constraints of
-/// all.
+/// The limits of the tangential jumps of all pairs; jumps of all pairs are numbered first, then the linearly dependent
+/// constraints of all.
 fn all_tangents(laws: &[CondensedContact]) -> Vec<TangentialLimit> {
     let jumps: usize = laws.iter().map(CondensedContact::len).sum();
     let (mut first, mut first_row) = (0, jumps);
@@ -381,7 +379,7 @@ fn all_tangents(laws: &[CondensedContact]) -> Vec<TangentialLimit> {
     all
 }
 
-/// D of all pairs, whose normal jumps are numbered one after the other.
+/// D of all pairs, whose normal jumps are numbered consecutively.
 fn all_rows(laws: &[CondensedContact]) -> DependentConstraints {
     let mut rows = DependentConstraints::default();
     let mut first = 0;

@@ -11,15 +11,15 @@ use crate::schur::pattern::Cliques;
 pub struct Numbering {
     /// Number of unknowns.
     pub len: usize,
-    /// Number of those that no pair has; they come first.
+    /// Number of unknowns that belong to no pair; they come first.
     pub linear: usize,
     /// Numbers of every cluster's interface dofs.
     pub interface_dofs: Vec<Vec<u32>>,
 }
 
 impl Numbering {
-    /// Numbers the interface dofs of all clusters, those of pairs last; `nodes[c]` are the nodes of Γ that
-    /// cluster c shares with others, `in_contact[c]` tells whether it is a pair.
+    /// Numbers the interface dofs of all clusters, those of pairs last; `nodes[c]` are the nodes of Γ that cluster c
+    /// shares with others, `in_contact[c]` is true if it is a pair.
     ///
     /// # Errors
     /// Two clusters disagree on which components of a shared node are free.
@@ -66,11 +66,11 @@ impl Numbering {
     }
 }
 
-/// Checks that every node of Γ is free along the same axes in all parts that have it; `nodes[p]` are
-/// those of part p, `interface_dofs[p]` its unknowns, both ascending.
+/// Checks that every node of Γ is free along the same axes in all parts that contain it; `nodes[p]` are the nodes of
+/// part p, `interface_dofs[p]` its unknowns, both ascending.
 ///
 /// # Errors
-/// A node at which parts hold different unknowns.
+/// A node with different unknowns in two parts.
 pub fn check_agreement(
     interface_dofs: &[&[InterfaceDof]],
     nodes: &[&[u32]],
@@ -98,7 +98,7 @@ pub fn check_agreement(
     }
 }
 
-/// Pieces of Γ whose unknowns belong to the same clusters: what the root eliminates at once.
+/// Faces: sets of unknowns of Γ that belong to the same clusters; the root eliminates each as a whole.
 struct Faces {
     clusters: Vec<Vec<u32>>,
     dofs: Vec<Vec<InterfaceDof>>,
@@ -124,13 +124,13 @@ impl Faces {
         }
     }
 
-    /// True if one of a face's clusters is a pair.
+    /// True if a face belongs to a pair.
     fn touches(&self, face: usize, in_contact: &[bool]) -> bool {
         let mut clusters = self.clusters[face].iter();
         clusters.any(|&c| in_contact[c as usize])
     }
 
-    /// Minimum degree on faces, each counted with its number of unknowns; those of pairs come last.
+    /// Minimum-degree order of the faces, each weighted by its number of unknowns; those of pairs come last.
     fn elimination_order(&self, in_contact: &[bool]) -> Vec<usize> {
         let n = self.dofs.len();
         let mut neighbours: Vec<BTreeSet<usize>> = self
@@ -159,7 +159,7 @@ impl Faces {
             let clique = std::mem::take(&mut neighbours[face]);
             for &f in &clique {
                 queue.remove(&place(f, &neighbours));
-                // `face` still counts in the old degree, which is why it leaves only now.
+                // `face` is part of the old degree and is therefore removed only now.
                 neighbours[f].remove(&face);
                 neighbours[f].extend(clique.iter().copied().filter(|&g| g != f));
             }

@@ -1,4 +1,4 @@
-//! S_0 of (15), and the bilateral operator S_0 + S_CON' of (16)-(17) with its solver at the root.
+//! S_0 of (15), and the bilateral operator S_0 + S_CON' of (16)-(17) with its solver, at the root.
 //!
 //! > S_0 = Σ_T R̄_iᵀ S_i R̄_i,   S_CON' = Σ_ϑ R̄_klᵀ S_ΓΓ R̄_kl
 
@@ -16,10 +16,10 @@ use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
-/// The share of the pairs' bilateral Schur complements that picard counts to S_0 where this is singular: as much as
-/// leaves (18) what it is, an iteration that diverges where both sides are equally stiff.
+/// Fraction of the pairs' bilateral Schur complements that picard adds to S_0 if this is singular: small enough that
+/// (18) keeps its convergence behaviour, divergence for equally stiff sides included.
 const SHARE: f64 = 0.05;
-/// Pivot relative to its diagonal entry below which an operator is singular.
+/// Pivot, relative to its diagonal entry, below which an operator is singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
 
 /// The contribution of a cluster to the interface problem.
@@ -28,45 +28,45 @@ pub struct Contribution {
     /// Schur complement on the interface dofs, with every contact closed.
     #[serde(with = "crate::bytes::symmetric")]
     pub s: Mat<f64>,
-    /// The smallest pivot of its interior relative to its diagonal entry.
+    /// The smallest pivot of its interior, relative to its diagonal entry.
     pub smallest_pivot: f64,
-    /// The law of a pair; `None` for a linear subdomain, and where all pairs have too many
-    /// normal jumps to be solved for at once.
+    /// The contact law of a pair; `None` for a linear subdomain, and if all pairs have too many normal jumps for the
+    /// coupled problem.
     pub law: Option<CondensedContact>,
 }
 
-/// The operators of the interface problem S_0 U + S_CON(U) = F, (14), as the root holds them; F is
-/// [`InterfaceProblem`](super::problem::InterfaceProblem) in each load step.
+/// The operators of the interface problem S_0 U + S_CON(U) = F, (14), on the root; F of each load step is in
+/// [`InterfaceProblem`](super::problem::InterfaceProblem).
 #[derive(Debug)]
 pub struct Interface {
-    /// Number of unknowns on Γ that clusters share.
+    /// Number of unknowns on Γ shared by clusters.
     pub len: usize,
-    /// Number of those that no pair has; they come first.
+    /// Number of unknowns that belong to no pair; they come first.
     pub linear: usize,
     /// The traces of every pair.
     pub pair_interface_dofs: Vec<Vec<u32>>,
-    /// The law of every pair, whose H is apart; empty where they have too many normal jumps to be solved for at once.
+    /// The contact law of every pair, without H; empty if they have too many normal jumps for the coupled problem.
     pub laws: Vec<CondensedContact>,
-    /// H of every law until they are condensed: of many conditions no copy is left.
+    /// H of every law until they are condensed; then it is dropped to save memory.
     h_of_laws: RefCell<Vec<Mat<f64>>>,
     /// S_0 = Σ R_iᵀ S_i R_i over the linear subdomains, (15).
     s_0: SparseSymmetric,
     /// S_0 + S_CON' of the bilateral problem.
     bilateral: SparseSymmetric,
-    /// Clusters in contact.
+    /// Flags of the clusters in contact.
     pub in_contact: Vec<bool>,
     /// Solver of the bilateral problem.
     pub solver: DirectSolver,
     condensed_laws: OnceCell<Mat<f64>>,
-    /// The patch of these laws that touched last.
+    /// The patch of these laws that was in contact last.
     pub last_patch: LastPatch,
     smallest_pivot: f64,
     par: Par,
 }
 
 impl Interface {
-    /// Assembles S_0 and the bilateral operator from all clusters, in their order, and factorizes
-    /// the latter. `in_contact[c]` tells whether cluster c is in contact.
+    /// Assembles S_0 and the bilateral operator from all clusters, in their order, and factorizes the latter.
+    /// `in_contact[c]` is true if cluster c is in contact.
     ///
     /// # Errors
     /// The bilateral problem is singular.
@@ -129,14 +129,13 @@ impl Interface {
         })
     }
 
-    /// The smallest pivot of all clusters and of the bilateral operator, each relative to its
-    /// diagonal entry.
+    /// The smallest pivot of all clusters and of the bilateral operator, each relative to its diagonal entry.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }
 
-    /// The pairs' laws condensed onto their normal jumps, made when first asked for; the rigid `motions` of the
-    /// bodies have no energy in it.
+    /// The pairs' laws condensed onto their normal jumps, computed on first use; the energy of the bodies' rigid
+    /// `motions` is set to zero.
     pub fn condensed_laws(&self, motions: &RigidBasis) -> MatRef<'_, f64> {
         self.condensed_laws
             .get_or_init(|| condense_laws(self, motions))
@@ -148,8 +147,8 @@ impl Interface {
         &self.s_0
     }
 
-    /// The factor of S_0 and of as little of the pairs' bilateral Schur complements as makes it regular: none, or
-    /// `SHARE`; how much that is. `None` where it is singular even so.
+    /// The factor of S_0 plus a multiple of the pairs' bilateral Schur complements, 0 or `SHARE`, whichever first makes
+    /// it regular, and that multiple; `None` if it is singular with both.
     pub fn factor_s_0(&self) -> Option<(BoundaryLastCholesky, f64)> {
         let regular = |matrix: &SparseSymmetric| {
             let factor = BoundaryLastCholesky::new(matrix, self.len, self.par).ok()?;
@@ -166,7 +165,7 @@ impl Interface {
         Some((regular(&shared)?, SHARE))
     }
 
-    /// y ← y + a S_CON' x, S_CON' that of the bilateral problem.
+    /// y ← y + a S_CON' x, with S_CON' of the bilateral problem.
     pub fn add_bilateral_con(&self, a: f64, x: &[f64], y: &mut [f64]) {
         let scaled: Vec<f64> = x.iter().map(|x| a * x).collect();
         self.bilateral.multiply_add(&scaled, y);
@@ -214,7 +213,7 @@ fn condense_laws(interface: &Interface, motions: &RigidBasis) -> Mat<f64> {
     h
 }
 
-/// The matrix that has these on its diagonal.
+/// The block-diagonal matrix with these blocks.
 fn side_by_side(mut parts: Vec<Mat<f64>>) -> Mat<f64> {
     if let [_] = parts[..] {
         return parts.swap_remove(0);
@@ -231,7 +230,7 @@ fn side_by_side(mut parts: Vec<Mat<f64>>) -> Mat<f64> {
     whole
 }
 
-/// The diagonal of what all laws are condensed from, side by side.
+/// Concatenated diagonals of the matrices from which the laws are condensed.
 pub(super) fn diagonal_of(laws: &[CondensedContact]) -> Vec<f64> {
     laws.iter().flat_map(|law| law.diagonal.clone()).collect()
 }

@@ -1,4 +1,4 @@
-//! The interface problem of a load step: F of (15) beside the operators that all steps share.
+//! The interface problem of a load step: its load F, (15), with the operators of all steps.
 //!
 //! > F = Σ_T R̄_iᵀ f_i
 
@@ -7,8 +7,8 @@ use super::operator::{Interface, diagonal_of};
 use super::rigid_modes::{RigidBasis, RigidModes};
 use crate::vector::NOTHING;
 
-/// Part of what forces are round-off of to which a residual of them is relative: with the tolerance of sweeps that is
-/// round-off again.
+/// Scale of a residual of round-off forces, relative to the forces whose round-off they are: times the tolerance of
+/// sweeps it is round-off again.
 const LEFT: f64 = 1e-3;
 
 /// The load of a cluster.
@@ -17,11 +17,11 @@ pub struct ClusterLoad {
     /// Condensed load on the interface dofs, with every contact closed.
     #[serde(with = "crate::bytes")]
     pub load: Vec<f64>,
-    /// The largest displacement that is prescribed in a cluster in contact (m).
+    /// The largest prescribed displacement in a cluster in contact (m).
     pub scale: f64,
 }
 
-/// S_0 U + S_CON(U) = F, (14), in a load step, as the root holds it.
+/// S_0 U + S_CON(U) = F, (14), in a load step, on the root.
 #[derive(Debug)]
 pub struct InterfaceProblem<'a> {
     /// S_0 and the bilateral operator.
@@ -31,18 +31,18 @@ pub struct InterfaceProblem<'a> {
     f_scale: Vec<f64>,
     /// F of the pairs with every contact closed.
     f_bilateral: Vec<f64>,
-    /// The rigid motions of the bodies as their normal jumps see them, and the load along them.
+    /// The rigid-body motions by their normal jumps, and the load along them.
     pub motions: RigidBasis,
-    /// The largest displacement that is prescribed in a cluster in contact (m).
+    /// The largest prescribed displacement in a cluster in contact (m).
     pub scale: f64,
-    /// The largest force elsewhere in the bodies, or in a load step before (N/m).
+    /// The largest force outside Γ, or in a load step before (N/m).
     elsewhere: f64,
 }
 
 impl<'a> InterfaceProblem<'a> {
-    /// Assembles F of the `loads` of all clusters, in their order; `modes` has the pairs' normal jumps
-    /// against the rigid motions of the bodies, and the load along these; `elsewhere` in the bodies, or before, forces are
-    /// up to this large.
+    /// Assembles F from the `loads` of all clusters, in their order; `modes` are the pairs' normal jumps in the
+    /// rigid-body motions, and the load along these; `elsewhere` is the largest force in the bodies outside Γ, or
+    /// before.
     pub fn new(
         interface: &'a Interface,
         numbering: &Numbering,
@@ -74,7 +74,7 @@ impl<'a> InterfaceProblem<'a> {
         }
     }
 
-    /// True if nothing acts on Γ and the clusters in contact but what their contacts are held to.
+    /// True if there is no load on Γ and the clusters in contact; gaps and slips may still be prescribed.
     pub fn is_unloaded(&self) -> bool {
         let mut all = self.f.iter().chain(&self.f_bilateral);
         all.all(|&f| f == 0.0)
@@ -88,8 +88,8 @@ impl<'a> InterfaceProblem<'a> {
         u
     }
 
-    /// Scale of a residual whose terms are at most this large: these, or where they are round-off to a part
-    /// of what they are round-off of.
+    /// Scale of a residual whose largest term is `terms`; if this is round-off of forces elsewhere, a fraction of
+    /// these.
     pub fn residual_scale(&self, terms: f64) -> f64 {
         match terms < NOTHING * self.elsewhere {
             true => LEFT * self.elsewhere,

@@ -1,8 +1,9 @@
-//! Rigid motions cost no energy and carry the load's resultant, whatever round-off makes of it.
+//! Rigid-body motions in condensed operators: they have no energy, and the load along them is the resultant of the
+//! loads.
 //!
-//! A stiff body among soft ones leaves cancellation in what is condensed onto normal jumps: an energy
-//! H, of either sign, of motions that have none, and a load c that drives them otherwise than the
-//! load of the bodies does. Both are known exactly, from geometry.
+//! A stiff body among soft ones causes cancellation in the condensation onto normal jumps: motions without energy get
+//! an energy in H, of either sign, and the load c along them differs from the bodies' load. Both are known exactly,
+//! from geometry.
 
 use std::collections::BTreeMap;
 
@@ -13,12 +14,12 @@ use serde::{Deserialize, Serialize};
 use crate::comm::is_asked_to_stop;
 use crate::vector::{axpy, dot};
 
-/// Part of a motion, relative to all of it, that is new.
+/// Part of a motion orthogonal to the others, relative to the motion, above which it is independent.
 const INDEPENDENT: f64 = 1e-8;
-/// Motions from which on those that have no normal jump in common are told apart.
+/// Number of motions from which on sets without common normal jumps are treated separately.
 const MANY: usize = 100;
 
-/// Normal jumps against rigid motions: R, a row a normal jump and a column a motion, and the load Rᵀ c
+/// Normal jumps in rigid motions: R, with a row for each normal jump and a column for each motion, and the load Rᵀ c
 /// along them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigidModes {
@@ -39,29 +40,29 @@ impl Default for RigidModes {
     }
 }
 
-/// The motions in the scale of energies: an orthonormal basis Q of what D^½ R spans, D the diagonal of
-/// the matrix that is condensed.
+/// The motions in the scale of energies: an orthonormal basis Q of the range of D^½ R, with D the diagonal of the
+/// condensed matrix.
 #[derive(Clone, Debug, Default)]
 pub struct RigidBasis {
     root: Vec<f64>,
-    /// The normal jumps that motions connect, ascending.
+    /// The normal jumps of every set connected by motions, ascending.
     parts: Vec<Vec<usize>>,
     q: Vec<Direction>,
     /// Qᵀ D^(−½) c.
     load: Vec<f64>,
 }
 
-/// A column of Q, which is zero outside of a part.
+/// A column of Q, zero outside one set of normal jumps.
 #[derive(Clone, Debug)]
 struct Direction {
     part: usize,
-    /// Entries of the mode there.
+    /// Its entries in that set.
     values: Vec<f64>,
 }
 
 impl RigidBasis {
-    /// The basis for normal jumps with this `diagonal` D, by Gram and Schmidt, twice; soft bodies first, so
-    /// that what is left for stiff ones leaves theirs alone, to which it would be far more.
+    /// The basis for normal jumps with this `diagonal` D, by two passes of Gram-Schmidt. Soft bodies come first: the
+    /// remainders of stiff bodies' motions then leave the small loads along the soft ones unchanged.
     pub fn new(drive: &RigidModes, diagonal: &[f64]) -> Self {
         let root: Vec<f64> = diagonal.iter().map(|k| k.max(0.0).sqrt()).collect();
         let (parts, part_of_row) = parts(&drive.rows, root.len());
@@ -90,7 +91,7 @@ impl RigidBasis {
         motions.sort_by(|(one, ..), (other, ..)| one.total_cmp(other));
         let mut of_part: Vec<Vec<usize>> = vec![Vec::new(); basis.parts.len()];
         for (whole, mut v, mut load) in motions {
-            // Whoever is asked to stop asks for no answer.
+            // After a signal no result is needed.
             if is_asked_to_stop() {
                 break;
             }
@@ -113,7 +114,7 @@ impl RigidBasis {
         basis
     }
 
-    /// H ← Pᵀ H P, where P takes the motions out.
+    /// H ← Pᵀ H P, where P projects the motions out.
     ///
     /// In the scale of energies P H P = H − Q Xᵀ − X Qᵀ with X = H Q − ½ Q (Qᵀ H Q).
     pub fn remove_energy(&self, h: &mut Mat<f64>) {
@@ -141,7 +142,7 @@ impl RigidBasis {
         }
     }
 
-    /// Q Xᵀ, by dense matrices.
+    /// Q Xᵀ, with dense matrices.
     fn change_at_once(&self, scaled: &Mat<f64>) -> Mat<f64> {
         let n = self.root.len();
         let mut q = Mat::zeros(n, self.q.len());
@@ -156,7 +157,7 @@ impl RigidBasis {
         &q * x.transpose()
     }
 
-    /// X Qᵀ, where every motion has to do with one part of the normal jumps alone.
+    /// X Qᵀ, where every motion involves one set of normal jumps only.
     fn change_by_parts(&self, scaled: &Mat<f64>) -> Mat<f64> {
         let (n, rank) = (self.root.len(), self.q.len());
         let entries = |k: usize| {
@@ -166,7 +167,7 @@ impl RigidBasis {
                 .copied()
                 .zip(values.iter().copied())
         };
-        // H Q, X in the end, a row for each motion.
+        // H Q, later X, with a row for each motion.
         let mut x: Vec<Vec<f64>> = vec![vec![0.0; n]; rank];
         for (k, x) in x.iter_mut().enumerate() {
             for (row, q) in entries(k) {
@@ -195,12 +196,12 @@ impl RigidBasis {
         change
     }
 
-    /// Gives c the part along the motions that the bodies' load has.
+    /// Sets the part of c along the motions to the bodies' load.
     pub fn set_load(&self, c: &mut [f64]) {
         self.set(c, |k| self.load[k]);
     }
 
-    /// Takes out of c what it has along the motions.
+    /// Removes the part of c along the motions.
     pub fn remove_load(&self, c: &mut [f64]) {
         self.set(c, |_| 0.0);
     }
@@ -221,7 +222,7 @@ impl RigidBasis {
     }
 }
 
-/// The rows that columns connect, part by part, and the part of every row.
+/// Sets of rows connected by columns, and the set of every row.
 fn parts(matrix: &Mat<f64>, rows: usize) -> (Vec<Vec<usize>>, Vec<usize>) {
     let mut sets = DisjointSets::new(rows);
     for column in matrix.col_iter() {
@@ -251,7 +252,7 @@ mod tests {
     const BEND: [f64; 3] = [1.0, -2.0, 1.0];
     const STIFFNESS: [f64; 3] = [1.0, 4.0, 2.0];
 
-    /// Lifting, rocking, and both at once, of a beam on three supports.
+    /// Translation and rotation of a beam on three supports, and the sum of both.
     fn lifting_and_rocking(load: [f64; 2]) -> RigidModes {
         RigidModes {
             rows: Mat::from_fn(3, 3, |i, k| [1.0, i as f64 - 1.0, i as f64][k]),
@@ -270,7 +271,7 @@ mod tests {
         assert!((&h - &exact).norm_max() < 1e-8);
     }
 
-    /// Motions of rows that others don't share, in no order, and a matrix that connects all.
+    /// Motions on disjoint sets of rows, in arbitrary order, and a matrix that connects all rows.
     #[test]
     fn parts_by_themselves_lose_the_same_energy() {
         let noise = |s: usize| ((s as f64 * 78.233).sin() * 43758.5453).fract();
@@ -297,8 +298,8 @@ mod tests {
         assert!((&without * &drive.rows).norm_max() < 1e-13);
     }
 
-    /// A soft body without load on a stiff one that two conditions hold: what round-off leaves of the
-    /// stiff one's load would drive it.
+    /// A soft body without load on a stiff one held by two constraints: the round-off of the stiff body's load would
+    /// move the soft one.
     #[test]
     fn round_off_of_a_stiff_body_is_nothing_to_a_soft_one() {
         let drive = RigidModes {

@@ -14,18 +14,18 @@ use crate::comm::Comm;
 use crate::contact::friction::Status;
 use crate::contact::pair::{ContactPair, PairResponse};
 
-/// S_CON = Σ R_kᵀ S_kl R_k, (15), as the root drives it and the other ranks serve it.
+/// S_CON = Σ R_kᵀ S_kl R_k, (15): the root sends requests, the other ranks evaluate their pairs.
 pub struct SCon<'a> {
     comm: &'a Comm,
     owners: &'a [usize],
     pairs: &'a mut OnPairs<ContactPair>,
 }
 
-/// The answers of all pairs after an evaluation, on the root.
+/// The responses of all pairs after an evaluation, on the root.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConState {
     interface_dofs: Vec<Option<Vec<f64>>>,
-    /// The answer of every pair.
+    /// The response of every pair.
     pub responses: Vec<PairResponse>,
 }
 
@@ -34,36 +34,36 @@ pub struct ConState {
 pub struct ConTotals {
     /// Closed normal jumps and linearly dependent constraints.
     pub active: usize,
-    /// Conditions that opened or closed, against the expected statuses or the last evaluation.
+    /// Constraints that opened or closed, relative to the expected statuses or those of the last evaluation.
     pub changed: usize,
     /// Linear systems solved within pairs.
     pub steps: usize,
     /// Pairs that needed more than Newton's method.
     pub fallen_back_pairs: usize,
-    /// Pairs whose small problem didn't converge.
+    /// Pairs whose contact problem didn't converge.
     pub failed_pairs: usize,
-    /// Pairs that weren't asked: their traces are those of the evaluation before.
+    /// Pairs that weren't evaluated because their traces are unchanged.
     pub unmoved_pairs: usize,
 }
 
 /// A request of the root to the pairs.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 enum Request {
-    /// The end of all requests.
+    /// The end of the requests.
     #[default]
     Stop,
     /// S_kl(U) of these pairs.
     Evaluate(Vec<usize>),
     /// S_kl'(U) x of these pairs.
     Differentiate(Vec<usize>),
-    /// A signal's request to stop.
+    /// Whether a signal has asked any rank to stop.
     Signals,
 }
 
-/// The statuses that are expected of a pair, and by how much its jumps change; nothing where that isn't known.
+/// The statuses expected of a pair, and the change of its jumps; empty if unknown.
 pub type Expected = (Vec<Status>, Vec<f64>);
 
-/// U of a pair, and what is expected.
+/// U of a pair, and its expected statuses and change of jumps.
 type Question = (Reals, Option<(Vec<Status>, Reals)>);
 
 impl<'a> SCon<'a> {
@@ -86,9 +86,8 @@ impl<'a> SCon<'a> {
         self.owners.is_empty()
     }
 
-    /// Evaluates all pairs whose trace changed and leaves their answers in `state`; a pair's search
-    /// begins at what is `expected`. On the root; the other ranks
-    /// [`serve`](Self::serve).
+    /// Evaluates all pairs whose traces have changed, and stores their responses in `state`; the active-set iteration
+    /// of a pair starts from its `expected` statuses. On the root, while the other ranks [`serve`](Self::serve).
     pub fn evaluate(
         &mut self,
         interface: &Interface,
@@ -131,8 +130,8 @@ impl<'a> SCon<'a> {
         totals
     }
 
-    /// y ← y + S_CON'(U) x with the active sets of the last evaluation. On the root; the other
-    /// ranks [`serve`](Self::serve).
+    /// y ← y + S_CON'(U) x with the active sets of the last evaluation. On the root, while the other ranks
+    /// [`serve`](Self::serve).
     pub fn add_derivative(&mut self, interface: &Interface, x: &[f64], y: &mut [f64]) {
         if self.is_empty() {
             return;
@@ -146,20 +145,18 @@ impl<'a> SCon<'a> {
         });
     }
 
-    /// True if a signal has asked any rank to stop. On the root; the other ranks
-    /// [`serve`](Self::serve).
+    /// True if a signal has asked any rank to stop. On the root, while the other ranks [`serve`](Self::serve).
     pub fn is_any_asked_to_stop(&self) -> bool {
         self.comm.broadcast(&mut Request::Signals);
         self.comm.is_any_asked_to_stop()
     }
 
-    /// Answers for this rank's pairs whatever the root asks, until it stops. On all ranks but the
-    /// root.
+    /// Evaluates this rank's pairs as the root requests, until it sends the end. On all ranks but the root.
     pub fn serve(&mut self) {
         loop {
             let mut request = Request::default();
             self.comm.broadcast(&mut request);
-            // Only the root has questions and takes answers.
+            // Only the root sends inputs and receives results.
             match request {
                 Request::Stop => return,
                 Request::Evaluate(called) => {
@@ -180,7 +177,7 @@ impl<'a> SCon<'a> {
         self.comm.broadcast(&mut Request::Stop);
     }
 
-    /// Questions to the owners of the pairs that are `called`, answers to the root. Collective.
+    /// Sends inputs to the owners of the pairs in `called`, and results to the root. Collective.
     fn exchange<Q, A>(
         &mut self,
         called: &[usize],

@@ -1,4 +1,4 @@
-//! The linear interface solve: A x = b with A = S_0 + S_CON' of the bilateral problem (16).
+//! The linear interface problem A x = b with A = S_0 + S_CON' of the bilateral problem (16), solved directly.
 
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatMut, Par};
@@ -13,7 +13,7 @@ pub struct DirectSolver {
 }
 
 impl DirectSolver {
-    /// Solves with the factor of A.
+    /// The solver with the factor of A.
     pub fn new(factor: BoundaryLastCholesky, par: Par) -> Self {
         Self { factor, par }
     }
@@ -23,10 +23,9 @@ impl DirectSolver {
         self.factor.solve(x);
     }
 
-    /// H ← H − Wᵀ A⁻¹ W, of which the lower triangle counts; W has rows for the last unknowns only, the others
-    /// are 0.
+    /// H ← H − Wᵀ A⁻¹ W, lower triangle only; W has rows for the last unknowns only, the others are 0.
     pub fn condense(&self, mut w: Mat<f64>, h: MatMut<'_, f64>) {
-        // Wᵀ A⁻¹ W = (L⁻¹ W)ᵀ L⁻¹ W takes half of a solve; rows above those of W stay 0.
+        // Wᵀ A⁻¹ W = (L⁻¹ W)ᵀ L⁻¹ W takes half of a solve; rows above those of W remain 0.
         self.factor.forward_boundary(w.as_mut(), self.par);
         triangular::matmul(
             h,

@@ -1,11 +1,11 @@
-//! Forests: the parents of nodes, and their children as lists.
+//! Forests: the parent of every node, and its children as a linked list.
 
 use std::iter;
 
-/// The parent of a node that has none.
+/// Marker of a node without parent.
 pub(super) const NO_PARENT: u32 = u32::MAX;
 
-/// The end of a list.
+/// Marker of the end of a list.
 const END: u32 = u32::MAX;
 
 /// The children of every node of a forest.
@@ -15,7 +15,7 @@ pub(super) struct Children {
 }
 
 impl Children {
-    /// So many nodes without children.
+    /// Lists for this number of nodes, without children yet.
     pub fn none(nodes: usize) -> Self {
         Self {
             first: vec![END; nodes],
@@ -32,7 +32,7 @@ impl Children {
         children
     }
 
-    /// Puts `child` before the other children of its `parent`, if it has one.
+    /// Inserts `child` before the other children of its `parent`, if it has one.
     pub fn add(&mut self, parent: u32, child: usize) {
         if parent != NO_PARENT {
             self.next[child] = self.first[parent as usize];
@@ -47,7 +47,7 @@ impl Children {
         iter::successors(child(self.first[node]), next)
     }
 
-    /// Takes the first child off a node's list.
+    /// Removes and returns the first child of a node.
     pub fn take(&mut self, node: usize) -> Option<usize> {
         let child = self.of(node).next()?;
         self.first[node] = self.next[child];

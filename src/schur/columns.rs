@@ -6,10 +6,10 @@ use std::ops::{Mul, Neg, SubAssign};
 
 use pulp::Simd;
 
-/// Columns that are multiplied together, so that the vector is read once for all.
+/// Number of columns multiplied together, so that the vector is read once for all of them.
 pub(super) const WIDTH: usize = 4;
 
-/// Numbers of double or single precision.
+/// Floating-point numbers of single or double precision.
 pub trait Number:
     Copy + Debug + Default + Neg<Output = Self> + Mul<Output = Self> + SubAssign + Sum + 'static
 {
@@ -19,14 +19,14 @@ pub trait Number:
     /// The number in double precision.
     fn value(self) -> f64;
 
-    /// The products of x with the columns that `column` gives, each as long as x.
+    /// The products of x with the columns that `column` returns, each as long as x.
     fn dot<'a, S: Simd, const N: usize>(
         simd: S,
         x: &[Self],
         column: impl Fn(usize) -> &'a [Self],
     ) -> [Self; N];
 
-    /// y ← y + Σ_p a_p c_p with the factors a_p and the columns c_p that `column` gives, each as long as y.
+    /// y ← y + Σ_p a_p c_p with the factors a_p and the columns c_p that `column` returns, each as long as y.
     fn add<'a, S: Simd, const N: usize>(
         simd: S,
         y: &mut [Self],

@@ -3,20 +3,20 @@
 use faer::{Mat, MatRef};
 use serde::{Deserialize, Serialize};
 
-/// The Schur complement of a node of the hierarchy on what it keeps: normal jumps, then traces on Γ.
+/// The Schur complement of a node of the hierarchy on its kept unknowns: normal jumps, then traces on Γ.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condensed {
     /// Number of normal jumps.
     pub jumps: usize,
     /// Unknowns on Γ, ascending.
     pub interface_dofs: Vec<InterfaceDof>,
-    /// S (Pa); only the lower triangle counts.
+    /// S (Pa); only the lower triangle is used.
     #[serde(with = "crate::bytes::lower")]
     pub s: Mat<f64>,
-    /// The diagonal of the matrix that S is condensed from (Pa).
+    /// The diagonal of the matrix from which S is condensed (Pa), the scale of S's round-off.
     #[serde(with = "crate::bytes")]
     pub diagonal: Vec<f64>,
-    /// The smallest pivot of what was eliminated, relative to its diagonal entry.
+    /// The smallest pivot of the eliminated unknowns, relative to its diagonal entry.
     pub smallest_pivot: f64,
 }
 
@@ -27,7 +27,7 @@ impl Condensed {
         self.s.as_ref().submatrix(0, 0, m, m)
     }
 
-    /// S_tΓ, normal jumps against traces; in the upper triangle.
+    /// S_tΓ, rows of normal jumps and columns of traces; in the upper triangle.
     pub fn s_t_gamma(&self) -> MatRef<'_, f64> {
         let m = self.jumps;
         self.s
@@ -41,14 +41,14 @@ impl Condensed {
         self.s.as_ref().submatrix(m, m, n, n)
     }
 
-    /// The places of its unknowns in a front: of jumps from `first_jump` on, of those on Γ as `place` says.
+    /// The places of its unknowns in a front: those of jumps from `first_jump` on, those of traces by `place`.
     pub fn places(&self, first_jump: usize, place: impl Fn(&InterfaceDof) -> usize) -> Vec<u32> {
         let jumps = (0..self.jumps).map(|j| (first_jump + j) as u32);
         let dofs = self.interface_dofs.iter().map(|dof| place(dof) as u32);
         jumps.chain(dofs).collect()
     }
 
-    /// Makes both triangles of S count.
+    /// Copies the lower triangle of S to the upper one.
     pub fn fill_upper_triangle(&mut self) {
         for j in 0..self.s.ncols() {
             for i in j + 1..self.s.nrows() {

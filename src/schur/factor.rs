@@ -1,8 +1,7 @@
-//! Sparse Cholesky with the boundary ordered last, by fronts.
+//! Sparse multifrontal Cholesky factorization with the boundary ordered last.
 //!
-//! K = L Lᵀ with the unknowns ordered [I | B] holds everything: L_II serves the interior solves,
-//! L_BI condenses loads, and what the interior's fronts leave to B is the Schur complement,
-//! S_BB = K_BB − K_BI K_II⁻¹ K_IB.
+//! In K = L Lᵀ with the unknowns ordered [I | B], L_II solves on the interior and L_BI condenses loads; the update that
+//! the fronts of I leave on B is the Schur complement, S_BB = K_BB − K_BI K_II⁻¹ K_IB.
 
 use faer::{Mat, MatMut, Par};
 
@@ -11,13 +10,13 @@ use super::panel::Panel;
 use super::pattern::SparseSymmetric;
 use super::supernodes::Supernodes;
 
-/// Reason for which a matrix couldn't be factorized.
+/// Reason why a matrix couldn't be factorized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FactorError {
     /// The matrix isn't positive definite.
     #[error("the pivot of unknown {0} isn't positive")]
     Pivot(usize),
-    /// The factor needs more memory than there is, or more than 2³² entries.
+    /// The factor needs more memory than available, or has more than 2³² entries.
     #[error("the factor is too large")]
     Size,
 }
@@ -32,7 +31,7 @@ pub struct BoundaryLastCholesky {
 }
 
 impl BoundaryLastCholesky {
-    /// Factorizes `matrix`, whose first `interior` unknowns are I, wholly.
+    /// Factorizes all of `matrix`, whose first `interior` unknowns are I.
     ///
     /// # Errors
     /// The matrix isn't positive definite, or the factor is too large.
@@ -45,8 +44,8 @@ impl BoundaryLastCholesky {
         Ok(factor)
     }
 
-    /// Factorizes the first `interior` columns of `matrix` alone and returns the lower
-    /// triangle of S_BB with them; there is no L_BB to solve with.
+    /// Factorizes the first `interior` columns of `matrix` only, and returns the lower triangle of S_BB with the
+    /// factor, which has no L_BB.
     ///
     /// # Errors
     /// K_II isn't positive definite, or the factor is too large.
@@ -68,8 +67,7 @@ impl BoundaryLastCholesky {
         Ok((factor, s))
     }
 
-    /// Eliminates the first `count` unknowns and adds what they leave to the lower triangle of
-    /// `rest`.
+    /// Eliminates the first `count` unknowns and adds their update to the lower triangle of `rest`.
     fn eliminate(
         matrix: &SparseSymmetric,
         count: usize,
@@ -92,8 +90,8 @@ impl BoundaryLastCholesky {
         })
     }
 
-    /// The smallest pivot relative to its diagonal entry, min L_jj² / K_jj, of what was eliminated: how
-    /// close the matrix is to a singular one whatever its scaling.
+    /// The smallest pivot of the eliminated unknowns relative to its diagonal entry, min L_jj² / K_jj: a measure of the
+    /// distance to a singular matrix that doesn't depend on scaling.
     pub fn smallest_pivot(&self) -> f64 {
         self.smallest_pivot
     }
@@ -127,7 +125,7 @@ impl BoundaryLastCholesky {
         self.forward_before(self.interior, x);
     }
 
-    /// Forward substitution with the first `count` unknowns in the place of I.
+    /// Forward substitution with the first `count` unknowns as I.
     fn forward_before(&self, count: usize, x: &mut [f64]) {
         let mut work = Vec::new();
         for panel in self.panels() {
@@ -135,20 +133,19 @@ impl BoundaryLastCholesky {
         }
     }
 
-    /// X ← L_BB⁻¹ X, where X has a row for every unknown of B. Only where B was factorized.
+    /// X ← L_BB⁻¹ X, where X has a row for every unknown of B; only if B was factorized.
     pub fn forward_boundary(&self, mut x: MatMut<'_, f64>, par: Par) {
         for panel in self.panels() {
             panel.forward_boundary(self.interior, x.as_mut(), par);
         }
     }
 
-    /// x_I ← L_II⁻ᵀ (x_I − L_BIᵀ x_B): recovers the interior from what `forward` left there and
-    /// the solution on B.
+    /// x_I ← L_II⁻ᵀ (x_I − L_BIᵀ x_B): recovers the interior from the result of `forward` on I and the solution on B.
     pub fn backward(&self, x: &mut [f64]) {
         self.backward_before(self.interior, x);
     }
 
-    /// x ← K⁻¹ x. Only where B was factorized.
+    /// x ← K⁻¹ x; only if B was factorized.
     pub fn solve(&self, x: &mut [f64]) {
         debug_assert_eq!(
             self.supernodes.begin.last().copied().unwrap_or(0) as usize,
@@ -158,7 +155,7 @@ impl BoundaryLastCholesky {
         self.backward_before(x.len(), x);
     }
 
-    /// `backward` with the first `count` unknowns in the place of I.
+    /// `backward` with the first `count` unknowns as I.
     fn backward_before(&self, count: usize, x: &mut [f64]) {
         let mut work = Vec::new();
         for panel in self.panels().rev() {
@@ -175,8 +172,8 @@ mod tests {
     use super::super::pattern::{Cliques, LowerPattern};
     use super::*;
 
-    /// A chain of springs with stiffness 1, 2, 3 … between unknowns 0 … n − 1, the first one tied
-    /// to the ground by 1.
+    /// A chain of springs with stiffness 1, 2, 3 … between unknowns 0 … n − 1; a spring of stiffness 1 connects the
+    /// first one to the ground.
     fn chain(n: usize) -> SparseSymmetric {
         let mut cliques = Cliques::default();
         for i in 0..n as u32 - 1 {

@@ -1,5 +1,4 @@
-//! The dense part of a sparse factorization: the columns of a supernode and what they leave to the
-//! rows below.
+//! The dense part of a sparse factorization: the columns of a supernode, and their update of the rows below.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
@@ -10,12 +9,12 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::columns::Number;
 
-/// Rows of a front up to which it is factorized four columns at a time in place; larger ones are
-/// left to faer's blocked algorithms.
+/// Rows of a front up to which it is factorized in place, four columns at a time; larger fronts use faer's blocked
+/// algorithms.
 const SMALL: usize = 96;
 
-/// Factorizes `panel`, the `columns` columns of a front with `rows` rows, in place, and subtracts
-/// what they contribute from `update`, the square of the rows below. Lower triangles alone count.
+/// Factorizes `panel`, the `columns` columns of a front with `rows` rows, in place, and subtracts their contribution
+/// from `update`, the square of the rows below. Only lower triangles are used.
 ///
 /// # Errors
 /// The column whose pivot isn't positive.
@@ -43,7 +42,7 @@ pub(super) fn factorize(
     }
 }
 
-/// Columns that are eliminated together, so that what follows is read and written once for all.
+/// Number of columns eliminated together, so that the rest of the front is read and written once for all of them.
 const WIDTH: usize = 4;
 
 struct InPlace<'a> {
@@ -81,7 +80,7 @@ impl WithSimd for InPlace<'_> {
     }
 }
 
-/// Eliminates the few columns of `block`, whose first diagonal entry is in row `first`.
+/// Eliminates the columns of `block`, at most `WIDTH`; its first diagonal entry is in row `first`.
 #[inline(always)]
 fn eliminate<S: Simd>(simd: S, block: &mut [f64], rows: usize, first: usize) -> Result<(), usize> {
     for j in 0..block.len() / rows {
@@ -102,7 +101,7 @@ fn eliminate<S: Simd>(simd: S, block: &mut [f64], rows: usize, first: usize) -> 
     Ok(())
 }
 
-/// `to` ← `to` − Σ_p L_ip L_jp over the columns p of `block`, i from j on: at most four columns.
+/// `to` ← `to` − Σ_p L_ip L_jp over the columns p of `block`, at most four; i ≥ j.
 #[inline(always)]
 fn subtract<S: Simd>(simd: S, to: &mut [f64], block: &[f64], rows: usize, j: usize) {
     let column = |p: usize| {
@@ -118,12 +117,11 @@ fn subtract<S: Simd>(simd: S, to: &mut [f64], block: &[f64], rows: usize, j: usi
     }
 }
 
-/// Flops from which threads gain more than they cost.
+/// Number of flops from which on threads pay.
 const WORTH_THREADS: f64 = 1e8;
 
-/// The partial Cholesky factorization of a dense front, by faer: factorizes A_EE = L Lᵀ in the upper `e`
-/// rows of `columns`, makes P = A_KE L⁻ᵀ of those below, and subtracts P Pᵀ from `update`, A_KK. Lower
-/// triangles alone count.
+/// Partial Cholesky factorization of a dense front, by faer: factorizes A_EE = L Lᵀ in the upper `e` rows of `columns`,
+/// computes P = A_KE L⁻ᵀ in those below, and subtracts P Pᵀ from `update`, A_KK. Only lower triangles are used.
 ///
 /// # Errors
 /// The column whose pivot isn't positive.

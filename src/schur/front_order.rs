@@ -1,4 +1,4 @@
-//! The order of the unknowns of a front: [E | K | known jumps], E what is eliminated, K what is kept.
+//! The order of the unknowns of a front: eliminated E, kept K, known jumps, [E | K | known jumps].
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,10 +10,11 @@ use super::substitution::Replaced;
 pub struct OwnJumps<'a> {
     /// The displacements that jumps replace.
     pub replaced: &'a [Replaced],
-    /// Jumps that are open and eliminated like a displacement; the others are kept. None of them where it is
-    /// empty.
+    /// Flags of the jumps that are open and eliminated like a displacement; the others are kept. If it is empty, all
+    /// are kept.
     pub open: &'a [bool],
-    /// A spring on every open one, relative to the diagonal, that holds what its contact has let go.
+    /// Stiffness of a spring on every open jump, relative to the diagonal, against rigid motions that open contacts
+    /// don't restrain.
     pub spring: f64,
 }
 
@@ -30,23 +31,23 @@ impl OwnJumps<'_> {
 
 /// The unknowns of a front in their order.
 pub(super) struct FrontOrder {
-    /// The displacements that are eliminated, ascending: they come first.
+    /// The eliminated displacements, ascending; they come first.
     pub gone: Vec<InterfaceDof>,
-    /// The own jumps that are open, by number: they are eliminated, too.
+    /// The numbers of the open jumps of the front's own contact points, which are eliminated after these.
     open: Vec<usize>,
-    /// Number of jumps that are kept: those of the children, then the own ones that aren't open.
+    /// Number of kept jumps: those of the children, then the front's own ones that aren't open.
     pub jumps: usize,
-    /// The displacements that are kept, ascending.
+    /// The kept displacements, ascending.
     pub kept: Vec<InterfaceDof>,
-    /// The place of the jump that replaces a displacement.
+    /// The place of the jump that replaces each replaced displacement.
     pivots: BTreeMap<InterfaceDof, usize>,
-    /// Number of jumps of ties, which come last.
+    /// Number of known jumps, those of ties, which come last.
     known: usize,
 }
 
 impl FrontOrder {
-    /// The order of the front of `children` with jumps of its `own`, where what these don't replace goes at the nodes of Γ
-    /// that are `eliminated`, ascending.
+    /// The order of the front of `children` with its `own` jumps; displacements at the `eliminated` nodes of Γ,
+    /// ascending, are eliminated unless jumps replace them.
     pub fn new(children: &[&Condensed], eliminated: &[u32], own: OwnJumps<'_>) -> Self {
         let (mut gone, mut kept) = union_of_interface_dofs(children, eliminated);
         let count = own.unknowns();
@@ -74,17 +75,16 @@ impl FrontOrder {
         }
     }
 
-    /// Number of unknowns that are eliminated and that are kept, and of all with the jumps that are known.
+    /// Number of eliminated unknowns, of kept ones, and of all including the known jumps.
     pub fn sizes(&self) -> (usize, usize, usize) {
         let e = self.gone.len() + self.open.len();
         let k = self.jumps + self.kept.len();
         (e, k, e + k + self.known)
     }
 
-    /// Place of an unknown on Γ: among those that are gone, where the jump that replaces it is, or among those that are
-    /// kept.
+    /// Place of an unknown of Γ: among the eliminated ones, that of the jump that replaces it, or among the kept ones.
     pub fn place(&self, dof: &InterfaceDof) -> usize {
-        // An unknown is in one of the three lists.
+        // Every unknown is in exactly one of the three lists.
         match (self.gone.binary_search(dof), self.kept.binary_search(dof)) {
             (Ok(place), _) => place,
             (_, Ok(place)) => self.gone.len() + self.open.len() + self.jumps + place,
@@ -92,7 +92,7 @@ impl FrontOrder {
         }
     }
 
-    /// The unknown on Γ that is eliminated at a place, or that the jump there replaces.
+    /// The unknown of Γ that is eliminated at a place, or that the jump there replaces.
     pub fn dof(&self, place: usize, own: OwnJumps<'_>) -> InterfaceDof {
         match self.gone.get(place) {
             Some(dof) => *dof,

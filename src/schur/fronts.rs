@@ -1,4 +1,4 @@
-//! The numerical factorization: front by front, each passing what it leaves to its parent's.
+//! The numerical factorization front by front; each passes its update to its parent.
 
 use std::ops::Range;
 
@@ -9,17 +9,17 @@ use super::front;
 use super::pattern::SparseSymmetric;
 use super::supernodes::Supernodes;
 
-/// The fronts of a factorization under way.
+/// The fronts of a factorization in progress.
 pub(super) struct Fronts<'a> {
     matrix: &'a SparseSymmetric,
     supernodes: &'a Supernodes,
     count: usize,
     children: Children,
-    /// Updates of the rows below the eliminated supernodes, until their parents take them.
+    /// Updates by eliminated supernodes of the rows below, until added to their parents.
     updates: Vec<Vec<f64>>,
-    /// Memory of updates that were taken.
+    /// Memory of updates already added, for reuse.
     free: Vec<Vec<f64>>,
-    /// Row of the current front for every unknown below it.
+    /// Row in the current front of every unknown below it.
     place: Vec<u32>,
     targets: Targets,
 }
@@ -39,8 +39,8 @@ impl<'a> Fronts<'a> {
         }
     }
 
-    /// Appends the factor's panels to `values` and adds what the columns leave to the lower
-    /// triangle of `rest`, whose rows are the unknowns that stay.
+    /// Appends the panels of the factor to `values` and adds the remaining update to the lower triangle of `rest`,
+    /// whose rows are the unknowns not eliminated.
     ///
     /// # Errors
     /// The column whose pivot isn't positive.
@@ -82,7 +82,7 @@ impl<'a> Fronts<'a> {
         Ok(())
     }
 
-    /// Copies the matrix's entries in the columns of supernode `s` and notes where its rows are.
+    /// Copies the matrix's entries in the columns of supernode `s`, and records the places of its rows.
     fn gather(&mut self, s: usize, panel: &mut Vec<f64>) {
         let columns = self.supernodes.columns(s);
         let below = self.supernodes.below(s);
@@ -103,7 +103,7 @@ impl<'a> Fronts<'a> {
         }
     }
 
-    /// Zeros, in memory that was used lately if there is any: fresh pages cost more than zeros.
+    /// Zeros in reused memory if there is any, because touching new pages costs more than clearing.
     fn zeros(&mut self, len: usize) -> Vec<f64> {
         let fit = (self.free.iter()).rposition(|free| free.capacity() >= len);
         let Some(fit) = fit else {
@@ -115,7 +115,7 @@ impl<'a> Fronts<'a> {
         memory
     }
 
-    /// Adds what a front without parent leaves to what stays.
+    /// Adds the update of a front without parent to `rest`.
     fn leave(&self, s: usize, update: &[f64], mut rest: MatMut<'_, f64>) {
         let below = self.supernodes.below(s);
         for (j, column) in update.chunks_exact(below.len().max(1)).enumerate() {
@@ -148,8 +148,8 @@ impl Targets {
         self.rows.partition_point(|&to| (to as usize) < row)
     }
 
-    /// Adds the lower triangle's columns `which` of a child's update to columns with `rows` rows,
-    /// the first row and column of which are row `first` of the front.
+    /// Adds the columns `which` of a child's update, lower triangle, to columns with `rows` rows whose first row and
+    /// column are row `first` of the front.
     fn add(&self, update: &[f64], which: Range<usize>, to: &mut [f64], rows: usize, first: usize) {
         let n = self.rows.len();
         for j in which {

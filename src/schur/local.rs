@@ -6,26 +6,26 @@ use faer::{Mat, MatRef, Par};
 use super::factor::{BoundaryLastCholesky, FactorError};
 use super::pattern::SparseSymmetric;
 
-/// Springs at I, relative to the diagonal, where pivots of K_II are lost in round-off, the softest first.
+/// Stiffness of springs on I, relative to the diagonal, tried in this order where pivots of K_II are round-off.
 const SPRINGS: [f64; 3] = [1e-15, 1e-14, 1e-13];
 
-/// S = K_BB − K_BI K_II⁻¹ K_IB with everything that condensing and recovering a load needs, (11).
+/// S = K_BB − K_BI K_II⁻¹ K_IB, (11), with the factor that condenses loads and recovers the interior.
 ///
-/// B holds the normal jumps first, then the interface dofs on Γ.
+/// B contains the normal jumps first, then the interface dofs on Γ.
 #[derive(Debug)]
 pub struct LocalSchur {
     factor: BoundaryLastCholesky,
     interior: usize,
-    /// The diagonal of K_BB (Pa): what S's round-off is relative to.
+    /// The diagonal of K_BB (Pa), the scale of S's round-off.
     pub diagonal: Vec<f64>,
 }
 
 impl LocalSchur {
-    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; the lower triangle
-    /// of S (Pa) stands beside.
+    /// Factorizes a block's stiffness, whose first `interior` unknowns are I; also returns the lower triangle of S
+    /// (Pa).
     ///
     /// # Errors
-    /// K_II isn't positive definite: the block can move with its boundary held.
+    /// K_II isn't positive definite: the block has a free motion with its boundary held.
     pub fn new(
         matrix: &SparseSymmetric,
         interior: usize,
@@ -34,11 +34,11 @@ impl LocalSchur {
         Self::condensed(matrix, interior, matrix, par)
     }
 
-    /// The same for a block that is held, whose pivots are round-off even so, as it bends with next to no force: springs of
-    /// round-off make it definite.
+    /// The same for a block without free motion whose pivots are nevertheless round-off because it bends under very
+    /// small forces: springs of the size of round-off make K_II definite.
     ///
     /// # Errors
-    /// Not even they do.
+    /// K_II isn't positive definite even with these springs.
     pub fn with_springs(
         matrix: &SparseSymmetric,
         interior: usize,
@@ -91,7 +91,7 @@ impl LocalSchur {
         }
     }
 
-    /// The unknowns of the whole block for the unknowns `x_b` on its boundary.
+    /// The unknowns of the whole block from the unknowns `x_b` on its boundary.
     pub fn recover(&self, load: &CondensedLoad, x_b: &[f64]) -> Vec<f64> {
         let mut x = load.y.clone();
         x[self.interior..].copy_from_slice(x_b);
@@ -100,12 +100,12 @@ impl LocalSchur {
     }
 }
 
-/// A load condensed onto B, with the part that stays behind on I.
+/// A load condensed onto B, with its reduced part on I for back-substitution.
 #[derive(Clone, Debug)]
 pub struct CondensedLoad {
     y: Vec<f64>,
     interior: usize,
-    /// Jumps of ties, and what acts on them.
+    /// Jumps of ties, and the loads on them.
     pub tied: TiedLoad,
 }
 
@@ -119,7 +119,7 @@ pub struct TiedLoad {
 }
 
 impl CondensedLoad {
-    /// A load whose first `interior` entries stay behind.
+    /// A condensed load whose first `interior` entries belong to I.
     pub fn new(y: Vec<f64>, interior: usize) -> Self {
         Self {
             y,
@@ -128,7 +128,7 @@ impl CondensedLoad {
         }
     }
 
-    /// Load that is left on I.
+    /// The reduced load on I.
     pub fn interior(&self) -> &[f64] {
         &self.y[..self.interior]
     }

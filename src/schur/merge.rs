@@ -1,12 +1,12 @@
-//! A merge: the Schur complements of a node's children in the hierarchy become its own.
+//! Merge: the Schur complements of a node's children in the hierarchy give its own.
 //!
-//! With the children's S added up over [E | K], E what is eliminated and K what is kept,
+//! With the children's S assembled over [E | K], E the eliminated and K the kept unknowns,
 //!
 //! ```text
 //! A = Σ R_cᵀ S_c R_c,    A_EE = L_E L_Eᵀ,    P = A_KE L_E⁻ᵀ,    S = A_KK − P Pᵀ
 //! ```
 //!
-//! are dense: the multifrontal method of Duff and Reid, with the blocks as its leaves.
+//! are dense matrices: the multifrontal method of Duff and Reid with the blocks as leaves.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
@@ -21,7 +21,7 @@ use super::local::{CondensedLoad, TiedLoad, multiply_add};
 use super::substitution::{Front, Replaced, Substitution};
 use crate::schur::condensed::InterfaceDof;
 
-/// The factor that a merge leaves for solving.
+/// The factor of a merge, for loads and back-substitution.
 #[derive(Debug)]
 pub struct Merge {
     eliminated: usize,
@@ -29,25 +29,24 @@ pub struct Merge {
     columns: Mat<f64>,
     /// Places of the boundary of every child among [E | K].
     places: Vec<Vec<u32>>,
-    /// Traces that normal jumps replace here.
+    /// Substitution of traces by normal jumps at this node.
     substitution: Substitution,
-    /// Columns of A at the jumps of ties: [E | K], then these jumps.
+    /// Columns of A at the known jumps of ties, with rows [E | K], then these jumps.
     tied: Mat<f64>,
 }
 
-/// Square matrices that were used: memory that is new costs a page fault every 4 KiB, more than all
-/// that is done with it.
+/// Square matrices for reuse: new memory costs a page fault every 4 KiB, more than the arithmetic on it.
 #[derive(Debug, Default)]
 pub struct Spare(Vec<Mat<f64>>);
 
-/// Most matrices that are kept, about as many as wait at a time in a deep hierarchy.
+/// Most matrices kept, about as many as are in use at once in a deep hierarchy.
 const MOST_SPARE: usize = 8;
-/// Most entries of all that are kept, 256 MB: beside the arithmetic of larger matrices page faults are nothing, and several
-/// of them are most of the memory of a run.
+/// Most entries kept in all, 256 MB: for larger matrices page faults are negligible against the arithmetic, and several
+/// of them would take most of the memory of a run.
 const MOST_SPARE_ENTRIES: usize = 1 << 25;
 
 impl Spare {
-    /// The smallest matrix that is large enough as zeros, or a new one.
+    /// Zeros in the smallest kept matrix that is large enough, else in a new one.
     fn zeros(&mut self, n: usize) -> Mat<f64> {
         let fitting = (0..self.0.len()).filter(|&i| self.0[i].nrows() >= n);
         let Some(place) = fitting.min_by_key(|&i| self.0[i].nrows()) else {
@@ -59,7 +58,7 @@ impl Spare {
         matrix
     }
 
-    /// Keeps what isn't needed any more.
+    /// Keeps a matrix for reuse.
     pub fn keep(&mut self, matrix: Mat<f64>) {
         self.0.push(matrix);
         self.0.sort_by_key(Mat::nrows);
@@ -73,11 +72,11 @@ impl Spare {
     }
 }
 
-/// Unknown that can move although all kept unknowns are held, so that Schur complements can't be merged.
+/// Unknown with a free motion although all kept unknowns are held, so that Schur complements can't be merged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreeInterfaceDof(pub InterfaceDof);
 
-/// Indices of a child's boundary that follow one another in [E | K], too.
+/// Indices of a child's boundary that are consecutive in [E | K], too.
 struct Run {
     from: usize,
     to: usize,
@@ -85,9 +84,9 @@ struct Run {
 }
 
 impl Merge {
-    /// Merges `children`, in their order, puts normal jumps in the place of what they `replaced`, and eliminates
-    /// the other unknowns at the nodes of Γ that are `eliminated`, ascending; `spare` matrices lend their memory,
-    /// and the children's S are left there.
+    /// Merges `children`, in their order, replaces the `replaced` displacements by normal jumps, and eliminates the
+    /// other unknowns at the `eliminated` nodes of Γ, ascending. Memory comes from `spare` matrices, to which the
+    /// children's S are added.
     ///
     /// # Errors
     /// A_EE isn't positive definite.
@@ -113,8 +112,7 @@ impl Merge {
         merged
     }
 
-    /// The same with some of the front's `own` normal jumps eliminated: those that are kept come behind those of
-    /// the children.
+    /// The same with some of the front's `own` normal jumps eliminated; those kept come after the children's jumps.
     ///
     /// # Errors
     /// A_EE isn't positive definite.
@@ -173,8 +171,8 @@ impl Merge {
         Ok((merge, condensed))
     }
 
-    /// Condenses the loads on the children's boundaries, in their order, where the front's own normal jumps that are
-    /// eliminated carry these `forces`; none where there are none; and the jumps of ties are `known`, 0 where none are given.
+    /// Condenses the loads on the children's boundaries, in their order. `forces` act on the front's own eliminated
+    /// normal jumps, if there are any; `known` are the jumps of ties, 0 if empty.
     pub fn condense(&self, loads: &[&[f64]], forces: &[f64], known: &[f64]) -> CondensedLoad {
         let n = self.columns.nrows();
         let mut load = vec![0.0; n + self.tied.ncols()];
@@ -203,7 +201,7 @@ impl Merge {
         condensed
     }
 
-    /// The unknowns on the children's boundaries for the unknowns `x_k` that are kept, and the front's own jumps.
+    /// The unknowns on the children's boundaries from the kept unknowns `x_k`, and the front's own jumps.
     pub fn recover(&self, load: &CondensedLoad, x_k: &[f64]) -> Recovered {
         let e = self.eliminated;
         let mut x = load.interior().to_vec();
@@ -240,18 +238,18 @@ impl Merge {
     }
 }
 
-/// The unknowns under a front.
+/// The recovered unknowns of a front.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recovered {
     /// The unknowns on the boundary of every child.
     pub children: Vec<Vec<f64>>,
-    /// The front's own jumps that are unknowns.
+    /// The front's own unknown jumps.
     pub jumps: Vec<f64>,
     /// The forces at the jumps of its ties.
     pub forces: Vec<f64>,
 }
 
-/// The columns of a front at the jumps that are known, the last ones from `first` on, which it has no more.
+/// Splits off the columns of a front at the known jumps, from `first` on.
 fn known_columns(columns: &mut Mat<f64>, s: &mut Mat<f64>, first: usize) -> Mat<f64> {
     let (n, e) = (columns.nrows(), columns.ncols());
     let entry = |i: usize, j: usize| match i.min(j) < e {
@@ -269,7 +267,7 @@ fn column_of(x: &mut [f64]) -> MatMut<'_, f64> {
     MatMut::from_column_major_slice_mut(x, rows, 1)
 }
 
-/// Maximal runs of `place`, none of which reaches across the first `e` indices.
+/// Maximal runs of consecutive places, none of which extends across index `e`.
 fn runs(place: &[u32], e: usize) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (from, &to) in place.iter().enumerate() {
@@ -282,19 +280,19 @@ fn runs(place: &[u32], e: usize) -> Vec<Run> {
     runs
 }
 
-/// Adds a child's S, the lower triangle, to the lower triangle of A.
+/// Adds the lower triangle of a child's S to the lower triangle of A.
 fn add(of_child: &Mat<f64>, place: &[u32], e: usize, columns: &mut Mat<f64>, s: &mut Mat<f64>) {
     let runs = runs(place, e);
     for (j, &to) in place.iter().enumerate() {
         let from = of_child.col_as_slice(j);
         let to = to as usize;
         for run in runs.iter().filter(|run| run.from + run.len > j) {
-            // The part of the run on and below the diagonal of the child.
+            // The part of the run on and below the diagonal of S.
             let skipped = j.saturating_sub(run.from);
             let values = &from[run.from + skipped..run.from + run.len];
             let row = run.to + skipped;
             if row < to {
-                // Above the diagonal of A: it belongs to the other side.
+                // These entries are above the diagonal of A: they go to the transposed places.
                 for (row, value) in (row..).zip(values) {
                     match row < e {
                         true => columns[(to, row)] += value,

@@ -4,10 +4,10 @@ use super::children::{Children, NO_PARENT};
 use super::dissection::{Graph, dissect};
 use super::pattern::Cliques;
 
-/// The order in which sites at `points`, connected by `cliques`, are eliminated: nested dissection,
-/// postordered so that the factor falls into supernodes.
+/// The elimination order of sites at `points` connected by `cliques`: nested dissection, postordered so that the factor
+/// has supernodes of consecutive columns.
 ///
-/// Returns site by site what comes first.
+/// Returns the sites in that order.
 pub fn nested_dissection(points: &[[f64; 3]], cliques: &Cliques) -> Vec<u32> {
     let graph = Graph::new(points.len(), cliques);
     let order = dissect(&graph, points);
@@ -18,7 +18,7 @@ pub fn nested_dissection(points: &[[f64; 3]], cliques: &Cliques) -> Vec<u32> {
         .collect()
 }
 
-/// Liu's elimination tree of a graph that is eliminated in this `order`, by path compression.
+/// Liu's elimination tree of a graph for this `order`, with path compression.
 fn elimination_tree(graph: &Graph, order: &[u32]) -> Vec<u32> {
     let mut place = vec![0; order.len()];
     for (k, &site) in order.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The columns of one supernode of a Cholesky factor, and solving with them.
+//! The columns of one supernode of a Cholesky factor, and substitution with them.
 
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Mat, MatMut, Par};
@@ -6,8 +6,8 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::columns::{Number, WIDTH};
 
-/// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`, column
-/// after column, each from the diagonal on.
+/// The columns of one supernode: a dense lower trapezoid over its own rows and those `below`, packed by columns, each
+/// from the diagonal on.
 pub(super) struct Panel<'a> {
     pub start: usize,
     pub columns: usize,
@@ -15,7 +15,7 @@ pub(super) struct Panel<'a> {
     pub values: &'a [f64],
 }
 
-/// Number of values of a panel with so many rows and columns.
+/// Number of values of a panel with these numbers of rows and columns.
 pub(super) fn packed_len(rows: usize, columns: usize) -> usize {
     columns * rows - columns * columns.saturating_sub(1) / 2
 }
@@ -36,12 +36,12 @@ impl<'a> Panel<'a> {
         &self.column(j)[self.columns - j..]
     }
 
-    /// Number of columns among the first `count`; a supernode may reach from I into B.
+    /// Number of its columns among the first `count`; a supernode may extend from I into B.
     pub fn columns_before(&self, count: usize) -> usize {
         count.saturating_sub(self.start).min(self.columns)
     }
 
-    /// One step of x ← L⁻¹ x with its first `count` columns.
+    /// The part of x ← L⁻¹ x due to its first `count` columns.
     pub fn forward(&self, count: usize, x: &mut [f64], work: &mut Vec<f64>) {
         let own = &mut x[self.start..self.start + self.columns];
         for j in 0..count {
@@ -64,7 +64,7 @@ impl<'a> Panel<'a> {
         }
     }
 
-    /// One step of x ← L⁻ᵀ x with its first `count` columns.
+    /// The part of x ← L⁻ᵀ x due to its first `count` columns.
     pub fn backward(&self, count: usize, x: &mut [f64], work: &mut Vec<f64>) {
         work.clear();
         work.extend(self.below.iter().map(|&i| x[i as usize]));
@@ -85,8 +85,7 @@ impl<'a> Panel<'a> {
         }
     }
 
-    /// One step of X ← L_BB⁻¹ X with its columns from `interior` on; X has a row for every unknown
-    /// of B.
+    /// The part of X ← L_BB⁻¹ X due to its columns from `interior` on; X has a row for every unknown of B.
     pub fn forward_boundary(&self, interior: usize, mut x: MatMut<'_, f64>, par: Par) {
         let skipped = self.columns_before(interior);
         let (first, count) = (self.start + skipped, self.columns - skipped);

@@ -1,9 +1,9 @@
-//! The pattern of a symmetric sparse matrix that is a sum of small dense ones.
+//! The pattern of a symmetric sparse matrix assembled from small dense ones.
 
 use faer::MatRef;
 
-/// Lists of unknowns, one list for every dense matrix that is scattered: the unknowns of an
-/// element, or the interface dofs of a subdomain.
+/// Lists of unknowns, one for every assembled dense matrix: the unknowns of an element, or the interface dofs of a
+/// subdomain.
 #[derive(Clone, Debug)]
 pub struct Cliques {
     offsets: Vec<usize>,
@@ -36,7 +36,7 @@ impl Cliques {
         &self.members[self.offsets[c]..self.offsets[c + 1]]
     }
 
-    /// Lists that hold each of `n` unknowns, as offsets and list numbers.
+    /// For each of `n` unknowns the lists that contain it, as offsets and list numbers.
     pub(super) fn transposed(&self, n: usize) -> (Vec<usize>, Vec<u32>) {
         let mut offsets = vec![0; n + 1];
         for &i in &self.members {
@@ -65,9 +65,9 @@ pub struct LowerPattern {
 }
 
 impl LowerPattern {
-    /// The pattern of a sum of dense matrices over the `cliques` of `n` unknowns.
+    /// The pattern of a sum of dense matrices over `cliques` of `n` unknowns.
     ///
-    /// Returns `None` where it has more than 2³² entries.
+    /// Returns `None` if it has more than 2³² entries.
     pub fn new(n: usize, cliques: &Cliques) -> Option<Self> {
         let (offsets, lists) = cliques.transposed(n);
         let mut columns = Vec::with_capacity(n + 1);
@@ -92,10 +92,10 @@ impl LowerPattern {
         Some(Self { columns, rows })
     }
 
-    /// The pattern of a sum of dense matrices over `cliques` of sites, each of which is a run of
-    /// unknowns: site s is unknowns `starts[s]..starts[s + 1]`, at least one.
+    /// The pattern of a sum of dense matrices over `cliques` of sites; site s is the run of unknowns
+    /// `starts[s]..starts[s + 1]`, at least one.
     ///
-    /// Returns `None` where it has more than 2³² entries.
+    /// Returns `None` if it has more than 2³² entries.
     pub fn of_sites(starts: &[u32], cliques: &Cliques) -> Option<Self> {
         let sites = Self::new(starts.len() - 1, cliques)?;
         let n = starts.last().map_or(0, |&n| n as usize);
@@ -127,7 +127,7 @@ impl LowerPattern {
         self.rows.len()
     }
 
-    /// The places of column `j` among all entries.
+    /// The indices of the entries of column `j`.
     pub fn column(&self, j: usize) -> std::ops::Range<usize> {
         self.columns[j] as usize..self.columns[j + 1] as usize
     }
@@ -154,8 +154,8 @@ impl SparseSymmetric {
         Self { pattern, values }
     }
 
-    /// Adds a dense symmetric matrix over the unknowns `dofs`; `entry(a, b)` is asked once for
-    /// every pair with `dofs[a] ≥ dofs[b]`. All pairs lie in the pattern.
+    /// Adds a dense symmetric matrix over the unknowns `dofs`; `entry(a, b)` is called once for every pair with
+    /// `dofs[a] ≥ dofs[b]`. The pattern must contain all pairs.
     pub fn add(&mut self, dofs: &[u32], entry: impl Fn(usize, usize) -> f64) {
         for (b, &j) in dofs.iter().enumerate() {
             let range = self.pattern.column(j as usize);
@@ -171,7 +171,7 @@ impl SparseSymmetric {
         }
     }
 
-    /// Adds a dense symmetric `matrix` over many unknowns `dofs`, both of its triangles filled.
+    /// Adds a dense symmetric `matrix` over many unknowns `dofs`; both triangles are filled.
     pub fn add_large(&mut self, dofs: &[u32], matrix: MatRef<'_, f64>) {
         let mut place = vec![0; self.pattern.n()];
         for (&j, column) in dofs.iter().zip(matrix.col_iter()) {
@@ -187,8 +187,8 @@ impl SparseSymmetric {
         }
     }
 
-    /// Adds a dense symmetric matrix over runs of `width` unknowns that begin at `firsts`, all of
-    /// them sites of the pattern; `entry` is asked as [`add`](Self::add) asks it.
+    /// Adds a dense symmetric matrix over runs of `width` unknowns that begin at `firsts`, each a site of the pattern;
+    /// `entry` is called as in [`add`](Self::add).
     pub fn add_runs(&mut self, firsts: &[u32], width: usize, entry: impl Fn(usize, usize) -> f64) {
         for (q, &j) in firsts.iter().enumerate() {
             let range = self.pattern.column(j as usize);
@@ -201,7 +201,7 @@ impl SparseSymmetric {
                     continue;
                 };
                 for b in 0..width {
-                    // Each column of a run begins a row later than the one before.
+                    // Each column of a run begins one row below the previous one.
                     let column = self.pattern.columns[j as usize + b] as usize + offset;
                     for a in if i == j { b } else { 0 }..width {
                         self.values[column + a - b] += entry(p * width + a, q * width + b);
@@ -211,7 +211,7 @@ impl SparseSymmetric {
         }
     }
 
-    /// Adds a sparse matrix whose pattern is part of this one's.
+    /// Adds a sparse matrix whose pattern is contained in this one's.
     pub fn add_sparse(&mut self, other: &Self) {
         for j in 0..other.pattern.n() {
             let range = self.pattern.column(j);

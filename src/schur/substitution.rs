@@ -1,44 +1,44 @@
-//! Normal jumps in the place of displacements, in the front where a contact point's nodes come together.
+//! Substitution of displacements by normal jumps, in the front where a contact point's nodes meet.
 //!
-//! With u_p = Σ β u_s + Σ γ t the displacements p that normal jumps t replace in terms of those s that stay,
-//! x = T y where y has t in the place of u_p. The front becomes Tᵀ A T, a load Tᵀ f.
+//! With u_p = Σ β u_s + Σ γ t, the displacements p replaced by normal jumps t in terms of the remaining ones s, x = T
+//! y, where y contains t instead of u_p. The front becomes Tᵀ A T, a load Tᵀ f.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 use super::condensed::InterfaceDof;
 
-/// Displacements that stay, for each that is replaced, up to which single columns take no longer than dense products.
+/// Mean number of terms per replaced displacement up to which updating single columns is as fast as dense products.
 const FEW_TERMS: usize = 16;
-/// Columns of a front that are changed at a time.
+/// Columns of a front that are transformed together.
 const AT_A_TIME: usize = 256;
 
-/// A displacement that a normal jump replaces.
+/// A displacement that is replaced by a normal jump.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replaced {
     /// The displacement.
     pub dof: InterfaceDof,
-    /// Displacements that stay, and β.
+    /// Remaining displacements, and β.
     pub staying: Vec<(InterfaceDof, f64)>,
-    /// Normal jumps, the one in its place among them, and γ.
+    /// Normal jumps, including the one that replaces it, and γ.
     pub jumps: Vec<(usize, f64)>,
-    /// True if the jump in its place is that of a tie, which is known; those come last.
+    /// True if this jump is that of a tie, which is known; known jumps come last.
     pub is_tied: bool,
 }
 
 /// T of a front.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Substitution {
-    /// Positions in the front of the traces that normal jumps replace.
+    /// Places in the front of the traces that normal jumps replace.
     places: Vec<usize>,
-    /// Positions of the traces that stay, and β, for each.
+    /// Places of the remaining traces, and β, for each.
     staying: Vec<Vec<(usize, f64)>>,
     /// Normal jumps and γ, for each.
     jumps: Vec<Vec<(usize, f64)>>,
 }
 
 impl Substitution {
-    /// T where the front has a displacement at `place`.
+    /// T of a front in which displacements have the places `place`.
     pub fn new(replaced: &[Replaced], place: impl Fn(&InterfaceDof) -> usize) -> Self {
         let staying = |r: &Replaced| r.staying.iter().map(|(dof, c)| (place(dof), *c)).collect();
         Self {
@@ -48,7 +48,7 @@ impl Substitution {
         }
     }
 
-    /// A ← Tᵀ A T, column by column where there are few terms, as in the plane, else by dense products.
+    /// A ← Tᵀ A T, column by column if there are few terms, as in the plane, else by dense products.
     pub fn transform(&self, a: &mut Front<'_>) {
         let terms: usize = self.staying.iter().map(Vec::len).sum();
         match terms <= FEW_TERMS * self.places.len() {
@@ -100,8 +100,8 @@ impl Substitution {
         }
     }
 
-    /// Product Tᵀ A T = E A E + W B + Bᵀ Wᵀ with W = E A P + ½ Bᵀ (Pᵀ A P), T = E + P B, P the places of the unknowns
-    /// that are replaced, x_P = B y, and E, which sets these to 0.
+    /// Tᵀ A T = E A E + W B + Bᵀ Wᵀ with W = E A P + ½ Bᵀ (Pᵀ A P) and T = E + P B, where P contains the unit vectors
+    /// of the replaced unknowns, x_P = B y, and E sets these unknowns to 0.
     fn multiply(&self, a: &mut Front<'_>) {
         let (n, m) = (a.len(), self.places.len());
         let mut columns: Vec<usize> = self.rows().flatten().map(|(place, _)| place).collect();
@@ -110,7 +110,7 @@ impl Substitution {
         let mut b = Mat::<f64>::zeros(m, columns.len());
         for (k, row) in self.rows().enumerate() {
             for (place, coefficient) in row {
-                // Every place of a row is among the columns.
+                // All places of a row are among the columns.
                 let column = columns.partition_point(|&column| column < place);
                 b[(k, column)] += coefficient;
             }
@@ -146,7 +146,7 @@ impl Substitution {
         }
     }
 
-    /// Places and factors of every unknown that is replaced.
+    /// Places and factors in the row of every replaced unknown.
     fn rows(&self) -> impl Iterator<Item = impl Iterator<Item = (usize, f64)>> {
         self.staying
             .iter()
@@ -171,7 +171,7 @@ impl Substitution {
         }
     }
 
-    /// The diagonal of A of which Tᵀ A T has this part: what round-off is relative to.
+    /// Diagonal of the matrix whose round-off Tᵀ A T has, transformed from that of A.
     pub fn transform_diagonal(&self, d: &mut [f64]) {
         let of_replaced: Vec<f64> = self.places.iter().map(|&p| d[p]).collect();
         self.places.iter().for_each(|&p| d[p] = 0.0);

@@ -1,15 +1,15 @@
-//! The pattern of a Cholesky factor: its supernodes.
+//! The symbolic factorization: the supernodes of a Cholesky factor and their patterns.
 //!
-//! Unknowns with one pattern, such as the components of a node, are found first and treated as one;
-//! the structure of each is what its children in the elimination tree leave, and neighbours in that
-//! tree become one supernode where few zeros come of it.
+//! Unknowns with equal patterns, such as the components of a node, are grouped first. The pattern of a group is the
+//! union of its own and the updates of its children in the elimination tree. Neighbours in that tree are merged into
+//! one supernode if this adds few zeros.
 
 use super::children::{Children, NO_PARENT};
 use super::panel::packed_len;
 use super::pattern::LowerPattern;
 
-/// Two supernodes become one where the number of columns and the share of zeros among the entries
-/// are at most these: small ones cost more in overhead than in arithmetic.
+/// Two supernodes are merged if the number of columns and the fraction of zeros among the entries are at most one of
+/// these pairs: small supernodes cost more in overhead than in arithmetic.
 const RELAXATION: [(usize, f64); 5] = [
     (8, 1.0),
     (16, 0.6),
@@ -18,7 +18,7 @@ const RELAXATION: [(usize, f64); 5] = [
     (usize::MAX, 0.05),
 ];
 
-/// A group that no union has met yet.
+/// A group that hasn't been in any union yet.
 const UNSEEN: u32 = u32::MAX;
 
 /// Supernodes of the first columns of a matrix: contiguous columns with common rows below.
@@ -26,14 +26,14 @@ const UNSEEN: u32 = u32::MAX;
 pub(super) struct Supernodes {
     /// First column of each supernode, and the end of the last.
     pub begin: Vec<u32>,
-    /// Offset in `rows` of each one's rows below its own columns, and the end of the last.
+    /// Offset in `rows` of the rows below each supernode's own columns, and the end of the last.
     pub row_offsets: Vec<usize>,
     /// Rows below, ascending.
     pub rows: Vec<u32>,
-    /// Offset of each one's values, and the end of the last.
+    /// Offset of each supernode's values, and the end of the last.
     pub value_offsets: Vec<usize>,
-    /// The supernode that holds the first row below; [`NO_PARENT`] where that row isn't eliminated, or
-    /// there is none.
+    /// The supernode whose columns contain the first row below; [`NO_PARENT`] if that row isn't eliminated, or there is
+    /// none.
     pub parents: Vec<u32>,
 }
 
@@ -50,7 +50,7 @@ impl Supernodes {
         self.parents.len()
     }
 
-    /// Number of values of all panels.
+    /// Number of values of all panels together.
     pub fn values(&self) -> usize {
         self.value_offsets.last().copied().unwrap_or(0)
     }
@@ -65,7 +65,7 @@ impl Supernodes {
         &self.rows[self.row_offsets[s]..self.row_offsets[s + 1]]
     }
 
-    /// The places of the values of supernode `s`.
+    /// The range of the values of supernode `s`.
     pub fn places(&self, s: usize) -> std::ops::Range<usize> {
         self.value_offsets[s]..self.value_offsets[s + 1]
     }
@@ -123,7 +123,7 @@ impl Supernodes {
     }
 }
 
-/// A supernode in the making.
+/// A supernode during merging.
 #[derive(Clone, Copy)]
 struct Merged {
     first: usize,
@@ -135,7 +135,7 @@ struct Merged {
 }
 
 impl Merged {
-    /// One supernode of this and a child that comes directly before it, if that pays.
+    /// The union of this supernode and a child directly before it, if merging them pays.
     fn with(&self, child: &Self) -> Option<Self> {
         let new = child.columns * (self.columns + self.below - child.below);
         let zeros = self.zeros + child.zeros + new;
@@ -153,19 +153,19 @@ impl Merged {
     }
 }
 
-/// Runs of unknowns that have the same neighbours.
+/// Runs of unknowns with equal patterns.
 struct Groups {
     /// First unknown of each group, and the end of the last.
     starts: Vec<u32>,
     of: Vec<u32>,
-    /// Number of groups that are eliminated; they come first.
+    /// Number of groups of eliminated unknowns, which come first.
     eliminated: usize,
 }
 
 impl Groups {
     fn new(pattern: &LowerPattern, count: usize) -> Self {
         let n = pattern.n();
-        // A sum over the earlier neighbours of an unknown: two that have the same have equal sums.
+        // A hash sum over the earlier neighbours of each unknown: equal sets have equal sums.
         let mix = |j: usize| (j as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut earlier = vec![0u64; n];
         for j in 0..n {
@@ -202,7 +202,7 @@ impl Groups {
     }
 }
 
-/// The groups below the diagonal in the factor's columns, ascending.
+/// The pattern of each group's columns in the factor, as ascending groups below the diagonal.
 struct Structures {
     members: Vec<u32>,
     ranges: Vec<(usize, usize)>,
@@ -229,7 +229,7 @@ impl Structures {
         structures
     }
 
-    /// Appends the union of a group's `own` neighbours and what its children leave.
+    /// Appends the union of a group's `own` neighbours and its children's patterns.
     fn push(
         &mut self,
         g: usize,
@@ -256,7 +256,7 @@ impl Structures {
                     self.members.push(i);
                 }
             }
-            // Most groups have all that one child leaves and nothing else.
+            // Most groups have the pattern of their only child.
             if is_only_child && to - from == self.members.len() - start + 1 {
                 self.members.truncate(start);
                 self.ranges.push((from + 1, to));

@@ -1,4 +1,4 @@
-//! A symmetric matrix in half of the memory.
+//! Packed storage of a symmetric matrix, in half of the memory.
 
 use faer::Mat;
 use pulp::{Arch, Simd, WithSimd};
@@ -16,7 +16,7 @@ pub struct PackedSymmetric {
 }
 
 impl PackedSymmetric {
-    /// The packed form of a matrix whose lower triangle counts.
+    /// The packed form of a matrix given by its lower triangle.
     pub fn new(s: &Mat<f64>) -> Self {
         let size = s.nrows();
         let mut values = Vec::with_capacity(packed_len(size, size));
@@ -49,7 +49,7 @@ impl PackedSymmetric {
     }
 }
 
-/// y ← y + S x; every column is read once for both triangles.
+/// y ← y + S x; every column is read once and used for both triangles.
 struct Product<'a> {
     s: &'a PackedSymmetric,
     x: &'a [f64],

@@ -1,4 +1,4 @@
-//! The first columns of a dense Cholesky factor, packed, and solving with them.
+//! The first columns of a dense Cholesky factor, packed, and substitution with them.
 
 use faer::{Mat, Par};
 use pulp::{Arch, Simd, WithSimd};
@@ -7,26 +7,26 @@ use super::columns::{Number, WIDTH};
 use super::front::partial_cholesky;
 use super::panel::packed_len;
 
-/// A symmetric matrix isn't positive definite where its first unknowns are eliminated.
+/// Error: the block of the unknowns to eliminate isn't positive definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotDefinite;
 
-/// L above P of a symmetric matrix whose first unknowns are eliminated, in single precision where they are `f32`.
+/// L above P of a partially eliminated symmetric matrix, in single precision if the values are `f32`.
 #[derive(Clone, Debug)]
 pub struct Trapezoid<T> {
     rows: usize,
     /// The diagonal of L.
     pivots: Vec<f64>,
-    /// Column after column over its pivot, each from the diagonal on.
+    /// Columns divided by their pivots, packed, each from the diagonal on.
     values: Vec<T>,
 }
 
 impl<T: Number> Trapezoid<T> {
-    /// Eliminates the first `count` unknowns of a symmetric matrix, whose lower triangle counts, and returns what they
-    /// leave to the others, its lower triangle.
+    /// Eliminates the first `count` unknowns of a symmetric matrix, given by its lower triangle, and returns the lower
+    /// triangle of the Schur complement on the others.
     ///
     /// # Errors
-    /// It isn't positive definite there.
+    /// The block of these unknowns isn't positive definite.
     pub fn new(
         mut matrix: Mat<f64>,
         count: usize,
@@ -63,7 +63,7 @@ impl<T: Number> Trapezoid<T> {
         relative.fold(f64::INFINITY, f64::min)
     }
 
-    /// Number of unknowns that are eliminated.
+    /// Number of eliminated unknowns.
     pub fn eliminated(&self) -> usize {
         self.pivots.len()
     }
@@ -73,7 +73,7 @@ impl<T: Number> Trapezoid<T> {
         self.rows
     }
 
-    /// Carries a load on the first unknowns to the others: x ← [L⁻¹ x_1; x_2 − P L⁻¹ x_1].
+    /// Forward substitution, which condenses a load onto the other unknowns: x ← [L⁻¹ x_1; x_2 − P L⁻¹ x_1].
     pub fn forward(&self, x: &mut [f64]) {
         in_precision(x, |x: &mut [T]| {
             Arch::new().dispatch(Forward { factor: self, x });
@@ -81,7 +81,7 @@ impl<T: Number> Trapezoid<T> {
         self.scale(x);
     }
 
-    /// Solves for the first unknowns where the others are known: x_1 ← L⁻ᵀ (x_1 − Pᵀ x_2).
+    /// Back-substitution for the first unknowns with the others known: x_1 ← L⁻ᵀ (x_1 − Pᵀ x_2).
     pub fn backward(&self, x: &mut [f64]) {
         self.scale(x);
         in_precision(x, |x: &mut [T]| {
@@ -102,7 +102,7 @@ impl<T: Number> Trapezoid<T> {
     }
 }
 
-/// Changes x as numbers of another precision, which are scaled so that none is too large or all too small for it.
+/// Applies `change` to x in another precision, scaled against overflow and underflow.
 fn in_precision<T: Number>(x: &mut [f64], change: impl FnOnce(&mut [T])) {
     let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let scale = match largest > 0.0 && largest.is_finite() {
@@ -188,7 +188,7 @@ mod tests {
 
     use super::*;
 
-    /// The largest error of solving with factors of this precision.
+    /// The largest error of a solution with factors of this precision.
     fn error<T: Number>(n: usize, count: usize) -> f64 {
         let root = Mat::from_fn(n, n, |i, j| ((17 * i + 5 * j) as f64).sin());
         let a = &root * root.transpose() + Mat::<f64>::identity(n, n);

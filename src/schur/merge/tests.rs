@@ -28,7 +28,7 @@ fn child(jumps: usize, nodes: &[u32], seed: usize) -> Condensed {
     }
 }
 
-/// Two children and their loads, and the sums of both over [0..9 | normal jumps of the first | of the second].
+/// Two children, their loads, and the sums of both over [0..9 | normal jumps of the first | of the second].
 fn example() -> (Vec<Condensed>, [Vec<f64>; 2], Mat<f64>, Vec<f64>) {
     let children = vec![
         child(2, &[0, 2, 3, 5, 7, 8], 1),
@@ -99,7 +99,7 @@ fn what_is_recovered_solves_the_sum() {
     }
 }
 
-/// A displacement in the middle of those that are kept gives way to a normal jump, u_5 = ½ u_6 + 2 t.
+/// A normal jump replaces a kept displacement with kept neighbours, u_5 = ½ u_6 + 2 t.
 #[test]
 fn a_normal_jump_takes_the_place_of_a_displacement() {
     let (children, loads, a, f) = example();
@@ -157,7 +157,7 @@ fn an_unknown_that_nothing_holds_is_named() {
     assert_eq!(error, FreeInterfaceDof(trace(2)));
 }
 
-/// The same where the jump is that of a tie, 0.3: nothing is kept of it but the force that holds it there.
+/// The same where the jump is that of a tie, 0.3: of it only the constraint force is recovered.
 #[test]
 fn a_known_jump_takes_the_place_of_a_displacement_and_has_no_row() {
     let (children, loads, a, f) = example();
