@@ -1,4 +1,4 @@
-//! Assembly: Tᵀ K T, K = Σ K_e, and Tᵀ (f − K c) over the unknowns x of a block, u = T x + c.
+//! Assembly of Tᵀ K T, K = Σ K_e, and of Tᵀ (f − K c) over the unknowns x of a block, u = T x + c.
 
 use contact_dd_partition::model::Material;
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ use super::prescribed::Prescribed;
 use super::springs::{add_springs, spring_forces};
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
-/// A spring on one node of a body that can move freely: u·direction = 0 there. It carries no force
-/// because the load has no component along the motion that it stops.
+/// A fixing dof: a spring on one component of a node of a body with a free rigid motion. It carries no force because
+/// the load has no component along that motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FixingDof {
     /// Subdomain.
@@ -24,21 +24,21 @@ pub struct FixingDof {
     pub component: u32,
 }
 
-/// A spring on a component of a node, which holds what nothing else does and no load moves.
+/// A spring on a component of a node, against a motion that neither supports nor contact restrain and no load drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// Node of the block.
     pub node: u32,
     /// Component.
     pub component: usize,
-    /// The stiffness, that of the node itself (Pa).
+    /// Its stiffness, equal to that of the node itself (Pa).
     pub stiffness: f64,
 }
 
-/// Assembles Tᵀ K T of `block`, for u = T x + c, by scattering every element into the pattern, and adds a
-/// spring at every one of `fixing_dofs`, components of nodes.
+/// Assembles Tᵀ K T of `block`, for u = T x + c, element by element, and adds a spring at every one of `fixing_dofs`,
+/// given as node and component.
 ///
-/// Returns `None` where the matrix has more than 2³² entries.
+/// Returns `None` if the matrix has more than 2³² entries.
 pub fn assemble(
     block: &Block,
     dofs: &Dofs,
@@ -111,13 +111,13 @@ fn scatter(block: &Block, dofs: &Dofs, materials: &[Material], stiffness: &mut S
         let k = nalgebra::DMatrix::from_fn(n, n, |i, j| k.row(i)[j]);
         let reduced = t.transpose() * &k * &t;
         stiffness.add(unknowns, |a, b| {
-            // The lower triangle speaks for both, so that round-off can't make them differ.
+            // The lower triangle is used for both, so that round-off can't make the matrix unsymmetric.
             reduced[(a.max(b), a.min(b))]
         });
     }
 }
 
-/// Tᵀ (f − K c), with c what supports prescribe, and `springs` in K.
+/// Tᵀ (f − K c), with c the prescribed displacements and the stiffness of `springs` in K.
 pub fn load(
     block: &Block,
     loads: &BlockLoads,

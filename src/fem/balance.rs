@@ -1,4 +1,4 @@
-//! Balance: f − K u − Bᵀ λ of a block, node by node, summed element by element without any factor.
+//! Nodal balance f − K u − Bᵀ λ of a block, computed element by element without any factorization.
 
 use contact_dd_partition::model::Material;
 
@@ -15,16 +15,16 @@ pub struct Balance {
     pub residual: Vec<f64>,
     /// |f| + Σ_e |K_e||u| + |Bᵀλ|.
     pub scale: Vec<f64>,
-    /// External forces on nodes: f − Bᵀλ − K_s u.
+    /// External forces on nodes, including contact and springs: f − Bᵀλ − K_s u.
     pub external: Vec<f64>,
-    /// Forces of springs on nodes, −K_s u, a part of the external ones.
+    /// Forces of springs on nodes, −K_s u, a part of the external forces.
     pub springs: Vec<f64>,
     /// ‖f‖∞.
     pub largest_load: f64,
 }
 
 impl Balance {
-    /// The balance for displacements `u` and what contact makes of it: `pushes` of Bᵀλ on nodes.
+    /// The balance for displacements `u` and contact forces; `pushes` is Bᵀλ by node.
     pub fn new(
         block: &Block,
         loads: &BlockLoads,
@@ -62,7 +62,7 @@ impl Balance {
         balance
     }
 
-    /// The forces K_e u of every element, taken from the residual.
+    /// Subtracts the forces K_e u of every element from the residual.
     fn subtract_elements(&mut self, block: &Block, materials: &[Material], u: &[f64]) {
         let dim = block.dim;
         let mut points = Vec::with_capacity(MAX_NODES);

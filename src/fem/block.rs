@@ -1,4 +1,4 @@
-//! A block: a subdomain, with the nodes that it has on Γ.
+//! A block: a subdomain with its nodes on Γ.
 
 use std::collections::BTreeMap;
 
@@ -6,22 +6,22 @@ use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::problem::{Subdomain, SubdomainNode};
 
-/// A subdomain as it was read.
+/// A subdomain of the problem file, with its interface.
 #[derive(Clone, Debug)]
 pub struct Block {
     /// The subdomain.
     pub subdomain: Subdomain,
-    /// Nodes on Γ, those that it shares with others and those of contact points: node and number on
-    /// Γ, in ascending order of the second.
+    /// Nodes on Γ, which are those shared with other subdomains and those of contact points: node and number on Γ,
+    /// ascending by the latter.
     pub interface: Vec<(u32, u32)>,
-    /// The nodes whose displacement along this normal alone is on Γ where they have no supports.
+    /// Nodes without supports of whose displacement only the component along this normal is on Γ.
     pub slides: BTreeMap<u32, [f64; 3]>,
     /// Number of dofs of a node.
     pub dim: usize,
 }
 
 impl Block {
-    /// A subdomain with the nodes of Γ that `tree` names.
+    /// The block of a subdomain; `tree` determines its nodes on Γ.
     pub fn new(subdomain: Subdomain, tree: &Tree, dim: usize) -> Self {
         let shared = subdomain.interface.iter();
         let mut interface: Vec<(u32, u32)> = shared.map(|on| (on.node, on.interface)).collect();
@@ -53,7 +53,7 @@ impl Block {
         &self.subdomain.points
     }
 
-    /// Number of the nodes that move with its body; [auxiliary] ones follow them.
+    /// Number of nodes of its body; [auxiliary] nodes come after them.
     ///
     /// [auxiliary]: contact_dd_partition::problem::auxiliary
     pub fn body_nodes(&self) -> usize {
@@ -65,7 +65,7 @@ impl Block {
         &self.points()[..self.body_nodes()]
     }
 
-    /// Nodes that are on Γ.
+    /// Flags of the nodes on Γ.
     pub fn is_on_interface(&self) -> Vec<bool> {
         let mut on_interface = vec![false; self.nodes()];
         for &(node, _) in &self.interface {

@@ -1,21 +1,21 @@
-//! Rigid motions z of a body: translations, and rotations ω × (x − x_0) about its center scaled by its size.
+//! Rigid-body motions z: translations, and rotations ω × (x − x_0) about the body's center x_0, scaled by its size.
 
 use contact_dd_partition::element::geometry::{cross, dot, length};
 use serde::{Deserialize, Serialize};
 
 use crate::vector::axpy;
 
-/// The frame in which the rigid motions of a body are written.
+/// The frame in which a body's rigid motions are expressed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyFrame {
     /// Center of the body's bounding box (m).
     pub center: [f64; 3],
-    /// Half its diagonal (m).
+    /// Half the diagonal of that box (m).
     pub size: f64,
 }
 
 impl BodyFrame {
-    /// The frame of a body within these bounds.
+    /// The frame of a body with this bounding box.
     pub fn new(low: [f64; 3], high: [f64; 3]) -> Self {
         let center = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
         let size = (0..3)
@@ -30,13 +30,13 @@ impl BodyFrame {
         dim + dim * (dim - 1) / 2
     }
 
-    /// `force` at `x` against every rigid motion: the components of the force, then its moments
-    /// over the body's size. Also the row of a condition `force`·u.
+    /// Work of `force` at `x` in every rigid motion: the components of the force, then its moments over the body's
+    /// size. It is also the row of a constraint `force`·u.
     pub fn action(&self, dim: usize, x: &[f64; 3], force: &[f64; 3]) -> Vec<f64> {
         let r: [f64; 3] = std::array::from_fn(|k| (x[k] - self.center[k]) / self.size);
         let moment = cross(r, *force);
         let mut action = force[..dim].to_vec();
-        // In the plane the only rotation is about the third axis, which comes first here.
+        // In the plane the only rotation is about the third axis; that axis comes first in space, too.
         for k in [2, 0, 1] {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);
             if i < dim && j < dim {
@@ -68,7 +68,7 @@ impl BodyFrame {
         moves
     }
 
-    /// A motion in words.
+    /// Description of a motion.
     pub fn describe(&self, dim: usize, z: &[f64]) -> String {
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let (translation, rotation) = z.split_at(dim);
@@ -83,11 +83,11 @@ impl BodyFrame {
             let y = self.center[1] + translation[0] / omega;
             return format!("rotation about ({})", listed(&[x, y], self.digits()));
         }
-        // About the third axis, the first and the second, as in `action`.
+        // The rotations are about the third axis, the first and the second, in the order of `action`.
         let omega = [rotation[1], rotation[2], rotation[0]].map(|w| w / self.size);
         let rate = length(omega);
         let translation = [translation[0], translation[1], translation[2]];
-        // Of both directions of the axis the one whose first component that counts is positive.
+        // Of both directions of the axis, the one whose first non-negligible component is positive.
         let first = omega.iter().find(|w| w.abs() > 1e-6 * rate);
         let axis = omega.map(|w| w / rate.copysign(first.copied().unwrap_or(rate)));
         let arm = cross(omega, translation).map(|x| x / (rate * rate));
@@ -104,13 +104,13 @@ impl BodyFrame {
         )
     }
 
-    /// Digits behind the point of a coordinate: below a ten thousandth of the body they are round-off.
+    /// Decimal places of a coordinate: below a ten thousandth of the body's size they are round-off.
     fn digits(&self) -> usize {
         (4.0 - self.size.log10().floor()).clamp(0.0, 30.0) as usize
     }
 }
 
-/// Numbers with so many digits behind the point, none of them −0.
+/// Numbers with this many decimal places, separated by commas, without −0.
 fn listed(numbers: &[f64], digits: usize) -> String {
     let step = 10.0_f64.powi(-(digits as i32));
     let rounded = numbers.iter().map(|c| (c / step).round() * step + 0.0);

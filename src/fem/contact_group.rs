@@ -1,5 +1,5 @@
-//! A contact group: the contact points that belong to one node of the hierarchy, where all that have one of
-//! their nodes come together, and what they need to know of these nodes.
+//! A contact group: the contact points of one node of the hierarchy, the lowest one at which all their nodes meet, with
+//! the data of these nodes. A point's gap is between side a, the slave, and side b, the master.
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::dot;
@@ -8,37 +8,37 @@ use super::contact_node::ContactNode;
 use crate::contact::friction::{ForceBound, TangentialCondition};
 use crate::contact::law::PointLaw;
 
-/// Contact points over nodes of their own numbering.
+/// Contact points, with nodes numbered within the group.
 #[derive(Clone, Debug, Default)]
 pub struct ContactGroup {
-    /// The points.
+    /// The contact points.
     pub points: Vec<ContactPoint<u32>>,
-    /// Nodes of the points.
+    /// The nodes of these points.
     pub nodes: Vec<ContactNode>,
     /// Number of dofs of a node.
     pub dim: usize,
 }
 
-/// The condition on the jump at a point along one direction: a row of B.
+/// A contact constraint: the jump at a point along one direction, a row of B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Number of the point.
     pub point: usize,
-    /// The direction: n, or a tangent where friction acts.
+    /// The direction: the normal n, or a tangent if friction acts.
     pub direction: [f64; 3],
-    /// True if it is a tangent.
+    /// True if the direction is a tangent.
     pub is_tangential: bool,
-    /// True if it is one of a tie.
+    /// True if it belongs to a tie.
     pub is_tied: bool,
 }
 
 /// The loads on a contact group in a load step: gaps and prescribed displacements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroupLoads {
-    /// Allowed jump of every condition (m): the gap g, or the tangential jump at which the sides stick, that of the
-    /// load step before.
+    /// The bound of every constraint's jump (m): the gap g, or for a tangential one the jump at which the sides stick,
+    /// that of the load step before.
     pub gaps: Vec<f64>,
-    /// The displacements that the supports of every node prescribe (m).
+    /// The displacements prescribed by the supports of every node (m).
     pub held: Vec<Vec<f64>>,
 }
 
@@ -56,8 +56,7 @@ impl GroupLoads {
         }
     }
 
-    /// Goes back from these loads to what acts part of the way from those `before` to them; from none to them, if
-    /// there are none.
+    /// Reduces these loads to `before` + `part` · (these − `before`); without loads before, to the `part` of these.
     pub fn go_back(&mut self, before: Option<&Self>, part: f64) {
         for (node, held) in self.held.iter_mut().enumerate() {
             for (i, value) in held.iter_mut().enumerate() {
@@ -67,7 +66,7 @@ impl GroupLoads {
         }
     }
 
-    /// The largest displacement that is prescribed, gaps among them (m).
+    /// The largest prescribed displacement or gap (m).
     pub fn largest_prescribed(&self) -> f64 {
         let all = self.held.iter().flatten().chain(&self.gaps);
         all.fold(0.0, |m: f64, x| m.max(x.abs()))
@@ -75,7 +74,7 @@ impl GroupLoads {
 }
 
 impl ContactGroup {
-    /// The group of these points, whose tangents are those along which they can slip.
+    /// The group of these points, with the tangents along which they can slip.
     pub fn new(points: Vec<ContactPoint<u32>>, nodes: Vec<ContactNode>, dim: usize) -> Self {
         let mut group = Self { points, nodes, dim };
         group.take_stiffness_between_sides();
@@ -83,7 +82,7 @@ impl ContactGroup {
         group
     }
 
-    /// Gives the nodes between sides the stiffness of their bodies, as that of a material (Pa).
+    /// Sets the stiffness of auxiliary nodes between two sides to that of the bodies, as a material's (Pa).
     fn take_stiffness_between_sides(&mut self) {
         for j in 0..self.points.len() {
             let point = &self.points[j];
@@ -93,7 +92,8 @@ impl ContactGroup {
         }
     }
 
-    /// The part of the jump at a point, along a direction, that what moves with the load steps prescribes, on no body (m).
+    /// The part of the jump at a point, along a direction, due to prescribed displacements that vary with the load
+    /// steps and belong to no body (m).
     pub fn moved(&self, point: usize, direction: [f64; 3], loads: &GroupLoads) -> f64 {
         let of_entry = |(node, row): (u32, [f64; 3])| {
             let of_node = &self.nodes[node as usize];
@@ -104,7 +104,7 @@ impl ContactGroup {
         self.points[point].row_along(direction).map(of_entry).sum()
     }
 
-    /// Conditions: the normal one of every point, then the tangential ones of the points that have friction or are tied.
+    /// Contact constraints: the normal one of every point, then the tangential ones of points with friction or ties.
     pub fn conditions(&self) -> impl Iterator<Item = Condition> + '_ {
         let normal = |(point, of_point): (usize, &ContactPoint<u32>)| Condition {
             point,
@@ -129,12 +129,12 @@ impl ContactGroup {
             .chain(points.flat_map(tangential))
     }
 
-    /// The nodes of a condition's point with weight·direction.
+    /// The row of a constraint: each node of its point, and weight·direction.
     pub fn row_of(&self, condition: &Condition) -> impl Iterator<Item = (u32, [f64; 3])> + Clone {
         self.points[condition.point].row_along(condition.direction)
     }
 
-    /// The tangential conditions, each with the normal condition of its point.
+    /// The tangential constraints, each with the normal one of its point.
     pub fn friction(&self) -> Vec<TangentialCondition> {
         let of_condition = |(number, condition): (usize, Condition)| {
             let point = &self.points[condition.point];
@@ -160,7 +160,7 @@ impl ContactGroup {
         conditions.filter_map(of_condition).collect()
     }
 
-    /// The laws of the points with friction, with conditions in the place of limits.
+    /// The contact laws of the points with friction; they refer to constraints in place of limits.
     pub fn point_laws(&self) -> Vec<PointLaw> {
         let friction = self.friction();
         let law = |of_point: &[TangentialCondition]| PointLaw {
@@ -175,7 +175,7 @@ impl ContactGroup {
         points.map(law).collect()
     }
 
-    /// Stiffness of the bodies against a jump at a point, about (N/m).
+    /// Approximate stiffness of the bodies against a jump at a point (N/m).
     pub fn stiffness_at(&self, point: usize) -> f64 {
         let width = self.width_at(point);
         let of_entry = |&(node, weight): &(u32, f64)| {
@@ -184,15 +184,15 @@ impl ContactGroup {
         1.0 / self.points[point].entries.iter().map(of_entry).sum::<f64>()
     }
 
-    /// The largest stiffness of the nodes of a point (N/m): the round-off of its force is relative to this times the
-    /// displacements.
+    /// The largest stiffness of the nodes of a point (N/m): times the displacements it is the scale of the round-off of
+    /// contact forces.
     pub fn largest_stiffness_at(&self, point: usize) -> f64 {
         let entries = self.points[point].entries.iter();
         let stiffness = entries.map(|(node, _)| self.nodes[*node as usize].stiffness);
         self.width_at(point) * stiffness.fold(0.0, f64::max)
     }
 
-    /// The width of the surface around a point (m), 1 in the plane.
+    /// The width of the contact surface around a point (m), 1 in the plane.
     fn width_at(&self, point: usize) -> f64 {
         match self.dim == 3 {
             true => self.points[point].area.sqrt(),
@@ -200,8 +200,8 @@ impl ContactGroup {
         }
     }
 
-    /// Slack of conditions under displacements `u`, node by node: the gaps g − n·⟦u⟧, and the
-    /// way back to where the sides stick (m).
+    /// Slack of constraints for displacements `u`, node by node (m): the gaps g − n·⟦u⟧, and for tangential ones minus
+    /// the slip since the sides last stuck.
     pub fn gaps_left(&self, loads: &GroupLoads, u: &[f64]) -> Vec<f64> {
         let left = |(condition, gap): (Condition, &f64)| {
             gap - self.points[condition.point].jump_along(condition.direction, self.dim, u)
@@ -209,7 +209,7 @@ impl ContactGroup {
         self.conditions().zip(&loads.gaps).map(left).collect()
     }
 
-    /// Bᵀλ of contact `forces`, one a condition: on every node its parts.
+    /// Bᵀλ of contact `forces`, one for each constraint: the contributions to every node.
     pub fn pushes(&self, forces: &[f64]) -> Vec<Vec<[f64; 3]>> {
         let mut pushes = vec![Vec::new(); self.nodes.len()];
         for (condition, force) in self.conditions().zip(forces) {

@@ -1,4 +1,4 @@
-//! The nodes of contact points, as their subdomains describe them.
+//! The nodes of contact points, with the data of their subdomains.
 
 use std::collections::BTreeMap;
 
@@ -8,29 +8,29 @@ use serde::{Deserialize, Serialize};
 
 use super::block::Block;
 
-/// A node of contact points, as its subdomain describes it.
+/// A node of contact points, with the data of its subdomain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactNode {
     /// Number on Γ.
     pub interface: u32,
-    /// The mesh file's tag.
+    /// Tag in the mesh file.
     pub tag: i64,
     /// Body of the node.
     pub body: usize,
-    /// True if it lies between the sides of a point, and moves with no body.
+    /// True if it is an auxiliary node between the sides of a point, which belongs to no body.
     pub is_auxiliary: bool,
     /// Coordinates (m).
     pub at: [f64; 3],
-    /// The stiffest material around it (Pa).
+    /// The stiffness of the stiffest material around it (Pa).
     pub stiffness: f64,
-    /// Directions of its supports, and what they prescribe in every load step (m).
+    /// Directions of its supports, and their prescribed displacements in every load step (m).
     pub supports: Vec<([f64; 3], Vec<f64>)>,
-    /// The normal along which its displacement alone is on Γ; none where all of it is, as with supports.
+    /// The normal, if only the displacement along it is on Γ; `None` if all components are, as with supports.
     pub slides: Option<[f64; 3]>,
 }
 
 impl ContactNode {
-    /// Some `nodes` of a block: the block's node and its number on Γ.
+    /// The contact nodes for some `nodes` of a block, given as node of the block and number on Γ.
     pub fn of(block: &Block, materials: &[Material], nodes: &[(u32, u32)]) -> Vec<Self> {
         let mut stiffness: BTreeMap<u32, f64> =
             nodes.iter().map(|&(node, _)| (node, 0.0)).collect();
@@ -69,7 +69,7 @@ impl ContactNode {
         nodes.iter().map(of_node).collect()
     }
 
-    /// The node as the check of contact points sees it.
+    /// The position of the node, for the check of contact points.
     pub fn place(&self) -> NodePlace {
         NodePlace {
             tag: self.tag,

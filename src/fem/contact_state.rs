@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 /// The solution at a contact point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
-    /// The gap that is left, g − n·⟦u⟧ ≥ 0 (m).
+    /// The remaining gap, g − n·⟦u⟧ ≥ 0 (m).
     pub gap: f64,
     /// Normal force ≥ 0 (N, per metre of thickness in the plane).
     pub force: f64,
     /// True if the contact is closed.
     pub closed: bool,
-    /// Tangential force on side a, −λ_t t₁ (N, per metre of thickness in the plane).
+    /// Tangential force on side a, as a rule the slave side, −λ_t t₁ (N, per metre of thickness in the plane).
     pub tangential_force: [f64; 3],
     /// Tangential jump since the unloaded state, w t₁ (m).
     pub slip: [f64; 3],
     /// True if it slips in this load step.
     pub slipping: bool,
-    /// Work that friction dissipates in this load step, λ_t Δw (J, per metre of thickness in the plane).
+    /// Work dissipated by friction in this load step, λ_t Δw (J, per metre of thickness in the plane).
     pub dissipated: f64,
 }
 

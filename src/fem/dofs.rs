@@ -13,8 +13,8 @@ use crate::schur::pattern::Cliques;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyUnknowns;
 
-/// The unknowns x of a block and T of the displacement u = T x + c that they stand for; c is
-/// [`Prescribed`](super::prescribed::Prescribed) in each load step.
+/// The unknowns x of a block and T of the displacement u = T x + c; c of each load step is
+/// [`Prescribed`](super::prescribed::Prescribed).
 #[derive(Clone, Debug)]
 pub struct Dofs {
     dim: usize,
@@ -30,7 +30,8 @@ pub struct Dofs {
 
 const NOT_DIRECT: u32 = u32::MAX;
 
-/// The components of nodes that are interior unknowns, and those that are unknowns on Γ, along the axes of their `frames`.
+/// Flags of the components, along the axes of the nodes' `frames`, that are interior unknowns, and of those that are
+/// unknowns on Γ.
 fn free_components(block: &Block, frames: &BTreeMap<u32, Frame>) -> [Vec<bool>; 2] {
     let dim = block.dim;
     let raw_of = |node: u32| node as usize * dim..(node as usize + 1) * dim;
@@ -53,11 +54,11 @@ fn free_components(block: &Block, frames: &BTreeMap<u32, Frame>) -> [Vec<bool>; 
 }
 
 impl Dofs {
-    /// Numbers the unknowns of `block`: its interior in a fill-reducing order, then the interface dofs on Γ.
-    /// Of `loads` the directions of supports count, not their values.
+    /// Numbers the unknowns of `block`: the interior in a fill-reducing order, then the interface dofs on Γ. Of `loads`
+    /// only the directions of supports are used, not their values.
     ///
     /// # Errors
-    /// Too many unknowns.
+    /// More unknowns than 32-bit indices allow.
     pub fn new(block: &Block, loads: &BlockLoads) -> Result<Self, TooManyUnknowns> {
         let dim = block.dim;
         if block.nodes() * dim >= u32::MAX as usize {
@@ -107,7 +108,7 @@ impl Dofs {
         Ok(dofs)
     }
 
-    /// Appends the rows of T for a node whose components are unknowns.
+    /// Appends the rows of T for a node whose Cartesian components are unknowns.
     fn push_direct(&mut self, node: u32, number: &[u32]) {
         let raw = node as usize * self.dim;
         for &dof in &number[raw..raw + self.dim] {
@@ -117,7 +118,7 @@ impl Dofs {
         self.first.push(number[raw]);
     }
 
-    /// Appends the rows of T for `node`, which supports hold.
+    /// Appends the rows of T for `node`, which has supports or slides.
     fn push_node(&mut self, node: u32, frame: &Frame, number: &[u32]) {
         let dim = self.dim;
         let start = self.offsets.len() - 1;
@@ -136,10 +137,10 @@ impl Dofs {
         self.first.push(self.direct_from(start));
     }
 
-    /// The first of the unknowns that are the node's components, if they are.
+    /// The first of the unknowns that are the node's Cartesian components, if they are.
     fn direct_from(&self, start: usize) -> u32 {
         let base = &self.terms[self.offsets[start] as usize..];
-        // What slides has one of them on Γ.
+        // Of a sliding node, only one component is on Γ.
         let of_gamma = base
             .iter()
             .filter(|&&(dof, _)| dof as usize >= self.interior);
@@ -163,13 +164,13 @@ impl Dofs {
         &self.terms[self.offsets[row] as usize..self.offsets[row + 1] as usize]
     }
 
-    /// The first of the consecutive unknowns that simply are the node's components, if so.
+    /// The first of the consecutive unknowns that are the node's Cartesian components, if they are.
     pub fn direct(&self, node: u32) -> Option<u32> {
         let first = self.first[node as usize];
         (first != NOT_DIRECT).then_some(first)
     }
 
-    /// u ← u + T x: what a change of the unknowns adds to the displacement.
+    /// u ← u + T x: adds the displacement of a change of the unknowns.
     pub fn add_change(&self, x: &[f64], u: &mut [f64]) {
         for (row, u) in u.iter_mut().enumerate() {
             let range = self.offsets[row] as usize..self.offsets[row + 1] as usize;
@@ -191,12 +192,12 @@ impl Dofs {
         }
     }
 
-    /// First unknown of each site of the pattern: a run of unknowns that the same cells have, those of a node.
+    /// First unknown of each site of the pattern: a run of unknowns that occur in the same cells, those of a node.
     pub fn site_starts(&self) -> &[u32] {
         &self.sites.starts
     }
 
-    /// The sites of every cell of `block`, and of every node that no cell has.
+    /// The sites of every cell of `block`, and of every node without cells.
     pub fn cliques(&self, block: &Block) -> Cliques {
         let mut cliques = Cliques::default();
         let mut list = Vec::new();

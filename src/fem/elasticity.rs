@@ -1,11 +1,11 @@
 //! Linear elasticity of one element: K_e = ∫ Bᵀ C B dx, (2).
 //!
-//! ε = B u holds in Voigt's order ε_xx, ε_yy, γ_xy in the plane and ε_xx, ε_yy, ε_zz, γ_yz, γ_xz, γ_xy in space, with
-//! γ = 2 ε, from the gradients of the shape functions; σ = C ε. Around the axis x = 0 it is ε_xx, ε_yy, ε_zz, γ_xy with
-//! the strain of the hoop ε_zz = u_x/x, and dx is 2πx dx dy. The number of components tells which.
+//! ε = B u holds in Voigt's order ε_xx, ε_yy, γ_xy in the plane and ε_xx, ε_yy, ε_zz, γ_yz, γ_xz, γ_xy in space, with γ
+//! = 2 ε, from the gradients of the shape functions; σ = C ε. Around the axis x = 0 it is ε_xx, ε_yy, ε_zz, γ_xy with
+//! the hoop strain ε_zz = u_x/x, and dx is 2πx dx dy. The number of components distinguishes these cases.
 //!
-//! Incompatible modes, where an element has some, are eliminated in it: no force acts on them, so that their amplitudes α
-//! follow from the displacements of the nodes,
+//! Incompatible modes, if an element has some, are condensed within it: no force acts on them, so that their amplitudes
+//! α follow from the nodal displacements,
 //!
 //! > K_αα α = −K_αu u, K_e = K_uu − K_uα K_αα⁻¹ K_αu.
 
@@ -21,12 +21,12 @@ use super::gradients::{
     stiffness_points,
 };
 
-/// Nodes of a hexahedron, and its modes.
+/// Number of nodes of a hexahedron plus its incompatible modes.
 const SOLID: usize = 11;
 
-/// ε, of so many components, at a point of the element with the nodes at `points` for their displacements `u`, behind which
-/// the amplitudes of its incompatible modes may stand, and the weight of the point, that of quadrature times the Jacobian
-/// (m², m³).
+/// ε, with this number of `components`, at a point of an element, and the point's weight: quadrature weight times
+/// Jacobian (m², m³). The nodes are at `points`; `u` are their displacements, optionally followed by the amplitudes of
+/// incompatible modes.
 pub fn strain(
     reference: &TabulatedPoint,
     points: &[[f64; 3]],
@@ -57,7 +57,8 @@ pub fn strain(
 
 /// σ = (XX, YY, ZZ, XY, YZ, XZ) for a strain (Pa).
 ///
-/// Around an axis ZZ is the stress of the hoop. In the plane σ_zz follows from the material's row out of the plane; where that isn't known it is 0.
+/// Around an axis ZZ is the hoop stress. In the plane σ_zz follows from the material's out-of-plane row; it is 0 if
+/// that is unknown.
 pub fn stress(material: &Material, plane: Option<PlaneState>, strain: &Voigt) -> [f64; 6] {
     let s = voigt_stress(material, strain);
     let zz = match (plane, &material.out_of_plane) {
@@ -82,7 +83,7 @@ pub fn voigt_stress(material: &Material, strain: &Voigt) -> Voigt {
     stress
 }
 
-/// Voigt's order of space as results have it, XX, YY, ZZ, XY, YZ, XZ.
+/// Voigt's order in space rearranged to that of results, XX, YY, ZZ, XY, YZ, XZ.
 fn result_order(&[xx, yy, zz, yz, xz, xy]: &Voigt) -> [f64; 6] {
     [xx, yy, zz, xy, yz, xz]
 }
@@ -91,7 +92,7 @@ fn product(row: &[f64], strain: &[f64]) -> f64 {
     row.iter().zip(strain).map(|(c, e)| c * e).sum()
 }
 
-/// An element's stiffness, both triangles.
+/// An element's stiffness; both triangles are stored.
 #[derive(Clone, Debug)]
 pub struct ElementMatrix {
     order: usize,
@@ -118,8 +119,8 @@ impl ElementMatrix {
         (0..self.order).map(|i| self.row(i))
     }
 
-    /// Becomes K_e = ∫ Bᵀ C B over an element, in the plane of unit thickness (Pa; around an axis and in space N/m), dofs
-    /// node by node; incompatible modes, where it has some, are eliminated.
+    /// Sets the matrix to K_e = ∫ Bᵀ C B over an element, in the plane for unit thickness (Pa; around an axis and in
+    /// space N/m), dofs node by node; incompatible modes, if any, are condensed.
     pub fn set(&mut self, element: &ReferenceElement, points: &[[f64; 3]], material: &Material) {
         if has_modes(element, material) {
             return self.set_bending(element, points, material);
@@ -140,7 +141,7 @@ impl ElementMatrix {
             return self.integrate::<2, RING, MAX_PLANE_NODES>(nodes, rule, points, c);
         }
         let c = &c.rows::<3>();
-        // The compiler unrolls what it knows the size of.
+        // Constant sizes let the compiler unroll the loops.
         match element.nodes() {
             3 => self.integrate::<2, 3, MAX_PLANE_NODES>(3, rule, points, c),
             4 => self.integrate::<2, 3, MAX_PLANE_NODES>(4, rule, points, c),
@@ -151,7 +152,7 @@ impl ElementMatrix {
         }
     }
 
-    /// Integral in D dimensions, with V components of strain, for up to N nodes.
+    /// The integral in D dimensions, with V strain components, for up to N nodes.
     #[inline(always)]
     fn integrate<const D: usize, const V: usize, const N: usize>(
         &mut self,
@@ -167,7 +168,7 @@ impl ElementMatrix {
             let point = PointGradients::<D, V, N>::new(reference, &points[..nodes]);
             self.add_lower(nodes, &point, c);
         }
-        // Symmetric to the last bit, so that assembling one triangle is assembling both.
+        // The upper triangle is copied, so that assembly of one triangle is exact.
         for i in 0..order {
             for j in 0..i {
                 self.values[j * order + i] = self.values[i * order + j];
@@ -186,7 +187,7 @@ impl ElementMatrix {
         let order = D * nodes;
         for j in 0..nodes {
             let g = &point.gradients[j];
-            // The stress that a unit displacement of each component causes.
+            // Stresses of a unit displacement of each component.
             let stresses: [[f64; V]; D] = from_fn(|a| {
                 from_fn(|r| {
                     let others = (0..D).filter(|&b| b != a);
@@ -216,15 +217,15 @@ impl ElementMatrix {
     }
 }
 
-/// Condensation of a cell's incompatible modes: −K_αα⁻¹ K_αu, by which they follow from the displacements of its nodes,
-/// and K_αu.
+/// Condensation of a cell's incompatible modes: −K_αα⁻¹ K_αu, which gives their amplitudes from the nodal
+/// displacements, and K_αu.
 struct Eliminated {
     coupling: DMatrix<f64>,
     amplitudes: DMatrix<f64>,
 }
 
 impl ElementMatrix {
-    /// Becomes the stiffness of an element with modes, without these.
+    /// Sets the matrix to the stiffness of an element with its incompatible modes condensed.
     pub(super) fn set_bending(
         &mut self,
         element: &ReferenceElement,
@@ -234,7 +235,7 @@ impl ElementMatrix {
         self.set_with_modes(element, points, material);
         let order = element.dim() * element.nodes();
         let mut condensed = DMatrix::from_fn(order, order, |i, j| self.row(i.max(j))[i.min(j)]);
-        // Without them where they can't be told apart.
+        // The modes are left out where K_αα is singular.
         if let Some(modes) = self.eliminated(order) {
             condensed += modes.coupling.transpose() * modes.amplitudes;
         }
@@ -247,7 +248,7 @@ impl ElementMatrix {
         }
     }
 
-    /// Becomes the stiffness of an element and its modes, the lower triangle.
+    /// Sets the lower triangle to the stiffness of an element and its modes.
     fn set_with_modes(
         &mut self,
         element: &ReferenceElement,
@@ -288,7 +289,7 @@ impl ElementMatrix {
         }
     }
 
-    /// The condensation of the modes behind so many dofs.
+    /// The condensation of the modes, which come after the first `order` dofs.
     fn eliminated(&self, order: usize) -> Option<Eliminated> {
         let own = self.order - order;
         let stiffness = DMatrix::from_fn(own, own, |i, j| {
@@ -303,7 +304,7 @@ impl ElementMatrix {
     }
 }
 
-/// α of an element that has modes, whose nodes at `points` are displaced by `u`.
+/// Amplitudes α of the incompatible modes of an element with nodes at `points` displaced by `u`.
 pub fn amplitudes(
     element: &ReferenceElement,
     points: &[[f64; 3]],
@@ -321,8 +322,7 @@ pub fn amplitudes(
     }
 }
 
-/// (σ_1 ≥ σ_2 ≥ σ_3) of a stress (XX, YY, ZZ, XY, YZ, XZ); by Mohr's circle where it has none of the last two, as in the
-/// plane.
+/// (σ_1 ≥ σ_2 ≥ σ_3) of a stress (XX, YY, ZZ, XY, YZ, XZ); by Mohr's circle if YZ and XZ are 0, as in the plane.
 pub fn principal_stresses(s: &[f64; 6]) -> [f64; 3] {
     let [xx, yy, zz, xy, yz, xz] = *s;
     let mut values: [f64; 3] = if yz == 0.0 && xz == 0.0 {

@@ -1,5 +1,5 @@
-//! The estimate of Zienkiewicz and Zhu: the error of the stress σ_h is about its difference to the
-//! recovered one σ*.
+//! The error estimator of Zienkiewicz and Zhu: the error of the stress σ_h is approximately its difference from the
+//! recovered stress σ*.
 //!
 //! > ‖e‖² ≈ ∫ (σ* − σ_h)ᵀ C⁻¹ (σ* − σ_h) dx
 
@@ -13,7 +13,7 @@ use super::gradients::{Voigt, stiffness_points};
 use super::polynomial::NodalStress;
 use crate::vector::axpy;
 
-/// The square of an error relative to that of an initial stress below which it is round-off.
+/// Square of an error, relative to that of an initial stress, below which it is round-off.
 const ROUND_OFF: f64 = 1e-20;
 
 /// Squares of energy norms over a cell (N m, in the plane per metre of thickness).
@@ -21,14 +21,14 @@ const ROUND_OFF: f64 = 1e-20;
 pub struct CellError {
     /// ‖σ* − σ_h‖² = ∫ (σ* − σ_h) C⁻¹ (σ* − σ_h), with σ* the recovered stress.
     pub error: f64,
-    /// ‖σ_h‖² without initial stress.
+    /// ‖σ_h‖² without the initial stress.
     pub energy: f64,
-    /// ‖σ_i‖² of the initial stress, against whose round-off no error counts.
+    /// ‖σ_i‖² of the initial stress; errors below its round-off count as zero.
     pub initial: f64,
 }
 
 impl CellError {
-    /// Adds that of other cells.
+    /// Adds the squares of other cells.
     pub fn add(&mut self, other: Self) {
         self.error += other.error;
         self.energy += other.energy;
@@ -44,7 +44,7 @@ impl CellError {
     }
 }
 
-/// C⁻¹ of a material (1/Pa), in whose norm stresses are measured.
+/// C⁻¹ of a material (1/Pa), which defines the energy norm of stresses.
 #[derive(Clone, Debug)]
 pub enum Compliance {
     /// Compliance in the plane.
@@ -75,7 +75,7 @@ impl Compliance {
         }
     }
 
-    /// ‖σ_i‖² over a cell with a `measure`, of a stress in the order of results.
+    /// ‖σ_i‖² of a stress, in the order of results, over a cell with this `measure`.
     pub fn initial(&self, measure: f64, stress: &NodalStress) -> f64 {
         measure * self.norm(&self.voigt(stress))
     }
@@ -98,7 +98,7 @@ impl Compliance {
         }
     }
 
-    /// A stress in the order of results in Voigt's.
+    /// A stress in the order of results, rearranged to Voigt's order.
     fn voigt(&self, &[xx, yy, zz, xy, yz, xz]: &NodalStress) -> Voigt {
         match self {
             Self::Plane(_) => [xx, yy, xy, 0.0, 0.0, 0.0],
@@ -107,10 +107,10 @@ impl Compliance {
         }
     }
 
-    /// The error of a linear triangle or tetrahedron with a `measure`, whose stress is the same everywhere.
+    /// The error of a linear triangle or tetrahedron with this `measure`, whose stress is uniform.
     pub fn simplex(&self, measure: f64, stress: &[f64; 6], recovered: &[NodalStress]) -> CellError {
         let stress = self.voigt(stress);
-        // The difference is linear: ∫ over its values at the corners.
+        // The difference is linear: its square is integrated exactly from the values at the corners.
         let mut total = [0.0; 6];
         let mut squares = 0.0;
         for at_node in recovered {
@@ -126,8 +126,7 @@ impl Compliance {
         }
     }
 
-    /// The error of a cell: its kind, coordinates and displacements, and the stress `recovered` at
-    /// its nodes.
+    /// The error of a cell from its kind, coordinates and displacements, and the stress `recovered` at its nodes.
     pub fn cell(
         &self,
         (kind, points, u): (ElementKind, &[[f64; 3]], &[f64]),

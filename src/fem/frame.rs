@@ -1,4 +1,4 @@
-//! Node frames: the axes along which a node is held or free.
+//! Node frames: the axes along which a node's displacement is prescribed or free.
 
 use std::collections::BTreeMap;
 
@@ -10,20 +10,20 @@ use contact_dd_partition::model::Support;
 /// An orthonormal frame of a node. Its displacement is u = Σ v_k·axis_k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Axes; the first `dim` count.
+    /// Axes; the first `dim` are used.
     pub axes: [[f64; 3]; 3],
     /// Prescribed displacement along each axis; `None` where it is free.
     pub prescribed: [Option<f64>; 3],
 }
 
 impl Frame {
-    /// The frame of the coordinates, free.
+    /// The Cartesian frame, free.
     pub const CARTESIAN: Self = Self {
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         prescribed: [None; 3],
     };
 
-    /// A free frame whose first axes are `directions`, orthonormal.
+    /// A free frame whose first axes are the orthonormal `directions`.
     pub fn along(directions: &[[f64; 3]], dim: usize) -> Self {
         let mut frame = Self::CARTESIAN;
         let mut filled = 0;
@@ -38,8 +38,8 @@ impl Frame {
         frame
     }
 
-    /// A unit vector normal to the first `filled` axes: the coordinate axis that is least
-    /// represented by them, made orthogonal.
+    /// A unit vector orthogonal to the first `filled` axes, from the coordinate axis with the smallest component in
+    /// their span.
     fn completion(&self, filled: usize, dim: usize) -> [f64; 3] {
         let share = |e: usize| -> f64 { self.axes[..filled].iter().map(|a| a[e] * a[e]).sum() };
         let mut least = 0;
@@ -50,7 +50,7 @@ impl Frame {
         }
         let mut axis = [0.0; 3];
         axis[least] = 1.0;
-        // Twice is enough: the second pass takes off what round-off left of the first.
+        // The second pass of Gram-Schmidt removes the round-off of the first; two are enough.
         for _ in 0..2 {
             for a in &self.axes[..filled] {
                 let along = dot(*a, axis);
@@ -62,8 +62,8 @@ impl Frame {
     }
 }
 
-/// The frames of all nodes of `block` that aren't those of the coordinates: those with `supports`, and those without
-/// that slide, along their normal first.
+/// The non-Cartesian frames of nodes of `block`: those with `supports`, and those that slide without supports, whose
+/// normal comes first.
 pub fn node_frames(block: &Block, supports: &[Support]) -> BTreeMap<u32, Frame> {
     let mut frames = support_frames(supports, block.dim);
     for (&node, &normal) in &block.slides {
@@ -73,7 +73,7 @@ pub fn node_frames(block: &Block, supports: &[Support]) -> BTreeMap<u32, Frame> 
     frames
 }
 
-/// The frames of all nodes with supports; rows of one node are orthonormal.
+/// The frames of all nodes with supports; the rows of a node are orthonormal.
 pub fn support_frames(supports: &[Support], dim: usize) -> BTreeMap<u32, Frame> {
     let mut rows: BTreeMap<u32, Vec<&Support>> = BTreeMap::new();
     for support in supports {

@@ -1,8 +1,8 @@
-//! Gradients of the shape functions at a point of an element, and those of its incompatible modes.
+//! Gradients of an element's shape functions and of its incompatible modes at a point.
 //!
-//! Incompatible modes are displacements 1 − ξ_k² inside a linear quadrilateral or hexahedron, with which it bends. Their
-//! gradients are those at the middle, (det J_0/det J) J_0⁻ᵀ ∂/∂ξ, so that no mode has a mean strain: a uniform stress passes
-//! through cells of any shape.
+//! Incompatible modes are displacements 1 − ξ_k² within a linear quadrilateral or hexahedron, which improve its
+//! bending. Their gradients use the Jacobian at the center, (det J_0/det J) J_0⁻ᵀ ∂/∂ξ, so that the mean strain of each
+//! mode is zero and cells of any shape pass the patch test.
 //!
 //! R. L. Taylor, P. J. Beresford, E. L. Wilson, *A non-conforming element for stress analysis*, Int. J. Numer. Meth. Eng.
 //! 10 (1976).
@@ -16,19 +16,19 @@ use contact_dd_partition::element::quadrature::TabulatedPoint;
 use contact_dd_partition::element::reference::ReferenceElement;
 use contact_dd_partition::model::{Formulation, Material};
 
-/// Most nodes that an element has.
+/// Most nodes of an element.
 pub const MAX_NODES: usize = 27;
-/// Components of a strain around an axis.
+/// Number of strain components around an axis.
 pub(super) const RING: usize = 4;
-/// Most nodes that one of the plane has.
+/// Most nodes of a plane element.
 pub(super) const MAX_PLANE_NODES: usize = 9;
-/// Most dofs that an element has.
+/// Most dofs of an element.
 pub const MAX_DOFS: usize = 3 * MAX_NODES;
 
-/// A strain or stress in Voigt's order; in the plane the first three components count, around an axis four.
+/// A strain or stress in Voigt's order; in the plane the first three components are used, around an axis four.
 pub type Voigt = [f64; 6];
 
-/// The place of γ_ab in Voigt's order of so many components.
+/// Index of γ_ab in Voigt's order with this number of `components`.
 pub(super) const fn shear(components: usize, a: usize, b: usize) -> usize {
     match components {
         6 => 6 - a - b,
@@ -36,7 +36,7 @@ pub(super) const fn shear(components: usize, a: usize, b: usize) -> usize {
     }
 }
 
-/// The points at which a cell's stiffness is integrated in a material.
+/// The quadrature points of a cell's stiffness for a material.
 pub fn stiffness_points<'a>(
     element: &'a ReferenceElement,
     material: &Material,
@@ -49,14 +49,14 @@ pub fn stiffness_points<'a>(
     }
 }
 
-/// True if cells of this kind have such modes in a material: linear quadrilaterals and hexahedra, but not around an
-/// axis.
+/// True if cells of this kind have incompatible modes for a material: linear quadrilaterals and hexahedra, but not
+/// around an axis.
 pub fn has_modes(element: &ReferenceElement, material: &Material) -> bool {
     let kind = (element.dim(), element.nodes(), material.stiffness.size());
     material.formulation == Formulation::IncompatibleModes && matches!(kind, (2, 4, 3) | (3, 8, 6))
 }
 
-/// Gradients of the shape functions at a point of an element with up to N nodes in D dimensions, where a strain has V
+/// Gradients of the shape functions at a quadrature point of an element with up to N nodes in D dimensions and V strain
 /// components, and the weight of that point.
 pub(super) struct PointGradients<const D: usize, const V: usize, const N: usize> {
     /// ∂N_i/∂x_d (1/m).
@@ -68,7 +68,7 @@ pub(super) struct PointGradients<const D: usize, const V: usize, const N: usize>
 }
 
 impl<const D: usize, const V: usize, const N: usize> PointGradients<D, V, N> {
-    /// The gradients at one point of the element with the nodes at `points`.
+    /// The gradients at one point of an element with nodes at `points`.
     #[inline(always)]
     pub fn new(reference: &TabulatedPoint, points: &[[f64; 3]]) -> Self {
         // J = ∂x/∂ξ
@@ -104,9 +104,9 @@ impl<const D: usize, const V: usize, const N: usize> PointGradients<D, V, N> {
         point
     }
 
-    /// The same with the gradients of the modes behind those of the nodes at `points`.
+    /// The same, with the gradients of the incompatible modes after those of the nodes at `points`.
     pub fn with_modes(mut self, reference: &TabulatedPoint, points: &[[f64; 3]]) -> Self {
-        // J at the center; the first four corners are those of a quadrilateral.
+        // J at the center; the first four corners of a hexahedron are those of a quadrilateral.
         let corners = ElementKind::Hexahedron8.reference().node_coordinates();
         let mut j = [[0.0; D]; D];
         for (x, corner) in points.iter().zip(corners) {

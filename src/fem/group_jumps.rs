@@ -1,4 +1,4 @@
-//! The jumps of a contact group in the place of displacements of its nodes.
+//! Jumps of a contact group as unknowns in place of displacements of its nodes.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,10 @@ use crate::contact::limits::Limits;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::substitution::Replaced;
 
-/// Square of the cosine between a direction and those that supports hold from which on they hold it.
+/// Squared cosine between a direction and those of the supports above which the supports constrain it.
 const ALONG: f64 = 0.5;
 
-/// The rows of a contact group: of its limits, and of the jumps of its ties.
+/// The rows of a contact group: those of its limits, and those of the jumps of its ties.
 #[derive(Clone, Debug)]
 pub struct JumpRows {
     limits: Vec<JumpRow>,
@@ -33,8 +33,8 @@ impl JumpRows {
 }
 
 impl ContactGroup {
-    /// The gaps that supports leave where what is free doesn't move (m), and ties: the bounds on the normal jumps t = b·x,
-    /// the tangential jumps at which the sides stick, and the jumps of ties.
+    /// Bounds of the normal jumps t = b·x, which are gaps reduced by prescribed displacements; the tangential jumps at
+    /// which the sides stick; and the jumps of ties (m).
     pub fn bounds(&self, loads: &GroupLoads, jumps: &Jumps) -> Vec<f64> {
         let frames = self.frames();
         let bound = |(condition, gap): (Condition, &f64)| {
@@ -49,11 +49,11 @@ impl ContactGroup {
         bounds
     }
 
-    /// The jumps of the conditions, for the displacements along the axes of their nodes that supports leave
-    /// free. They replace displacements of nodes that are `eliminated` where the points belong.
+    /// The jumps of the constraints as functions of the free displacements along the axes of their nodes. They replace
+    /// displacements at `eliminated` nodes, those of Γ that are eliminated at the group's node of the hierarchy.
     ///
     /// # Errors
-    /// A point that no displacement can be replaced for.
+    /// A point none of whose displacements can be replaced by its jump.
     pub fn jumps(&self, eliminated: &[u32]) -> Result<Jumps, NoUnknown> {
         let is_tied: Vec<bool> = self
             .conditions()
@@ -62,7 +62,7 @@ impl ContactGroup {
         self.solve_rows(&self.rows(), &|j| is_tied[j], eliminated)
     }
 
-    /// The rows of B on what is free along the axes of the nodes, a condition each.
+    /// The rows of B on the free displacements along the axes of the nodes, one for each constraint.
     fn rows(&self) -> Vec<JumpRow> {
         let frames = self.frames();
         let conditions = self.conditions();
@@ -94,11 +94,11 @@ impl ContactGroup {
         }
     }
 
-    /// The unknowns that the `closed` limits and the jumps of ties replace where all others are none; they keep their numbers among
-    /// the `rows` of all, of which those of ties come last.
+    /// The unknowns replaced by the `closed` limits and the jumps of ties, if all other limits are open. They are
+    /// numbered as in the `rows` of all, of which those of ties come last.
     ///
     /// # Errors
-    /// One that no displacement of a node that is `eliminated` can be replaced for: its number among the closed ones.
+    /// A jump that can't replace any displacement of an `eliminated` node: its number among the closed ones.
     pub fn replaced_by(
         &self,
         rows: &JumpRows,
@@ -120,13 +120,13 @@ impl ContactGroup {
         Ok(replaced)
     }
 
-    /// The terms of every limit, then of the jumps of ties, in the words of Γ.
+    /// The terms of every limit, then of the jumps of ties, by unknowns on Γ.
     pub fn terms_of(&self, rows: &JumpRows) -> Vec<Vec<(InterfaceDof, f64)>> {
         let terms = |row: &JumpRow| row.iter().map(|&(v, c)| (self.dof(v), c)).collect();
         rows.limits.iter().chain(&rows.tied).map(terms).collect()
     }
 
-    /// An unknown of the group in the words of Γ.
+    /// An unknown of the group as an unknown on Γ.
     fn dof(&self, v: u32) -> InterfaceDof {
         InterfaceDof {
             node: self.nodes[v as usize / self.dim].interface,
@@ -134,7 +134,7 @@ impl ContactGroup {
         }
     }
 
-    /// Traces that jumps replace, by the numbers of Γ, those that jumps of ties replace last.
+    /// Traces that jumps replace, by unknowns on Γ; those replaced by jumps of ties come last.
     pub fn replaced(&self, jumps: &Jumps) -> Vec<Replaced> {
         let unknowns = jumps.pivots.len();
         let replaced = |(pivot, is_tied): (&u32, bool)| {
@@ -162,7 +162,8 @@ impl ContactGroup {
         unknown.chain(tied).map(replaced).collect()
     }
 
-    /// The frames of the nodes; what supports prescribe in the first load step stands for all.
+    /// The frames of the nodes, with the prescribed displacements of the first load step; only their axes depend on no
+    /// step.
     pub(super) fn frames(&self) -> Vec<Frame> {
         let of_node = |node: &ContactNode| {
             let support = |(direction, values): &([f64; 3], Vec<f64>)| Support {
@@ -179,13 +180,13 @@ impl ContactGroup {
         self.nodes.iter().map(of_node).collect()
     }
 
-    /// True if a condition of a tie is left out, as a support has its place.
+    /// True if a constraint of a tie is dropped because a support constrains the same displacement.
     pub fn is_left_out(&self, condition: &Condition) -> bool {
         condition.is_tied && self.is_dropped(condition, &self.frames())
     }
 
-    /// True if a condition of a tie is left to the support of the node that has it: of several nodes opposite, which
-    /// lie beside it, it would ask what the support asks of it alone.
+    /// True if a constraint of a tie is dropped in favour of the support of its slave node: the opposite nodes lie
+    /// beside that node, and the constraint would repeat on them what the support prescribes.
     fn is_dropped(&self, condition: &Condition, frames: &[Frame]) -> bool {
         let point = &self.points[condition.point];
         let own = point.entries.iter().find(|(node, _)| {
@@ -204,7 +205,7 @@ impl ContactGroup {
             && own.is_some_and(|&(node, _)| is_held(node))
     }
 
-    /// The jump of a condition in terms of what is free along the axes of its nodes' frames.
+    /// The jump of a constraint in terms of the free displacements along the axes of its nodes.
     pub(super) fn row(&self, condition: &Condition, frames: &[Frame]) -> JumpRow {
         let mut row: BTreeMap<u32, f64> = BTreeMap::new();
         if condition.is_tied && self.is_dropped(condition, frames) {
@@ -217,7 +218,7 @@ impl ContactGroup {
                 *row.entry(v).or_default() += dot(push, frame.axes[axis]);
             }
         }
-        // A frame along the point's own normal leaves round-off on its other axes.
+        // Along the other axes of a frame that contains the point's normal, the coefficients are round-off.
         let sizes = self.row_of(condition).map(|(_, push)| length(push));
         let scale = sizes.fold(0.0, f64::max);
         row.retain(|_, c| c.abs() > 1e-14 * scale);

@@ -1,12 +1,13 @@
-//! The interaction integral of a crack tip over the cells of a block.
+//! Interaction integral of a crack tip over the cells of a block.
 //!
-//! With the near field a of K = 1, its stress s and strain e, the stress σ, and q = 1 at the tip and 0 outside a disc,
+//! With the near field a of K = 1, its stress s and strain e, the stress σ, and q = 1 around the tip and 0 outside a
+//! disc,
 //!
 //! > M = ∫ (σ_ij a_i,1 + s_ij u_i,1 − σ:e δ_1j) q,_j dx − ∫ e:σ⁰,₁ q dx − Σ f_j · W_j,   M = 2 H K,
 //!
-//! G = Kᵀ H K. σ⁰ is the initial stress. The last sum is the work of the forces that act within the disc: body forces, tractions on
-//! the crack faces, those of contact and of friction among them. They are f_j = ∫ Bᵀ σ at every node, as the solution is
-//! balanced, and W = q a,₁; on the faces, where a,₁ is singular, its mean with the shape function of the node.
+//! G = Kᵀ H K. σ⁰ is the initial stress. The last sum is the work of the forces within the disc: body forces, and
+//! tractions on the crack faces, including contact and friction. At equilibrium they are f_j = ∫ Bᵀ σ at every node; W
+//! = q a,₁, and on the faces, where a,₁ is singular, its mean weighted by the node's shape function.
 //!
 //! J. F. Yau, S. S. Wang, H. T. Corten, *A mixed-mode crack analysis of isotropic solids using conservation laws of
 //! elasticity*, J. Appl. Mech. 47 (1980); J. R. Walters, G. H. Paulino, R. H. Dodds, *Interaction integral procedures for
@@ -31,10 +32,10 @@ use super::elasticity::amplitudes;
 use super::gradients::{has_modes, stiffness_points};
 use super::near_field::{Gradient, NearField, strain, turned};
 
-/// Radius within which q = 1, over that of the disc.
+/// Radius within which q = 1, over the radius of the disc.
 const INNER: f64 = 0.5;
 
-/// M (Pa √m · m) for every radius of a disc and both modes.
+/// M (Pa √m · m) for discs of every radius and both modes.
 pub type Integrals = [[f64; 2]; RADII.len()];
 
 /// The disc around a crack tip.
@@ -49,7 +50,7 @@ pub struct TipDisc<'a> {
 }
 
 impl<'a> TipDisc<'a> {
-    /// The disc around a tip in its `material`; `None` where this has no near fields.
+    /// The disc around a tip in `material`; `None` if the material has no near fields.
     pub fn new(tip: &'a CrackTip, material: &Material) -> Option<Self> {
         let stiffness = Matrix3::from_row_slice(material.stiffness.values());
         let stiffness = turned(&stiffness, [tip.direction[0], tip.direction[1]]);
@@ -71,7 +72,7 @@ impl<'a> TipDisc<'a> {
         self.tip
     }
 
-    /// The components of a vector of the plane in the frame of the tip.
+    /// Components of a plane vector in the frame of the tip.
     fn turn(&self, x: [f64; 2]) -> [f64; 2] {
         let [cos, sin, _] = self.tip.direction;
         [cos * x[0] + sin * x[1], cos * x[1] - sin * x[0]]
@@ -83,13 +84,13 @@ impl<'a> TipDisc<'a> {
         self.turn([x[0] - tip[0], x[1] - tip[1]])
     }
 
-    /// q of a radius at a distance from the tip.
+    /// q for a disc of a given radius, at a distance from the tip.
     fn weight(&self, radius: usize, distance: f64) -> f64 {
         let outer = RADII[radius] * self.tip.radius;
         ((1.0 - distance / outer) / (1.0 - INNER)).clamp(0.0, 1.0)
     }
 
-    /// The nodes of a block in the frame of the tip; `None` where all lie outside the disc.
+    /// The nodes of a block in the frame of the tip; `None` if all lie outside the disc.
     fn nodes(&self, block: &Block) -> Option<Vec<LocalNode>> {
         let places = block.points().iter().map(|x| self.place(x));
         let nodes = places.zip(&block.subdomain.node_tags);
@@ -97,7 +98,7 @@ impl<'a> TipDisc<'a> {
         nodes.iter().any(LocalNode::is_near).then_some(nodes)
     }
 
-    /// A node at a place in the frame of the tip, by its tag.
+    /// A node at `place` in the frame of the tip, by its tag.
     fn node(&self, place @ [x, y]: [f64; 2], tag: i64) -> LocalNode {
         let distance = x.hypot(y);
         let q: [f64; RADII.len()] = std::array::from_fn(|radius| self.weight(radius, distance));
@@ -116,7 +117,7 @@ impl<'a> TipDisc<'a> {
         }
     }
 
-    /// The integrals over the cells of a block, for displacements `u`, node by node; `None` where no cell lies in the disc.
+    /// The integrals over the cells of a block for displacements `u`, node by node; `None` if no cell lies in the disc.
     pub fn integrals(
         &self,
         block: &Block,
@@ -143,7 +144,7 @@ impl<'a> TipDisc<'a> {
         sum
     }
 
-    /// Hands the integral over every cell in the disc, for the first so many `radii`, to `take`.
+    /// Calls `take` with the integral over every cell in the disc, for the first `radii` discs.
     fn each_cell(
         &self,
         block: &Block,
@@ -152,7 +153,7 @@ impl<'a> TipDisc<'a> {
         mut take: impl FnMut(&LocalCell<'_>, &[[OfCell; 2]]),
     ) {
         let mut rules: BTreeMap<(u8, usize), Vec<TabulatedPoint>> = BTreeMap::new();
-        // Most blocks of a scene lie elsewhere.
+        // Most blocks of a scene lie outside the disc.
         let Some(nodes) = self.nodes(block) else {
             return;
         };
@@ -199,7 +200,7 @@ impl<'a> TipDisc<'a> {
         }
     }
 
-    /// Appends the amplitudes of incompatible modes to the displacements of a cell that has some.
+    /// Appends the amplitudes of a cell's incompatible modes, if any, to its displacements.
     fn append_modes(&self, cell: &LocalCell<'_>, u: &mut Vec<[f64; 2]>) {
         if cell.has_modes {
             let of_nodes = u.concat();

@@ -9,7 +9,7 @@ use super::block::Block;
 pub struct BlockLoads {
     /// Prescribed displacements, in ascending order of the block's nodes.
     pub supports: Vec<Support>,
-    /// Forces on the block's nodes, of which a node may have several (N per metre of thickness).
+    /// Forces on the block's nodes; a node may have several (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
 }
 
@@ -22,8 +22,7 @@ impl BlockLoads {
         }
     }
 
-    /// Goes back from these loads to what acts part of the way from those `before` to them; from none to them, if
-    /// there are none.
+    /// Reduces these loads to `before` + `part` · (these − `before`); without loads before, to the `part` of these.
     pub fn go_back(&mut self, before: Option<&Self>, part: f64) {
         let forces = self.forces.iter_mut();
         forces.for_each(|(_, force)| *force = force.map(|f| part * f));

@@ -1,4 +1,4 @@
-//! The near fields of a crack tip: what K_I = 1 and K_II = 1 make around it, between faces without traction.
+//! Near fields of a crack tip: the fields of K_I = 1 and of K_II = 1, with traction-free faces.
 //!
 //! The displacement is u_i = √r f_i(θ) in the frame of the tip, x₁ along the crack. For isotropic materials after
 //! M. L. Williams, *On the stress distribution at the base of a stationary crack*, J. Appl. Mech. 24 (1957); for others
@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 
 use nalgebra::{Complex, Matrix2, Matrix3, Matrix4, Vector3};
 
-/// Difference of stiffnesses, relative to the largest, up to which a material is isotropic, and that of roots up to which
-/// these can't be told apart.
+/// Difference of stiffness coefficients, relative to the largest, up to which a material counts as isotropic;
+/// difference of roots up to which they count as equal.
 const SAME: f64 = 1e-6;
 
 /// A displacement gradient, ∂u_i/∂x_j.
@@ -31,13 +31,13 @@ pub struct NearField {
 enum Roots {
     /// The shear modulus (Pa) and Kolosov's constant.
     Isotropic { shear: f64, kolosov: f64 },
-    /// μ_k with p_k and q_k (1/Pa), by which they make displacements.
+    /// Roots μ_k, with p_k and q_k (1/Pa), the coefficients of displacements.
     Anisotropic([[Complex<f64>; 3]; 2]),
 }
 
 impl NearField {
-    /// The near fields in a material with this `stiffness` in the frame of the tip (Pa); `None` where the roots don't tell
-    /// them.
+    /// The near fields in a material with this `stiffness` in the frame of the tip (Pa); `None` if the roots don't
+    /// determine them.
     pub fn new(stiffness: Matrix3<f64>) -> Option<Self> {
         let c = &stiffness;
         let size = c.amax();
@@ -59,7 +59,7 @@ impl NearField {
         Some(Self { stiffness, roots })
     }
 
-    /// H of the energy release rate G = Kᵀ H K (1/Pa).
+    /// H in the energy release rate G = Kᵀ H K (1/Pa).
     pub fn compliance(&self) -> Matrix2<f64> {
         match &self.roots {
             Roots::Isotropic { shear, kolosov } => {
@@ -77,7 +77,7 @@ impl NearField {
         }
     }
 
-    /// f_i and f_i' at an angle θ of the fields of K_I and K_II (1/Pa).
+    /// f_i and f_i' at an angle θ for the fields of K_I and K_II (1/Pa).
     fn shapes(&self, angle: f64) -> [[[f64; 2]; 2]; 2] {
         let (sin, cos) = angle.sin_cos();
         match &self.roots {
@@ -125,14 +125,14 @@ impl NearField {
         }
     }
 
-    /// The displacement at a point of the frame of the tip of the field of K_I (0) or K_II (1) (√m).
+    /// Displacement at a point, in the frame of the tip, of the field of K_I (0) or K_II (1) (√m).
     #[cfg(test)]
     pub(super) fn displacement(&self, mode: usize, distance: f64, angle: f64) -> [f64; 2] {
         let shape = self.shapes(angle)[mode];
         shape.map(|[f, _]| distance.sqrt() * f)
     }
 
-    /// ∂a_i/∂x_j at a point of the frame of the tip of the fields a of K_I and K_II (1/√m).
+    /// ∂a_i/∂x_j at a point, in the frame of the tip, of the fields a of K_I and K_II (1/√m).
     pub fn gradients(&self, distance: f64, angle: f64) -> [Gradient; 2] {
         let (sin, cos) = angle.sin_cos();
         let scale = 1.0 / distance.sqrt();
@@ -145,19 +145,19 @@ impl NearField {
         self.shapes(angle).map(|of_mode| of_mode.map(gradient))
     }
 
-    /// The stress of a gradient, (xx, yy, xy).
+    /// The stress of a displacement gradient, (xx, yy, xy).
     pub fn stress(&self, gradient: &Gradient) -> Vector3<f64> {
         self.stiffness * strain(gradient)
     }
 }
 
-/// The strain of a gradient, (xx, yy, γ_xy).
+/// The strain of a displacement gradient, (xx, yy, γ_xy).
 pub fn strain(gradient: &Gradient) -> Vector3<f64> {
     let [[xx, xy], [yx, yy]] = *gradient;
     Vector3::new(xx, yy, xy + yx)
 }
 
-/// The roots of a compliance S (1/Pa) above the real axis.
+/// The roots with positive imaginary part for a compliance S (1/Pa).
 fn anisotropic(s: &Matrix3<f64>) -> Option<Roots> {
     let lead = s[(0, 0)];
     let [cubic, square, linear, constant] = [
@@ -190,9 +190,9 @@ fn anisotropic(s: &Matrix3<f64>) -> Option<Roots> {
     Some(Roots::Anisotropic([of_root(a), of_root(b)]))
 }
 
-/// C in a frame whose first axis is (cos α, sin α), of that in the axes of space (Pa).
+/// C in the frame whose first axis is (cos α, sin α), from C in Cartesian axes (Pa).
 pub fn turned(stiffness: &Matrix3<f64>, [cos, sin]: [f64; 2]) -> Matrix3<f64> {
-    // Strains in the axes of space from those in the frame.
+    // Maps strains in the frame to strains in Cartesian axes.
     #[rustfmt::skip]
     let back = Matrix3::new(
         cos * cos, sin * sin, -sin * cos,

@@ -1,4 +1,4 @@
-//! Patches: the cells around a vertex, and the polynomial that is nearest to their stresses.
+//! Patches: the cells around a vertex, and the least-squares polynomial of their stresses.
 //!
 //! Zienkiewicz and Zhu, The superconvergent patch recovery and a posteriori error estimates, part 1,
 //! Int. J. Numer. Meth. Eng. 33 (1992).
@@ -12,29 +12,29 @@ use crate::vector::axpy;
 /// Entries of the lower triangle of the normal equations.
 const GRAM: usize = TERMS * (TERMS + 1) / 2;
 
-/// Largest difference from a full turn of the sum of angles around a vertex within a body (rad).
+/// Largest deviation from 2π of the sum of angles around an interior vertex (rad).
 const FULL_TURN: f64 = 1e-6;
 /// Pivot, relative to a unit diagonal, below which samples don't determine a polynomial.
 const DETERMINED: f64 = 1e-6;
 
-/// The normal equations of the polynomial around a vertex that is nearest to samples of the stress.
-/// Least-squares data of a patch; those of several blocks add up.
+/// The normal equations of the least-squares polynomial of the stress around a vertex; those of the parts of a patch in
+/// several blocks are added.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(into = "Sums", from = "Sums")]
 pub struct PatchSum {
     dim: usize,
-    /// The rotation by the angles of all cells, in space by half their solid angles, cosine and sine; 0 where there
-    /// are none.
+    /// Cosine and sine of the sum of the cells' angles at the vertex, in space of half their solid angles; both 0
+    /// without cells.
     turn: [f64; 2],
-    /// True if any of its cells is linear, and any quadratic.
+    /// True if any of its cells is linear, or any quadratic.
     has_linear: bool,
     has_quadratic: bool,
     gram: [f64; GRAM],
-    /// The components of a term one after the other.
+    /// The components of each term, term by term.
     load: [f64; 6 * TERMS],
 }
 
-/// The entries of a patch sum that there are in its dimension.
+/// The entries of a patch sum in its dimension, without unused ones.
 #[derive(Serialize, Deserialize)]
 struct Sums {
     dim: usize,
@@ -90,7 +90,7 @@ impl PatchSum {
         }
     }
 
-    /// Takes all cells out, which is faster than making an empty one.
+    /// Removes all cells, which is faster than creating an empty patch.
     pub fn clear(&mut self) {
         let (gram, load) = self.parts();
         self.gram[..gram].fill(0.0);
@@ -106,14 +106,14 @@ impl PatchSum {
         (terms * (terms + 1) / 2, terms * components(self.dim))
     }
 
-    /// Adds a cell with an angle at the vertex, in space half a solid angle, given by its cosine and sine.
+    /// Adds a cell by cosine and sine of its angle at the vertex, in space of half its solid angle.
     pub fn add_cell(&mut self, turn: [f64; 2], is_quadratic: bool) {
         self.add_turn(turn);
         self.has_linear |= !is_quadratic;
         self.has_quadratic |= is_quadratic;
     }
 
-    /// Adds the stress (Pa) at a point, given from the vertex on (m).
+    /// Adds the stress (Pa) at a point relative to the vertex (m).
     pub fn add_sample(&mut self, at: [f64; 3], stress: &NodalStress) {
         match (self.dim, self.has_quadratic) {
             (2, true) => self.add_terms::<6, 4>(at, stress),
@@ -123,7 +123,7 @@ impl PatchSum {
         }
     }
 
-    /// Adds the equations of a point for N terms and C components.
+    /// Adds the equations of a point, for N terms and C components.
     fn add_terms<const N: usize, const C: usize>(&mut self, at: [f64; 3], stress: &NodalStress) {
         let terms: [f64; N] = monomials(at, if C == 4 { 2 } else { 3 });
         let mut entry = 0;
@@ -136,7 +136,7 @@ impl PatchSum {
         }
     }
 
-    /// Rotations take no arctangent.
+    /// Adds an angle by rotation, without an arctangent.
     fn add_turn(&mut self, [cos, sin]: [f64; 2]) {
         self.turn = match (self.is_empty(), self.turn) {
             (true, _) => [cos, sin],
@@ -154,8 +154,8 @@ impl PatchSum {
         self.turn == [0.0; 2]
     }
 
-    /// The polynomial: quadratic where all cells are, else linear; where the samples
-    /// don't determine it, or lie on one side of the vertex only, one of lower degree.
+    /// The polynomial: quadratic if all cells are, else linear; of lower degree if the samples don't determine it, or
+    /// the vertex is at the boundary.
     pub fn fit(&self) -> Polynomial {
         let (linear, quadratic): (Solve, Solve) = match self.dim {
             2 => (Self::solve::<3, 4>, Self::solve::<6, 4>),
@@ -169,8 +169,8 @@ impl PatchSum {
             true => quadratic(self),
             false => None,
         };
-        // A quadratic cell alone has a linear stress; as many linear ones as there are terms have no better than a
-        // mean.
+        // A single quadratic cell gives a linear stress; as many linear cells as there are terms give no better fit
+        // than their mean.
         let enough = (self.dim + 1) as f64 + if self.has_linear { 1.0 } else { 0.0 };
         let is_enough = self.is_inner() || self.gram[0] >= enough;
         let linear = || match is_enough {
@@ -191,7 +191,7 @@ impl PatchSum {
                 entry += 1;
             }
         }
-        // A unit diagonal: lengths drop out.
+        // Scaling to a unit diagonal removes the length scale.
         let scale: [f64; N] = std::array::from_fn(|i| gram[(i, i)].sqrt().recip());
         for i in 0..N {
             for j in 0..N {
@@ -219,7 +219,7 @@ impl PatchSum {
         Some(polynomial)
     }
 
-    /// Adds what another block has of the patch.
+    /// Adds the part of the patch in another block.
     pub fn add(&mut self, other: &Self) {
         if !other.is_empty() {
             self.add_turn(other.turn);
@@ -232,7 +232,7 @@ impl PatchSum {
     }
 }
 
-/// The way to a polynomial of some degree.
+/// Solution of the normal equations for a polynomial of some degree.
 type Solve = fn(&PatchSum) -> Option<Polynomial>;
 
 #[cfg(test)]
@@ -287,7 +287,7 @@ mod tests {
         plane.map(|(i, &[x, y])| [x, y, height(i)]).collect()
     }
 
-    /// A point of the plane, or above it in space.
+    /// A point of a plane, which is inclined in space.
     fn above(dim: usize, x: f64, y: f64) -> [f64; 3] {
         [x, y, if dim == 2 { 0.0 } else { 0.4 * x - 0.7 * y }]
     }

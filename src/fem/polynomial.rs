@@ -1,4 +1,4 @@
-//! Stresses that vary as polynomials of the place.
+//! Stresses that are polynomials of the position.
 
 use crate::vector::axpy;
 use serde::{Deserialize, Serialize};
@@ -14,21 +14,21 @@ pub(super) const fn components(dim: usize) -> usize {
     if dim == 2 { 4 } else { 6 }
 }
 
-/// Terms of a quadratic polynomial; of a linear one there are one more than dimensions.
+/// Number of terms of a quadratic polynomial; a linear one has `dim` + 1.
 pub(super) const fn terms(dim: usize) -> usize {
     (dim + 1) * (dim + 2) / 2
 }
 
-/// A stress that varies as a polynomial of the place, seen from a vertex.
+/// A stress that is a polynomial of the position relative to a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(into = "Coefficients", from = "Coefficients")]
 pub struct Polynomial {
     dim: usize,
-    /// The components of a term one after the other.
+    /// The components of each term, term by term.
     pub(super) coefficients: [f64; 6 * TERMS],
 }
 
-/// The coefficients of a polynomial that there are in its dimension.
+/// The coefficients of a polynomial in its dimension, without unused ones.
 #[derive(Serialize, Deserialize)]
 struct Coefficients {
     dim: usize,
@@ -71,7 +71,7 @@ impl Polynomial {
         rows.take(terms(self.dim))
     }
 
-    /// Value at a point, given from the vertex on (m).
+    /// Value at a point relative to the vertex (m).
     pub fn at(&self, at: [f64; 3]) -> NodalStress {
         let mut value = [0.0; 6];
         let monomials: [f64; TERMS] = monomials(at, self.dim);
@@ -81,7 +81,7 @@ impl Polynomial {
         value
     }
 
-    /// The same polynomial as it is seen from a point.
+    /// The same polynomial, expressed relative to the point `at`.
     #[must_use]
     pub fn seen_from(&self, at: [f64; 3]) -> Self {
         let mut seen = *self;
@@ -97,15 +97,14 @@ impl Polynomial {
         seen
     }
 
-    /// Adds a multiple of another one that is seen from the same point.
+    /// Adds a multiple of another polynomial, expressed relative to the same point.
     pub fn add(&mut self, factor: f64, other: &Self) {
         let others = &other.coefficients[..components(self.dim) * terms(self.dim)];
         axpy(factor, others, &mut self.coefficients);
     }
 }
 
-/// Polynomials around nodes, in as little memory as they need: there is one for every vertex of a
-/// mesh.
+/// Polynomials of nodes in compact storage, as there is one for every vertex of a mesh.
 #[derive(Clone, Debug)]
 pub struct Polynomials {
     dim: usize,
@@ -114,7 +113,7 @@ pub struct Polynomials {
 }
 
 impl Polynomials {
-    /// Zeros for `count` nodes, of linear polynomials alone or of quadratic ones too.
+    /// Zeros for `count` nodes, for linear polynomials only or for quadratic ones, too.
     pub fn zeros(dim: usize, count: usize, are_linear: bool) -> Self {
         let width = components(dim) * if are_linear { dim + 1 } else { terms(dim) };
         Self {
@@ -132,14 +131,14 @@ impl Polynomials {
         polynomial
     }
 
-    /// Sets that of a node; of a quadratic one, among linear ones, its linear terms.
+    /// Sets the polynomial of a node; in storage for linear ones, only the linear terms of a quadratic polynomial.
     pub fn set(&mut self, node: usize, polynomial: &Polynomial) {
         let values = &mut self.values[self.width * node..][..self.width];
         values.copy_from_slice(&polynomial.coefficients[..self.width]);
     }
 }
 
-/// The first N of 1, the coordinates, their products.
+/// The first N monomials: 1, the coordinates, their products.
 pub(super) fn monomials<const N: usize>(at: [f64; 3], dim: usize) -> [f64; N] {
     let mut terms = [0.0; N];
     terms[0] = 1.0;
@@ -156,7 +155,7 @@ pub(super) fn monomials<const N: usize>(at: [f64; 3], dim: usize) -> [f64; N] {
     terms
 }
 
-/// Derivatives of the terms along an axis.
+/// Derivatives of the monomials along an axis.
 fn slopes(at: [f64; 3], dim: usize, axis: usize) -> [f64; TERMS] {
     let mut slopes = [0.0; TERMS];
     slopes[axis + 1] = 1.0;

@@ -15,7 +15,7 @@ pub struct Prescribed {
 }
 
 impl Prescribed {
-    /// Displacements that `loads` prescribe in a block.
+    /// The displacements prescribed in a block by `loads`.
     pub fn new(block: &Block, loads: &BlockLoads) -> Self {
         let dim = block.dim;
         let mut constants = vec![0.0; dim * block.nodes()];

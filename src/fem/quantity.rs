@@ -1,4 +1,4 @@
-//! Quantities of the solution and their derivatives, as the report has them.
+//! Quantities of interest of the solution and their derivatives, for the report.
 
 use contact_dd_partition::id::OnBlocks;
 use schemars::JsonSchema;
@@ -40,10 +40,10 @@ pub struct Derivative {
 pub struct Quantities {
     /// Their values and derivatives, in the order of the scene.
     pub values: Vec<QuantityValue>,
-    /// Contact points whose status is about to change, in words.
+    /// Contact points whose status is about to change, as text.
     pub about_to_change: Vec<String>,
-    /// Parts of the cells of every block of this rank in the estimated error of the first one.
+    /// Contributions of the cells of every block of this rank to the estimated error of the first quantity.
     pub errors_of_cells: OnBlocks<Vec<f64>>,
-    /// Why there are no derivatives, or none of a quantity, in words.
+    /// Reason why derivatives, or those of one quantity, are missing, as text.
     pub without_derivatives: Option<String>,
 }

@@ -1,8 +1,8 @@
-//! Stress recovery at nodes: superconvergent patches around vertices.
+//! Stress recovery at nodes by superconvergent patches around vertices.
 //!
-//! A vertex within a body and a material has the polynomial of its own patch; one at their boundary has the mean
-//! of its neighbours' within. A node on an edge or in a face has the mean of what the vertices of
-//! its cell say there.
+//! A vertex in the interior of a body and of a material uses the polynomial of its own patch; one on their boundary
+//! uses the mean of its interior neighbours' polynomials. A node on an edge or in a face uses the mean of the
+//! polynomials of its cell's vertices.
 
 use std::collections::BTreeMap;
 
@@ -12,22 +12,22 @@ use super::block::{Block, BlockCell};
 use super::patch::PatchSum;
 use super::polynomial::{NodalStress, Polynomial, Polynomials};
 
-/// A block's part of the patches around the vertices in one material, and what comes of them.
+/// A block's part of the patches around the vertices in one material, and the recovered polynomials.
 #[derive(Clone, Debug)]
 pub struct Recovery {
     material: usize,
     /// Polynomials around the block's vertices, by node.
     polynomials: Polynomials,
-    /// Nodes that cells surround.
+    /// Flags of the nodes surrounded by cells.
     is_inner: Vec<bool>,
     /// Patches on Γ, in the order of the block's interface.
     shared: Vec<PatchSum>,
-    /// Sums of neighbours' polynomials around vertices at the boundary, and how many these are.
+    /// Sums of neighbours' polynomials around vertices on the boundary, and the number of these neighbours.
     neighbours: BTreeMap<usize, (Polynomial, f64)>,
 }
 
 impl Recovery {
-    /// Takes the `patches` around the block's nodes in one material.
+    /// The recovery from the `patches` around the block's nodes in one material.
     pub fn new(block: &Block, material: usize, patches: &[PatchSum]) -> Self {
         let shared = (block.interface.iter())
             .map(|&(node, _)| patches[node as usize])
@@ -53,21 +53,20 @@ impl Recovery {
         self.material
     }
 
-    /// Patches on Γ that hold any cell: the place in the block's interface and the patch.
+    /// Non-empty patches on Γ: the place in the block's interface and the patch.
     pub fn shared(&self) -> impl Iterator<Item = (usize, &PatchSum)> {
         let shared = self.shared.iter().enumerate();
         shared.filter(|(_, patch)| !patch.is_empty())
     }
 
-    /// Puts the whole patch in the place of this block's part.
+    /// Replaces this block's part of a patch by the whole patch.
     pub fn set_shared(&mut self, block: &Block, place: usize, whole: &PatchSum) {
         let node = block.interface[place].0 as usize;
         self.polynomials.set(node, &whole.fit());
         self.is_inner[node] = whole.is_inner();
     }
 
-    /// Adds up, for the vertices at the boundary, what this block's cells say of their neighbours
-    /// within.
+    /// Sums, for the vertices on the boundary, the polynomials of their interior neighbours in this block's cells.
     pub fn gather_neighbours(&mut self, block: &Block) {
         for cell in block.cells().filter(|cell| cell.material == self.material) {
             let corners = corners(&cell);
@@ -86,8 +85,7 @@ impl Recovery {
         }
     }
 
-    /// The vertices on Γ at the boundary: their place in the block's interface, the sum over
-    /// neighbours and their number.
+    /// The boundary vertices on Γ: their place in the block's interface, the sum over neighbours and their number.
     pub fn shared_neighbours(
         &self,
         block: &Block,
@@ -99,7 +97,7 @@ impl Recovery {
         })
     }
 
-    /// Puts the sum over the neighbours in all blocks in the place of this block's.
+    /// Replaces this block's sum over neighbours by that over all blocks.
     pub fn set_neighbours(&mut self, block: &Block, place: usize, sum: Polynomial, count: f64) {
         let node = block.interface[place].0 as usize;
         self.neighbours.insert(node, (sum, count));
@@ -139,7 +137,7 @@ impl Recovery {
     }
 }
 
-/// The nodes of a cell's corners.
+/// The nodes at a cell's corners.
 fn corners(cell: &BlockCell<'_>) -> impl Iterator<Item = usize> + Clone {
     cell.nodes()
         .take(cell.kind.corners())

@@ -1,4 +1,4 @@
-//! Forces and moments that contacts and supports carry.
+//! Resultant forces and moments of contacts and supports.
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::element::geometry::{advance, cross, length};
@@ -13,11 +13,11 @@ use super::quantity::{Quantities, QuantityValue};
 use super::stress_intensity::StressIntensity;
 use super::tightened_bolt::TightenedBolt;
 
-/// Part of its cohesion that a point which slips can lack by round-off.
+/// Relative difference of a slipping point's force from its cohesion that may be round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Penetration over the largest displacement from which on it is worth a warning: on a curve what a facet has whose length is
-/// a third of what is closed.
+/// Penetration over the largest displacement above which a warning is given: on a curved surface it corresponds to a
+/// facet of a third of the contact's length.
 const SEEN: f64 = 0.05;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane; around an axis the force
@@ -37,7 +37,7 @@ impl Resultant {
         self.moment = advance(self.moment, 1.0, cross(at, force));
     }
 
-    /// True if it isn't one of the plane.
+    /// True if it has components out of the plane.
     pub fn is_spatial(&self) -> bool {
         self.force[2] != 0.0 || self.moment[..2] != [0.0; 2]
     }
@@ -79,7 +79,7 @@ pub struct ContactResultant {
     pub held: f64,
 }
 
-/// The penetration of a contact at the nodes of the side without conditions.
+/// Penetration of a contact at the nodes of the side without constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Probed {
     /// Tag of the node that penetrates farthest.
@@ -102,7 +102,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Adds what friction does elsewhere.
+    /// Adds the friction of other points.
     fn add(&mut self, other: Self) {
         self.sticking += other.sticking;
         self.slipping += other.slipping;
@@ -111,7 +111,7 @@ impl Friction {
 }
 
 impl ContactResultant {
-    /// Adds what a point carries.
+    /// Adds the forces and status of a point.
     pub fn add(&mut self, point: &ContactPoint<u32>, state: &ContactState) {
         self.closed += usize::from(state.closed);
         self.on_b = point.tag_a == -1;
@@ -123,7 +123,7 @@ impl ContactResultant {
             });
             self.parting += usize::from(is_parting(point, state));
         }
-        // What a coupling carries acts on its reference point, too: loads and reactions tell.
+        // The forces of a coupling also act on its reference point, where loads and reactions report them.
         if point.is_equation() && point.tag() == -1 {
             return;
         }
@@ -152,9 +152,9 @@ impl ContactResultant {
         self.largest_overclosure = self.largest_overclosure.max(overclosure);
     }
 
-    /// The warnings of a mesh on which a contact can't be right, in `dim` dimensions; `error` is the estimate of its error.
+    /// Warnings of a mesh too coarse for a contact, in `dim` dimensions; `error` is the estimated error.
     fn of_mesh(&self, dim: usize, units: Units, error: Option<f64>) -> Vec<String> {
-        // Where nothing presses, no mesh is too coarse.
+        // Without pressure no mesh is too coarse.
         let Some(probed) = self.probed.filter(|_| self.largest_pressure > 0.0) else {
             return Vec::new();
         };
@@ -190,12 +190,12 @@ impl ContactResultant {
     }
 }
 
-/// A part of one in words.
+/// A fraction as a percentage.
 fn percent(part: f64) -> String {
     format!("{} %", short(100.0 * part))
 }
 
-/// True if a point slips below the bound of its law, as one without pressure may under a part of its cohesion.
+/// True if a point slips below the bound of its law, as happens without pressure at a part of the cohesion.
 fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
     let Law::Coulomb {
         coefficient,
@@ -240,7 +240,7 @@ pub struct Resultants {
 }
 
 impl Resultants {
-    /// Contacts of a problem that carry nothing yet, and reactions.
+    /// The resultants of a problem's contacts, all zero, and `reactions`.
     pub fn new(catalog: &Catalog, reactions: Vec<Reaction>) -> Self {
         let contacts = catalog.contacts.iter().map(|contact| ContactResultant {
             name: contact.name.clone(),
@@ -256,14 +256,14 @@ impl Resultants {
         }
     }
 
-    /// Puts the quantities of a load step among them.
+    /// Adds the quantities of a load step.
     pub fn put(&mut self, quantities: Quantities) {
         self.quantities = quantities.values;
         self.about_to_change = quantities.about_to_change;
         self.without_derivatives = quantities.without_derivatives;
     }
 
-    /// Makes them those of forces all around an axis: what isn't along it cancels, and so do moments.
+    /// Turns the forces into sums all around an axis: components not along the axis cancel, and so do moments.
     pub fn sum_around_axis(&mut self) {
         let contacts = self
             .contacts
@@ -279,7 +279,7 @@ impl Resultants {
         }
     }
 
-    /// State and work of friction in all contacts; `None` where there is none.
+    /// State and work of friction in all contacts; `None` if there is none.
     pub fn friction(&self) -> Option<Friction> {
         let all = self.contacts.iter().filter_map(|contact| contact.friction);
         all.reduce(|mut sum, friction| {
@@ -288,14 +288,14 @@ impl Resultants {
         })
     }
 
-    /// Contacts that can't be right on the mesh of a problem, of whose error there may be an estimate, in words.
+    /// Warnings of contacts for which the mesh is too coarse; `error` is the estimated error, if known.
     pub fn warnings_of_mesh(&self, catalog: &Catalog, error: Option<f64>) -> Vec<String> {
         let contacts = self.contacts.iter();
         let words = contacts.flat_map(|contact| contact.of_mesh(catalog.dim, catalog.units, error));
         words.collect()
     }
 
-    /// Contacts whose law leaves open what some of their points carry, in words.
+    /// Warnings of contacts whose law leaves the force of some points indeterminate.
     pub fn warnings(&self) -> Vec<String> {
         let parting = self.contacts.iter().filter(|contact| contact.parting > 0);
         let words = parting.map(|contact| {

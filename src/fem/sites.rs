@@ -1,4 +1,4 @@
-//! Sites, runs of unknowns that belong together, and the order in which the interior ones are eliminated.
+//! Sites, the runs of unknowns treated as one in orderings, and the elimination order of the interior ones.
 
 use super::block::Block;
 use crate::schur::ordering::nested_dissection;
@@ -11,7 +11,7 @@ pub(super) struct Sites {
     pub starts: Vec<u32>,
     /// The site of each node's own unknowns, if it has any.
     pub of_node: Vec<u32>,
-    /// The next unknown.
+    /// Number of the next unknown.
     pub next: u32,
 }
 
@@ -30,13 +30,13 @@ impl Sites {
         self.starts.len() - 1
     }
 
-    /// The next unknown.
+    /// Takes the number of the next unknown.
     pub fn unknown(&mut self) -> u32 {
         self.next += 1;
         self.next - 1
     }
 
-    /// Ends the current site; one without unknowns is none.
+    /// Ends the current site, unless it has no unknowns.
     pub fn end(&mut self) {
         if self.starts.last() != Some(&self.next) {
             self.starts.push(self.next);

@@ -1,9 +1,9 @@
-//! The tangents along which contact points can slip, where supports hold nodes around them.
+//! Tangents along which contact points can slip, where supports constrain nodes around them.
 //!
-//! On a plane of symmetry a point slips along one line alone. Its normal is that of a mesh, so it leaves the plane by as
-//! much as facets differ from the surface, and the nodes opposite have a small part in the jump out of the plane. As a
-//! condition of its own that jump would be a thousandth or less of a displacement, as stiff as the square of its inverse: a
-//! limit that nothing but round-off decides.
+//! On a plane of symmetry a point slips along one line only. As its normal is that of the mesh, which deviates from the
+//! surface, it points out of the plane slightly, and the opposite nodes have a small component in the jump out of the
+//! plane. As a constraint of its own, that jump would be a thousandth of a displacement or less, with a stiffness that
+//! grows with the inverse square: round-off alone would determine its status.
 
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -14,16 +14,17 @@ use crate::contact::jumps::JumpRow;
 
 /// Square of a row, relative to that of another one, that is round-off.
 const NO_ROW: f64 = 1e-28;
-/// The same of what supports that prescribe no displacement leave of a row: a tangent along which the jump is up to a
-/// thousandth of the displacements is none.
+/// The same for the part of a row left free by supports that prescribe zero displacement: a tangent counts as
+/// constrained if the jump along it is at most a thousandth of the displacements.
 const HELD: f64 = 1e-6;
 /// No tangent.
 const NONE: [f64; 3] = [0.0; 3];
 
 impl ContactGroup {
-    /// Turns the tangents of points around which supports hold nodes. Where a point can slip but along one direction of a
-    /// plane, that is the first, so that there is no condition along the second; where it can't at all it has none. What
-    /// the normal jump alone moves along a tangent, where the normal isn't along what is held, is no slip.
+    /// Rotates the tangents of points around which supports constrain nodes. If a point can slip along one direction
+    /// only, that becomes the first tangent, and there is no constraint along the second; if it can't slip at all, it
+    /// has no tangents. A tangential jump proportional to the normal jump, where the normal deviates from the
+    /// constrained directions, is no slip.
     pub(super) fn take_slip_directions(&mut self) {
         let frames = self.frames();
         for point in 0..self.points.len() {
@@ -33,7 +34,7 @@ impl ContactGroup {
         }
     }
 
-    /// The tangents along which a point can slip, where that aren't all of its frame.
+    /// The tangents along which a point can slip, if they are not all tangents of its frame.
     fn slip_directions(&self, point: usize, frames: &[Frame]) -> Option<[[f64; 3]; 2]> {
         let of_point = &self.points[point];
         if of_point.law.is_tied() {
@@ -70,7 +71,7 @@ impl ContactGroup {
         }
     }
 
-    /// True if supports hold nodes of a point, and prescribe no displacement but 0.
+    /// True if supports constrain nodes of a point, with zero prescribed displacement only.
     fn is_held_fast(&self, point: usize) -> bool {
         let nodes = self.points[point].entries.iter();
         let mut nodes = nodes.map(|(node, _)| &self.nodes[*node as usize]);
@@ -80,8 +81,8 @@ impl ContactGroup {
     }
 }
 
-/// Cosine and sine of the angle by which rows are to be turned so that the square of the second is at most `negligible`;
-/// `None` where both are needed or nothing already, or one is.
+/// Cosine and sine of the rotation of two rows after which the square of the second is at most `negligible`; `None` if
+/// both rows are needed, or one is zero already.
 fn only_direction(a: &JumpRow, b: &JumpRow, negligible: f64) -> Option<(f64, f64)> {
     if a.is_empty() || b.is_empty() {
         return None;
@@ -119,8 +120,8 @@ mod tests {
     use super::*;
     use crate::fem::contact_node::ContactNode;
 
-    /// A node of a plane of symmetry, z = 0, under a normal that leaves it by `tilt`, before one of that plane and one beside
-    /// it, of which the latter has the weight `beside`.
+    /// Tangents of a node on a plane of symmetry, z = 0, with a normal tilted out of it by `tilt`, opposite a node of
+    /// that plane and one beside it, of which the latter has the weight `beside`.
     fn tangents(tilt: f64, beside: f64) -> [[f64; 3]; 2] {
         let node = |interface: u32| ContactNode {
             is_auxiliary: false,

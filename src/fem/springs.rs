@@ -9,7 +9,7 @@ use super::dofs::Dofs;
 use crate::schur::pattern::SparseSymmetric;
 use crate::vector::dot;
 
-/// The rows of K_s u of a block of K_s: its node and what it adds there, for both nodes where these are two.
+/// The rows of K_s u for a block of K_s: node and contribution, for one or both of its nodes.
 fn rows<'a>(
     spring: &'a SpringBlock,
     dim: usize,
@@ -34,8 +34,8 @@ fn rows<'a>(
     })
 }
 
-/// The forces of the springs of `block` on its nodes at displacements `u`, node by node: condition, node and force (N per
-/// metre of thickness).
+/// The forces of the springs of `block` on its nodes at displacements `u`: constraint, node and force (N per metre of
+/// thickness).
 pub fn spring_forces<'a>(
     block: &'a Block,
     u: &'a [f64],
@@ -46,7 +46,7 @@ pub fn spring_forces<'a>(
     })
 }
 
-/// Adds Tᵀ K_s T.
+/// Adds Tᵀ K_s T to the stiffness.
 pub(super) fn add_springs(block: &Block, dofs: &Dofs, stiffness: &mut SparseSymmetric) {
     let dim = block.dim;
     for spring in &block.subdomain.springs {
@@ -69,7 +69,7 @@ pub(super) fn add_springs(block: &Block, dofs: &Dofs, stiffness: &mut SparseSymm
         if a != b {
             reduced += reduced.transpose();
         }
-        // The lower triangle speaks for both, so that round-off can't make them differ.
+        // The lower triangle is used for both, so that round-off can't make the matrix unsymmetric.
         stiffness.add(&unknowns, |i, j| reduced[(i.max(j), i.min(j))]);
     }
 }

@@ -1,28 +1,28 @@
-//! Large strains: where they are, small strains are no approximation.
+//! Large strains, for which the small-strain approximation fails.
 
 use serde::{Deserialize, Serialize};
 
 use super::elasticity::principal_stresses;
 use super::gradients::Voigt;
 
-/// Strain from which on small strains are no approximation: what is of second order is a twentieth of it.
+/// Strain above which the small-strain approximation counts as invalid: terms of second order are a twentieth of it.
 pub const LARGE: f64 = 0.05;
 
-/// The largest mean strain of a cell among some, and how much of them has large ones.
+/// The largest mean strain of any of some cells, and the measure of those with large ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LargestStrain {
     /// max |ε_i| over its principal strains.
     pub size: f64,
     /// The middle of the cell (m).
     pub at: [f64; 3],
-    /// The measure of cells with strains above [`LARGE`] (m², m³).
+    /// The measure of the cells with strains above [`LARGE`] (m², m³).
     pub large: f64,
-    /// The measure of all.
+    /// The measure of all cells.
     pub whole: f64,
 }
 
 impl LargestStrain {
-    /// Counts the `strain`, of so many components, of a cell of a `measure` whose middle is `at`.
+    /// Includes the `strain` of a cell, with this number of components, `measure`, and center `at`.
     pub fn include(
         &mut self,
         strain: &Voigt,
@@ -34,7 +34,7 @@ impl LargestStrain {
         let tensor = tensor(strain, components);
         let squares: f64 = tensor.iter().map(|e| e * e).sum();
         let shear: f64 = tensor[3..].iter().map(|e| e * e).sum();
-        // No principal strain is larger than the norm of the tensor.
+        // No principal strain exceeds the norm of the tensor.
         if squares + shear <= self.size.min(LARGE).powi(2) {
             return;
         }
@@ -47,7 +47,7 @@ impl LargestStrain {
         }
     }
 
-    /// Adds what other cells have; returns whether the largest strain is theirs.
+    /// Merges the data of other cells; returns true if the largest strain is theirs.
     pub fn add(&mut self, other: Self) -> bool {
         let is_larger = other.size > self.size;
         if is_larger {
@@ -59,7 +59,7 @@ impl LargestStrain {
     }
 }
 
-/// (XX, YY, ZZ, XY, YZ, XZ) of a strain, as of a stress: with half of γ.
+/// The strain tensor (XX, YY, ZZ, XY, YZ, XZ), with γ/2 in place of γ.
 fn tensor(strain: &Voigt, components: usize) -> [f64; 6] {
     let [xx, yy, zz, yz, xz, xy] = *strain;
     match components {
@@ -81,7 +81,7 @@ mod tests {
             assert!((largest.size - size).abs() < 1e-15, "{largest:?} {size}");
             assert_eq!(largest.at[0], size);
         };
-        // A pure shear γ has ±γ/2; what the plane has no room for doesn't count.
+        // A pure shear γ has principal strains ±γ/2; unused components don't count.
         is_now([0.0, 0.0, 0.2, 9.0, 9.0, 9.0], 3, 0.1);
         is_now([0.0, 0.0, 0.0, 0.4, 9.0, 9.0], 4, 0.2);
         is_now([0.0, 0.0, -0.25, 0.0, 0.0, 0.0], 4, 0.25);

@@ -1,5 +1,4 @@
-//! Stresses: the mean over each cell, at nodes by recovery, and the error that their difference
-//! tells of.
+//! Stresses: the mean over each cell, recovered values at nodes, and the error estimated from their difference.
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::definition::Domain;
@@ -28,7 +27,7 @@ pub struct BlockStress {
     pub recoveries: Vec<Recovery>,
 }
 
-/// Stresses at nodes and what they say of the cells' error.
+/// Recovered stresses at nodes and the estimated errors of the cells.
 #[derive(Clone, Debug)]
 pub struct RecoveredStress {
     /// The block's materials, ascending.
@@ -40,7 +39,7 @@ pub struct RecoveredStress {
 }
 
 impl BlockStress {
-    /// The stresses for displacements `u`, node by node; `patches` is memory that may be used.
+    /// The stresses for displacements `u`, node by node; `patches` is memory for reuse.
     pub fn new(
         block: &Block,
         materials: &[Material],
@@ -97,8 +96,8 @@ impl BlockStress {
         }
     }
 
-    /// The stresses at nodes, and the estimate, for the same displacements; `initial` is the stress of cells that needs
-    /// none, empty where there is none.
+    /// Recovered stresses at nodes and the error estimate, for the same displacements; `initial` is the initial stress
+    /// of the cells, which isn't recovered, or empty.
     pub fn recover(
         &mut self,
         block: &Block,
@@ -166,15 +165,14 @@ impl RecoveredStress {
     }
 }
 
-/// True if the stress is the same everywhere in a cell: that of a linear triangle or tetrahedron, but not around an
-/// axis.
+/// True if the stress is uniform in a cell: in linear triangles and tetrahedra, but not around an axis.
 fn is_uniform(kind: ElementKind, material: &Material) -> bool {
     let is_ring = material.stiffness.size() == 4;
     !is_ring && kind.is_linear() && matches!(kind.domain(), Domain::Triangle | Domain::Tetrahedron)
 }
 
-/// The points of a cell whose stresses are smoothed: those at which it is better than elsewhere, or where it bends by
-/// modes all of them.
+/// The points at which a cell's stress is sampled for recovery: its superconvergent points, or with incompatible modes
+/// all quadrature points.
 fn stress_points<'a>(cell: &'a BlockCell<'_>, material: &Material) -> &'a [TabulatedPoint] {
     match has_modes(&cell.kind, material) {
         true => stiffness_points(&cell.kind, material),
@@ -192,7 +190,7 @@ struct LocalCell {
 }
 
 impl LocalCell {
-    /// Room for a cell.
+    /// An empty cell, whose memory is reused.
     fn empty() -> Self {
         Self {
             kind: ElementKind::Triangle3,
@@ -246,7 +244,7 @@ impl LocalCell {
         middle
     }
 
-    /// Position of a point (m).
+    /// Position of a quadrature point (m).
     fn place(&self, point: &TabulatedPoint) -> [f64; 3] {
         let mut at = [0.0; 3];
         for (n, x) in point.shape.iter().zip(&self.points) {
@@ -255,7 +253,7 @@ impl LocalCell {
         at
     }
 
-    /// The stress at a point.
+    /// The stress at a quadrature point.
     fn stress(
         &self,
         point: &TabulatedPoint,
@@ -293,8 +291,8 @@ impl LocalCell {
         [cos / length, sin / length]
     }
 
-    /// The directions of the edges at a corner: in the plane from the one after it to the one before it, in space all
-    /// three.
+    /// The directions of the edges at a corner: in the plane that to the next corner, then that to the previous one; in
+    /// space all three.
     fn edges(&self, corner: usize) -> [[f64; 3]; 3] {
         let mut edges = [[0.0; 3]; 3];
         let at_corner = self.kind.edges_at(corner);

@@ -1,4 +1,4 @@
-//! Stress intensity of crack tips, as the report has it.
+//! Stress intensity factors of crack tips, for the report.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

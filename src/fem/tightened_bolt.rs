@@ -1,4 +1,4 @@
-//! Force and shortening of a bolt that is tightened.
+//! Force and shortening of tightened bolts.
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::dot;
@@ -20,7 +20,7 @@ pub struct TightenedBolt {
 }
 
 impl TightenedBolt {
-    /// The first points of the pretensions of a problem with the nodes of their cut alone, whose jump is the shortening.
+    /// The first point of each pretension of a problem, with the nodes of its cut only; its jump is the shortening.
     pub fn points<N: Copy>(catalog: &Catalog, points: &[ContactPoint<N>]) -> Vec<ContactPoint<N>> {
         let is_first = |point: &&ContactPoint<N>| {
             let kind = catalog.contacts[point.contact as usize].kind;
@@ -35,8 +35,8 @@ impl TightenedBolt {
         all
     }
 
-    /// The bolt `name` of a point of these in a load step, with its `jump` (m); `held` is the multiplier λ of what holds its
-    /// shortening, if anything does (N).
+    /// The bolt `name` of such a point in a load step, with its `jump` (m); `held` is the multiplier λ of the
+    /// constraint that holds the shortening, if there is one (N).
     pub fn new<N: Copy>(
         name: &str,
         point: &ContactPoint<N>,

@@ -43,8 +43,8 @@ fn support(node: u32, direction: [f64; 3], value: f64) -> Support {
     }
 }
 
-/// A square that is held at an inclined support and at another node, and shares two nodes with the rest of the
-/// world, one of which is held in part.
+/// A square with an inclined support and another one, which shares two nodes with other subdomains; a support
+/// constrains one of these partly.
 fn scene() -> Block {
     let mut square = square();
     square.supports = vec![
@@ -70,7 +70,7 @@ fn vector(u: &[f64], node: usize) -> [f64; 3] {
     [u[2 * node], u[2 * node + 1], 0.0]
 }
 
-/// Unknowns with nothing special about them.
+/// Arbitrary values of the unknowns.
 fn unknowns(dofs: &Dofs) -> Vec<f64> {
     (0..dofs.len()).map(|i| (1.3 * i as f64).sin()).collect()
 }
@@ -92,9 +92,9 @@ fn traces_come_last_and_are_the_displacement_of_nodes_on_the_interface() {
     let names = dofs.interface_dofs.iter().map(|dof| (dof.node, dof.axis));
     assert!(names.eq([(4, 0), (4, 1), (7, 1)]));
     assert_eq!(vector(&u, 2)[..2], x[1..3]);
-    // The free axis of node 1 is y, one way or the other.
+    // The free axis of node 1 is y, in either direction.
     assert_eq!(u[3].abs(), x[3].abs());
-    // 8 components less 4 that are prescribed.
+    // 8 components minus 4 prescribed ones.
     assert_eq!(dofs.len(), 4);
 }
 
@@ -116,7 +116,7 @@ fn loads_work_on_unknowns_what_they_work_on_displacements() {
 fn of_a_node_that_slides_the_displacement_along_its_normal_alone_is_on_the_interface() {
     let mut block = scene();
     let normal = [0.6, -0.8, 0.0];
-    // Supports of node 1 have its frame.
+    // Node 1 has the frame of its supports.
     block.slides = [(1, normal), (2, normal)].into();
     let (dofs, prescribed) = dofs_of(&block);
     let names = dofs.interface_dofs.iter().map(|dof| (dof.node, dof.axis));
@@ -125,7 +125,7 @@ fn of_a_node_that_slides_the_displacement_along_its_normal_alone_is_on_the_inter
     let mut x = unknowns(&dofs);
     let before = prescribed.displacement(&dofs, &x);
     assert!((dot(vector(&before, 2), normal) - x[2]).abs() < 1e-15);
-    // Whatever the interior does leaves it there.
+    // The interior doesn't change that displacement.
     x[..2].fill(0.75);
     let after = prescribed.displacement(&dofs, &x);
     assert!((dot(vector(&after, 2), normal) - x[2]).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! Elements against what is known of linear displacements and uniform stresses.
+//! Elements compared with exact results for linear displacements and uniform stresses.
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::geometry::cross;
@@ -8,7 +8,7 @@ use contact_dd_partition::model::Formulation;
 use super::*;
 
 const C: [[f64; 3]; 3] = [[3.0, 1.0, 0.2], [1.0, 2.5, -0.1], [0.2, -0.1, 0.9]];
-/// ∂u_i/∂x_j, and the strain of it in the plane and in space.
+/// ∂u_i/∂x_j, and its strain in the plane and in space.
 const SLOPES: [[f64; 3]; 3] = [[0.1, 0.2, -0.5], [-0.3, 0.4, 0.6], [0.7, -0.8, 0.9]];
 const PLANE_STRAIN: [f64; 6] = [0.1, 0.4, -0.1, 0.0, 0.0, 0.0];
 const STRAIN: [f64; 6] = [0.1, 0.4, 0.9, -0.2, 0.2, -0.1];
@@ -38,7 +38,7 @@ fn cells() -> impl Iterator<Item = ElementKind> {
     [2, 3].into_iter().flat_map(ElementKind::of_dim)
 }
 
-/// A cell of no special shape, its edges curved where they can be.
+/// A cell of irregular shape, with curved edges if its kind has them.
 fn points(kind: ElementKind) -> Vec<[f64; 3]> {
     let nodes = kind.node_coordinates().iter();
     nodes
@@ -114,7 +114,7 @@ fn stiffness_is_symmetric_and_rigid_motions_cost_nothing() {
     }
 }
 
-/// ∫ Bᵀ σ for a uniform stress is ∮ N σ n, with nothing at nodes inside.
+/// ∫ Bᵀ σ for a uniform stress is ∮ N σ n, 0 at interior nodes.
 #[test]
 fn the_forces_of_a_uniform_stress_are_its_tractions_on_the_facets() {
     for kind in cells() {
@@ -181,7 +181,7 @@ fn principal_stresses_and_von_mises_of_known_states() {
     assert_eq!(von_mises(&[5.0, 5.0, 5.0, 0.0, 0.0, 0.0]), 0.0);
 }
 
-/// Two points in each direction see 3 strains in the plane and 6 in space at each of them, and no more.
+/// Two points in each direction sample 3 strain components each in the plane and 6 in space.
 #[test]
 fn a_reduced_integration_leaves_as_many_motions_without_energy_as_it_has_too_few_points() {
     for kind in cells() {

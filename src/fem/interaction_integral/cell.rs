@@ -1,4 +1,4 @@
-//! The nodes, cells and points of a crack tip's disc, in the frame of the tip.
+//! Nodes, cells and quadrature points of a crack tip's disc, in the frame of the tip.
 
 use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::element::quadrature::TabulatedPoint;
@@ -7,18 +7,18 @@ use nalgebra::Vector3;
 use crate::fem::gradients::{MAX_PLANE_NODES, PointGradients};
 use crate::fem::near_field::Gradient;
 
-/// The radii of the discs that are evaluated, over that of the tip: the integral doesn't depend on it.
+/// Radii of the evaluated discs, over that of the tip; the exact integral doesn't depend on the radius.
 pub(super) const RADII: [f64; 3] = [1.0, 0.75, 0.5];
 /// Degree of the quadrature of near fields.
 pub(super) const DEGREE: usize = 6;
-/// Size of a cell over its distance from the tip up to which a lower degree integrates near fields to 2e-6, and that degree
-/// where displacements are linear and where they aren't.
+/// Size of a cell over its distance from the tip up to which a lower degree integrates near fields to 2e-6, and that
+/// degree for linear and for other displacements.
 const FAR: [(f64, [usize; 2]); 2] = [(0.04, [2, 4]), (0.12, [4, 5])];
 
-/// W of both modes.
+/// W for both modes.
 pub(super) type Work = [[f64; 2]; 2];
 
-/// A node in the frame of the tip: its place (m), and q and W for every radius.
+/// A node in the frame of the tip: its position (m), and q and W for every radius.
 pub(super) struct LocalNode {
     pub place: [f64; 2],
     pub q: [f64; RADII.len()],
@@ -38,7 +38,8 @@ pub(super) struct LocalCell<'n> {
     pub initial: Vec<Vector3<f64>>,
 }
 
-/// M of a cell: what is linear in u, by nodes and then by incompatible modes, in the frame of the tip, and the rest.
+/// M of a cell: the coefficients of u, by nodes and then by incompatible modes, in the frame of the tip, and the
+/// constant part.
 #[derive(Default)]
 pub(super) struct OfCell {
     pub slopes: Vec<[f64; 2]>,
@@ -53,7 +54,7 @@ impl LocalNode {
 }
 
 impl OfCell {
-    /// Makes it that of a cell with so many `places` to which nothing is added yet.
+    /// Resets the integral to zero, for a cell with this number of nodes and modes.
     pub fn clear(&mut self, places: usize) {
         self.slopes.clear();
         self.slopes.resize(places, [0.0; 2]);
@@ -62,13 +63,14 @@ impl OfCell {
 }
 
 impl LocalCell<'_> {
-    /// True if the near fields have no part in its integrals over so many discs: q is the same all over it in each.
+    /// True if the near fields don't contribute to its integrals over the first `radii` discs, because q is constant on
+    /// the cell in each.
     pub fn is_flat(&self, radii: usize) -> bool {
         let is_flat = |pair: &[&LocalNode]| pair[0].q[..radii] == pair[1].q[..radii];
         self.initial.is_empty() && self.nodes.windows(2).all(is_flat)
     }
 
-    /// Degree of the quadrature of near fields: they vary the less over a cell, the farther it is from the tip.
+    /// Degree of the quadrature of near fields, which vary less over cells farther from the tip.
     pub fn degree(&self) -> usize {
         let distance = |of: &[f64; 3]| of[0].hypot(of[1]);
         let nearest = self
@@ -88,7 +90,7 @@ impl LocalCell<'_> {
     }
 }
 
-/// A point of a cell.
+/// A quadrature point of a cell.
 pub(super) struct LocalPoint {
     pub at: PointGradients<2, 3, MAX_PLANE_NODES>,
     /// σ⁰ (Pa), (xx, yy, xy).
@@ -115,7 +117,7 @@ impl LocalPoint {
         }
     }
 
-    /// Adds a multiple of what is linear in u, Σ factor_ij u_i,j, at the point.
+    /// Adds `multiple` times the linear form Σ factor_ij u_i,j at the point.
     pub fn add(&self, multiple: f64, factor: &Gradient, found: &mut OfCell) {
         let weight = multiple * self.at.weight;
         for (slope, g) in found.slopes.iter_mut().zip(&self.at.gradients) {

@@ -1,4 +1,4 @@
-//! The faces of a crack: W at their nodes, where the near field is singular.
+//! Crack faces: W at their nodes, where the near field is singular.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -9,8 +9,8 @@ use contact_dd_partition::element::ElementKind;
 use super::{DEGREE, RADII, TipDisc, Work};
 
 impl TipDisc<'_> {
-    /// W at the nodes of the faces: ∫ N q a,₁ ds over ∫ N ds. The traction of the node next to it stands for that of the tip, and
-    /// that of the node before for that of one outside the disc, around which some cells aren't looked at.
+    /// W at the nodes of the faces: ∫ N q a,₁ ds over ∫ N ds. The traction at the tip is taken from its neighbour, and
+    /// that at a node outside the disc from the node before it, because not all cells around these are evaluated.
     pub(super) fn work_on_faces(&self) -> BTreeMap<i64, [Work; RADII.len()]> {
         let mut sums: BTreeMap<i64, ([Work; RADII.len()], f64)> = BTreeMap::new();
         for facet in &self.tip.facets {
@@ -48,18 +48,18 @@ impl TipDisc<'_> {
     }
 }
 
-/// A point of a facet of a crack face.
+/// A quadrature point of a facet of a crack face.
 struct FacePoint {
     /// Distance from the tip (m).
     distance: f64,
-    /// The shape functions of the facet's nodes.
+    /// The shape functions of the facet's nodes at the point.
     shape: Vec<f64>,
-    /// Weight of quadrature times Jacobian (m).
+    /// Quadrature weight times Jacobian (m).
     weight: f64,
 }
 
 impl FacePoint {
-    /// The points of a facet: with ξ = 2η² − 1 what grows as 1/√r is a polynomial in η.
+    /// The quadrature points of a facet: with ξ = 2η² − 1, functions like 1/√r become polynomials in η.
     fn of(facet: &FaceFacet) -> Vec<Self> {
         let count = facet.nodes().len();
         let line = if count == 3 {

@@ -13,7 +13,7 @@ use super::*;
 const RINGS: usize = 24;
 const SECTORS: usize = 40;
 
-/// A tip whose crack points to 30°, in a disc of 1 m around (2, 1).
+/// A tip whose crack points in the direction of 30°, with a disc of 1 m around (2, 1).
 fn tip() -> CrackTip {
     let (sin, cos) = (PI / 6.0).sin_cos();
     let ring = |i: usize| i as f64 / RINGS as f64;
@@ -40,7 +40,7 @@ fn tip() -> CrackTip {
     }
 }
 
-/// Rings of quadrilaterals around it, within them triangles; tags are the numbers of nodes.
+/// Rings of quadrilaterals around the tip, with triangles in the innermost one; tags are node numbers.
 fn block(tip: &CrackTip) -> Block {
     let mut points = vec![tip.position];
     for i in 1..=RINGS {
@@ -106,7 +106,7 @@ fn orthotropic() -> Material {
     material([[9.0, 1.0, 0.0], [1.0, 3.0, 0.0], [0.0, 0.0, 0.8]])
 }
 
-/// K of a displacement of the plane, for all radii.
+/// K of a plane displacement field, for all radii.
 fn factors(
     material: &Material,
     u: impl Fn(&TipDisc<'_>, [f64; 2]) -> [f64; 2],
@@ -151,7 +151,7 @@ fn uniform_stress_with_its_tractions_on_the_faces_and_turned_bodies_have_none() 
 
 #[test]
 fn what_expands_freely_has_none() {
-    // u of the temperature x, by which the material expands alike in all directions: ε = x, 0 in shear.
+    // u of a temperature proportional to x, with isotropic thermal expansion: ε = x, no shear.
     let u = |_: &TipDisc<'_>, [x, y]: [f64; 2]| [0.5 * (x * x - y * y), x * y];
     let material = isotropic();
     let stress = |[x, _]: [f64; 2]| [-4.0 * x, -4.0 * x, 0.0, 0.0, 0.0, 0.0];
@@ -159,7 +159,7 @@ fn what_expands_freely_has_none() {
     assert!(k.iter().all(|k| k.norm() < 5e-3), "{k:?}");
 }
 
-/// Displacements without any pattern, and cells that bend by modes of their own, too.
+/// Arbitrary displacements, also with cells that have incompatible modes.
 #[test]
 fn weights_times_displacements_are_the_integral() {
     let tip = tip();

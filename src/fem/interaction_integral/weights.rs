@@ -1,19 +1,19 @@
-//! The interaction integral as weights of displacements.
+//! The interaction integral as a linear function of displacements.
 
 use contact_dd_partition::problem::InitialStress;
 
 use super::{Block, LocalCell, OfCell, TipDisc, amplitudes};
 
-/// M of both modes over a block: weights of its displacements, node by node, and what doesn't depend on them.
+/// M of both modes over a block: weights of its displacements, node by node, and the constant part.
 pub struct TipWeights {
     /// The weights.
     pub of_nodes: [Vec<f64>; 2],
-    /// The rest (Pa √m · m).
+    /// The constant part (Pa √m · m).
     pub constants: [f64; 2],
 }
 
 impl TipDisc<'_> {
-    /// M over the cells of a block in the largest disc; `None` where none lies in it.
+    /// M over the cells of a block in the largest disc; `None` if none lies in it.
     pub fn weights(&self, block: &Block, initial: &InitialStress) -> Option<TipWeights> {
         let mut sum = None;
         self.each_cell(block, initial, 1, |cell, found| {
@@ -34,14 +34,14 @@ impl TipDisc<'_> {
         sum
     }
 
-    /// The components along x and y of a vector in the frame of the tip.
+    /// Cartesian components of a vector given in the frame of the tip.
     fn turn_back(&self, x: [f64; 2]) -> [f64; 2] {
         let [cos, sin, _] = self.tip.direction;
         [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1]]
     }
 
-    /// The terms that are linear in the displacements of a cell's nodes, from which the amplitudes of its modes follow, in the
-    /// frame of the tip.
+    /// The coefficients of the displacements of a cell's nodes, with the amplitudes of its incompatible modes
+    /// eliminated, in the frame of the tip.
     fn without_modes(&self, cell: &LocalCell<'_>, found: &OfCell) -> Vec<f64> {
         let (nodes, modes) = found.slopes.split_at(cell.nodes.len());
         let (mut of_nodes, modes) = (nodes.concat(), modes.concat());
