@@ -8,8 +8,8 @@
 //! > u = arg min ½ uᵀ K u − fᵀ u   subject to   B u ≤ g,   (1)-(3)
 //!
 //! with a row of B, n·(u_a − u_b) ≤ g, for each [contact point](contact_dd_partition::contact_point) of a contact
-//! surface Γ_c; a is as a rule the slave side, b the master side. Rigid-body motions that neither supports nor contact restrain
-//! are found before anything is factorized ([`rigid`]).
+//! surface Γ_c; a is as a rule the slave side, b the master side. Rigid-body motions that neither supports nor contact
+//! restrain are found before anything is factorized ([`rigid`]).
 //!
 //! **The decomposition.** Bodies are divided into subdomains that are bonded on the interface Γ, which includes all
 //! nodes of Γ_c. T are the subdomains without contact, ϑ the pairs [k, l] in contact. Every rank [owns](plan) some of

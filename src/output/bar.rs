@@ -6,16 +6,16 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Time after which a log gets a sign of life.
+/// Time without output after which a line of progress is added to a log.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Interval at which a bar moves by itself.
+/// Interval at which the bar is redrawn without progress.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Steps of the bar.
+/// Resolution of the bar.
 const STEPS: u64 = 1000;
 
-/// Progress of a run: a bar on the terminal, now and then a line in a log.
+/// Progress of a run: a bar on the terminal, occasional lines in a log.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
@@ -26,7 +26,7 @@ pub struct Bar {
     began: Instant,
 }
 
-/// A part of a phase, such as a linear system, of which it is known how much is done.
+/// A part of a phase with known progress, such as a linear system.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     began: Instant,
@@ -41,7 +41,7 @@ impl Part {
         }
     }
 
-    /// Time that the rest of it takes at this pace (s); `None` where too little is done to tell.
+    /// Estimated time of the rest of the part at the present rate (s); `None` if too little is done for an estimate.
     fn seconds_left(self, elapsed: Duration) -> Option<f64> {
         let left = elapsed.as_secs_f64() * (1.0 - self.share) / self.share;
         (self.share > 0.02 && elapsed > 10 * TICK).then_some(left)
@@ -49,7 +49,7 @@ impl Part {
 }
 
 impl Bar {
-    /// A bar that is empty; `quiet` is one that never shows.
+    /// An empty bar; if `quiet`, it is never shown.
     pub fn new(quiet: bool) -> Self {
         let now = Instant::now();
         let shown = !quiet && stderr().is_terminal();
@@ -64,13 +64,13 @@ impl Bar {
             told: (!quiet && !shown).then(|| Cell::new(now)),
             began: now,
         };
-        // Before the first phase there is nothing to show.
+        // Nothing is shown before the first phase.
         bar.look("");
         bar
     }
 
     fn look(&self, template: &str) {
-        // The templates are constant; were one wrong, the default bar would do.
+        // The templates are constants; with a wrong one, the default bar would be used.
         if let Ok(style) = ProgressStyle::with_template(template) {
             self.bar.set_style(style.progress_chars("=> "));
         }
@@ -90,7 +90,7 @@ impl Bar {
         }
     }
 
-    /// So much of the phase, or of a part of it, is done; 0 begins another part.
+    /// Reports the `share` done of the phase, or of a part of it; 0 begins another part.
     pub fn done(&self, share: f64) {
         let mut part = self.part.get();
         if share == 0.0 {
@@ -116,24 +116,24 @@ impl Bar {
         self.phase.get()
     }
 
-    /// Time that the rest of the part takes at this pace (s), where that can be told.
+    /// Estimated time of the rest of the part at the present rate (s), if there is an estimate.
     pub fn seconds_left(&self) -> Option<f64> {
         let part = self.part.get();
         part.seconds_left(part.began.elapsed())
     }
 
-    /// Writes to the log, unless it has had a line of the run just now.
+    /// Writes a line to the log, unless it has had one recently.
     fn tell(&self, doing: impl FnOnce() -> String) {
         let Some(told) = &self.told else { return };
         if told.get().elapsed() > SILENCE {
             told.set(Instant::now());
             let seconds = self.began.elapsed().as_secs_f64();
-            // A closed pipe is no reason to stop a run that writes its results to a file.
+            // A closed pipe must not stop a run that writes its results to a file.
             let _ = writeln!(stdout(), "  after {seconds:.0} s: {}", doing());
         }
     }
 
-    /// Prints while the bar is out of the way.
+    /// Prints with the bar temporarily removed.
     pub fn aside(&self, print: impl FnOnce()) {
         self.bar.suspend(print);
     }
@@ -150,7 +150,7 @@ impl Drop for Bar {
     }
 }
 
-/// Remaining time, in words.
+/// Remaining time as text.
 pub fn in_words(seconds: f64) -> String {
     match seconds {
         s if s < 100.0 => format!("about {s:.0} s left"),

@@ -1,5 +1,5 @@
-//! The events of a run, of which the log is made: one JSON object in each line for programs, lines of text for people;
-//! errors and warnings in whichever format the log has.
+//! Events of a run, of which the log consists: one JSON object in each line for programs, lines of text for people;
+//! errors and warnings in the log's format.
 
 use std::env;
 use std::io::{self, Write, stderr};
@@ -25,21 +25,21 @@ pub struct Summary<'a> {
     pub title: &'a str,
     /// Number of degrees of freedom.
     pub dofs: usize,
-    /// Number of those on Γ.
+    /// Number of degrees of freedom on Γ.
     pub interface_dofs: usize,
     /// Number of subdomains.
     pub subdomains: usize,
     /// Number of pairs, or groups, in contact.
     pub contact_pairs: usize,
-    /// Number of contact conditions.
+    /// Number of contact constraints.
     pub contact_conditions: usize,
-    /// Number of those with friction.
+    /// Number of tangential constraints, those with friction.
     pub conditions_with_friction: usize,
     /// Number of ranks.
     pub ranks: usize,
     /// Number of threads of each rank.
     pub threads: usize,
-    /// Reason for the choice of the solver of contact conditions, in words.
+    /// Reason for the choice of the solver of contact constraints, as text.
     pub interface_choice: &'a str,
 }
 
@@ -48,36 +48,36 @@ pub struct Summary<'a> {
 pub struct Step<'a> {
     /// The number, from 1.
     pub step: usize,
-    /// Number of all.
+    /// Number of load steps.
     pub steps: usize,
     /// The name.
     pub name: &'a str,
     /// The time on the load path.
     pub time: f64,
-    /// The bodies and contacts that are absent in it.
+    /// The bodies and contacts that are absent in this step.
     #[serde(skip)]
     pub absent: Vec<String>,
-    /// Time that it and those to come take, about (s); none before the first one is solved.
+    /// Estimated time of this load step and the following ones (s); none before the first one is solved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds_left: Option<f64>,
 }
 
-/// Estimated cost of solving.
+/// Estimated cost of a solution.
 #[derive(Clone, Debug, Serialize)]
 pub struct Costs<'a> {
     /// Memory of all ranks (bytes).
     pub memory_bytes: f64,
     /// Memory of the largest rank (bytes).
     pub largest_rank_memory_bytes: f64,
-    /// Memory that their hosts have left (bytes).
+    /// Memory available on their hosts (bytes).
     pub available_bytes: f64,
     /// Arithmetic of all ranks (flop).
     pub flops: f64,
     /// Arithmetic of the busiest rank (flop).
     pub busiest_rank_flops: f64,
-    /// Reason for the choice of the solver of contact conditions, in words.
+    /// Reason for the choice of the solver of contact constraints, as text.
     pub interface_choice: &'a str,
-    /// Unknowns of the coarse problem of the iterative interface solver, about; none where it is direct.
+    /// Estimated number of coarse unknowns of the iterative interface solver; none with the direct one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coarse_dofs: Option<usize>,
 }
@@ -89,16 +89,16 @@ pub struct Finished<'a> {
     pub exit_code: u8,
     /// The result file.
     pub result: String,
-    /// Reason for which the sweeps ended, in words.
+    /// Reason why the sweeps ended, as text.
     pub reason: &'a str,
     /// The report.
     pub report: &'a Report,
-    /// The problem, whose units its numbers have.
+    /// The problem, for the units of the numbers.
     #[serde(skip)]
     pub catalog: &'a Catalog,
 }
 
-/// One line of the log; `event` names its kind. Numbers that aren't finite are `null`.
+/// A line of the log; `event` names its kind. Numbers that aren't finite are `null`.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event<'a> {
@@ -108,77 +108,77 @@ pub enum Event<'a> {
     Settings {
         /// The settings, as in the report.
         settings: &'a Settings,
-        /// The origin of each.
+        /// The origin of each setting.
         settings_from: &'a Origins,
     },
-    /// The run comes to another phase.
+    /// The start of a phase of the run.
     Phase {
         /// The name.
         phase: &'static str,
-        /// Number of its steps, where that is known.
+        /// Number of its steps, if known.
         #[serde(skip_serializing_if = "Option::is_none")]
         steps: Option<usize>,
-        /// Since the run began (s).
+        /// Time since the start of the run (s).
         seconds: f64,
     },
-    /// A load step begins, where the problem has any.
+    /// The start of a load step, if the problem has any.
     Step(&'a Step<'a>),
-    /// So much of a phase is done, once a second.
+    /// Progress of a phase, once a second.
     Progress {
-        /// The name.
+        /// The name of the phase.
         phase: &'static str,
-        /// The share of it, or of the linear system that is iterated in it.
+        /// Fraction done of the phase, or of the iterative solution of a linear system in it.
         done: f64,
-        /// Since the run began (s).
+        /// Time since the start of the run (s).
         seconds: f64,
-        /// Time that the rest of it takes, about (s).
+        /// Estimated remaining time (s).
         #[serde(skip_serializing_if = "Option::is_none")]
         seconds_left: Option<f64>,
     },
-    /// A sweep is done.
+    /// The end of a sweep.
     Sweep(&'a SweepRecord),
     /// A warning.
     Warning {
         /// Text of the warning.
         message: &'a str,
     },
-    /// Estimated cost of solving; in place of `finished` where it was `--check`.
+    /// Estimated cost of a solution; with `--check` it replaces `finished`.
     Check(&'a Costs<'a>),
-    /// The run has ended and its results are written.
+    /// The end of the run, with its results written.
     Finished(&'a Finished<'a>),
-    /// The run has failed; on stderr.
+    /// The failure of the run; on stderr.
     Error {
         /// The exit code of the program.
         exit_code: u8,
-        /// Place, and expectation.
+        /// Where the failure is, and what was expected.
         message: &'a str,
     },
 }
 
 impl Event<'_> {
-    /// Writes the event as a line.
+    /// Writes the event as a line of JSON.
     ///
     /// # Errors
     /// `out` can't be written.
     pub fn write(&self, mut out: impl Write) -> io::Result<()> {
         let line = serde_json::to_string(self)? + "\n";
-        // In one piece: a launcher may be speaking, too.
+        // One write for the whole line, because a launcher may write at the same time.
         out.write_all(line.as_bytes())
     }
 }
 
-/// Prints why the program ends with `exit_code`.
+/// Prints the error with which the program ends, and its `exit_code`.
 pub fn error(log: LogFormat, exit_code: u8, message: &str) {
     match log {
         LogFormat::Text => message::error(message),
-        // Where it can't be printed there is nobody to tell.
+        // An error in printing the error can't be reported.
         LogFormat::Json => {
             let _ = Event::Error { exit_code, message }.write(stderr());
         }
     }
 }
 
-/// Prints what the user should know.
+/// Prints a warning.
 pub fn warning(log: LogFormat, message: &str) {
     match log {
         LogFormat::Text => message::warning(message),
@@ -188,7 +188,7 @@ pub fn warning(log: LogFormat, message: &str) {
     }
 }
 
-/// Leaves colours out of everything that is printed, unless the environment insists on them.
+/// Turns colours off in all output, unless the environment forces them.
 pub fn without_colours() {
     let forced = env::var_os("CLICOLOR_FORCE").is_some_and(|value| value != "0");
     if !forced {

@@ -1,8 +1,8 @@
-//! The lock on an output, by which one run at a time writes it.
+//! A lock on an output, so that only one run at a time writes it.
 //!
-//! A lock of the operating system on `.NAME.lock` beside the output: it ends with the process that holds it, however
-//! that ends, and on network file systems that pass locks on (NFS, Lustre with `flock`, GPFS, BeeGFS, CephFS) it holds
-//! for all hosts. What stands in the file is for messages, and for file systems without locks.
+//! It is a lock of the operating system on `.NAME.lock` beside the output. It ends with the process that holds it,
+//! however that ends, and holds across hosts on network file systems that support it (NFS, Lustre with `flock`, GPFS,
+//! BeeGFS, CephFS). The file's content is for messages, and for file systems without locks.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
@@ -15,25 +15,25 @@ use contact_dd_partition::destination::{beside, failure};
 use contact_dd_partition::error::OutputError;
 use rustix::system::uname;
 
-/// Time to wait for a lock: that of a run which was killed holds until the system has taken back its memory.
+/// Time to wait for a lock: the lock of a killed run holds until the system has released its memory.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Time between two tries.
+/// Time between two attempts.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// The right to write an output, until it is dropped.
+/// Exclusive right to write an output, until it is dropped.
 #[derive(Debug)]
 pub struct OutputLock {
     path: PathBuf,
-    // Closed, and the lock with it, after the file is gone.
+    // Closed after the removal of the file; closing releases the lock.
     _file: File,
 }
 
 impl OutputLock {
-    /// Takes the lock on `output`, also that of a run that is gone.
+    /// Takes the lock on `output`, including a stale one of a run that has ended.
     ///
     /// # Errors
-    /// Another run has it, which the message names by host and process; a folder that can't be written.
+    /// Another run holds it, which the message names by host and process; a folder that can't be written.
     pub fn take(output: &Path) -> Result<Self, OutputError> {
         let path = beside(output, "lock")?;
         let since = Instant::now();
@@ -54,12 +54,12 @@ impl OutputLock {
 
 impl Drop for OutputLock {
     fn drop(&mut self) {
-        // Where it can't be removed it is as good as none: nobody holds it.
+        // If it can't be removed, it does no harm, as no process holds it.
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// Reason for which a lock can't be had.
+/// Reason why a lock can't be taken.
 enum Refusal {
     Held(String),
     System(io::Error),
@@ -71,7 +71,7 @@ impl From<io::Error> for Refusal {
     }
 }
 
-/// The locked file; `None` where its holder has taken it away since it was opened.
+/// The locked file; `None` if its holder has removed it since it was opened.
 fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
     let mut options = OpenOptions::new();
     options.read(true).write(true).create(true).truncate(false);
@@ -86,7 +86,7 @@ fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
             let who = holder.map_or_else(String::new, |holder| format!(": {holder}"));
             return Err(Refusal::Held(format!("another run writes it{who}")));
         }
-        // The file system has no locks.
+        // The file system doesn't support locks.
         Err(TryLockError::Error(_)) => match holder {
             Some(holder) if holder.may_live() => {
                 return Err(Refusal::Held(format!(
@@ -114,8 +114,8 @@ fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Holder {
     process: u32,
-    /// Start of the process, as Linux counts (ticks since that of the host); another process of the same number began at
-    /// another time.
+    /// Start time of the process as counted by Linux (ticks since the host's start); it distinguishes processes with
+    /// the same number.
     began: u64,
     host: String,
 }
@@ -148,7 +148,7 @@ impl Holder {
         })
     }
 
-    /// True if it may still be there: processes of another host are invisible.
+    /// True if the process may still run; processes of other hosts can't be checked.
     fn may_live(&self) -> bool {
         self.host != this_host() || beginning(self.process) == Some(self.began)
     }
@@ -164,10 +164,10 @@ fn this_host() -> String {
     uname().nodename().to_string_lossy().into_owned()
 }
 
-/// Start of a process of this host; `None` where there is none.
+/// Start time of a process of this host; `None` if there is none.
 fn beginning(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name, in brackets, may have spaces and brackets; what follows has neither.
+    // The process name, in parentheses, may contain spaces and parentheses; the fields after it don't.
     let (_, fields) = status.rsplit_once(')')?;
     fields.split_whitespace().nth(19)?.parse().ok()
 }
@@ -186,13 +186,13 @@ mod tests {
         for words in ["result.vtkhdf", "another run writes it", &process] {
             assert!(refused.contains(words), "{refused}");
         }
-        // By another name it is the same file.
+        // A symbolic link names the same file.
         fs::write(&output, "of yesterday").unwrap();
         let link = folder.path().join("link");
         std::os::unix::fs::symlink(&output, &link).unwrap();
         OutputLock::take(&link).unwrap_err();
         OutputLock::take(&folder.path().join("other.vtkhdf")).unwrap();
-        // Who is on the way out is waited for.
+        // A holder about to end is waited for.
         let waiting = thread::spawn(move || drop(OutputLock::take(&link).unwrap()));
         thread::sleep(2 * PAUSE);
         drop(held);

@@ -1,4 +1,4 @@
-//! The report: what a run was, in JSON.
+//! The report of a run, in JSON.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -188,7 +188,7 @@ pub struct Report {
 impl Report {
     /// The report as JSON.
     pub fn to_json(&self) -> String {
-        // It holds neither maps nor anything else that JSON couldn't.
+        // The report contains nothing that JSON can't represent.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 }
@@ -212,7 +212,7 @@ pub struct Build {
 }
 
 impl Build {
-    /// This program's, with `mpi` for the MPI library.
+    /// The build of this program, with `mpi` for the MPI library.
     pub fn of_this_program(mpi: String) -> Self {
         let (major, minor, release) = hdf5::library_version();
         Self {
@@ -229,17 +229,17 @@ impl Build {
 /// Destination of a report.
 #[derive(Debug)]
 pub enum ReportFile {
-    /// A file, under a temporary name until it is whole.
+    /// A file, under a temporary name until it is complete.
     File(Destination),
-    /// A place that isn't a file, a terminal or a pipe.
+    /// A target that isn't a regular file, such as a terminal or a pipe.
     Stream(PathBuf),
 }
 
 impl ReportFile {
-    /// Makes the temporary file.
+    /// Creates the temporary file.
     ///
     /// # Errors
-    /// The file can't be made: no such folder, no permission, a name that a folder has.
+    /// The file can't be created: a missing folder, no permission, the name of a folder.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
         let stream = fs::metadata(path).is_ok_and(|at| !at.is_file() && !at.is_dir());
         Ok(match stream {
@@ -248,7 +248,7 @@ impl ReportFile {
         })
     }
 
-    /// Writes the report, a line of JSON or several, and gives the file its name.
+    /// Writes the report as one or several lines of JSON, and gives the file its final name.
     ///
     /// # Errors
     /// The file can't be written.

@@ -1,4 +1,4 @@
-//! Results that the ranks hand over to be written.
+//! Results that ranks send to the root for writing.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub struct PartitionSize {
 }
 
 impl PartitionSize {
-    /// Adds the size of another.
+    /// Adds the size of another subdomain.
     pub(super) fn add(&mut self, other: &Self) {
         self.points += other.points;
         self.cells += other.cells;
@@ -24,18 +24,18 @@ impl PartitionSize {
     }
 }
 
-/// The entity that a list has a row for.
+/// The entity to which each row of a list belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Per {
     Node,
     Cell,
     NodeOfCell,
-    /// Starts of cells, one more than cells in each subdomain.
+    /// Start of each cell and the end of the last: one row more than cells in each subdomain.
     StartOfCell,
 }
 
 impl Per {
-    /// Rows of so many subdomains of this `size` together.
+    /// Number of rows of this many subdomains of this total `size`.
     pub(super) fn rows(self, size: &PartitionSize, subdomains: usize) -> usize {
         match self {
             Self::Node => size.points,
@@ -52,15 +52,15 @@ pub(super) enum Of {
     /// The mesh, the same in every load step.
     Mesh,
     Solution,
-    /// Left out where stresses are.
+    /// Left out if stresses are.
     Stress,
-    /// Left out where no load step adds or removes anything.
+    /// Left out if no load step adds or removes bodies or contacts.
     Presence,
-    /// Left out where stresses are, or where the scene asks for no quantity.
+    /// Left out if stresses are, or if the scene has no quantities.
     Quantity,
 }
 
-/// A list as the file has it.
+/// A list as stored in the file.
 pub(super) struct ListField {
     /// Name of the rows in messages.
     pub(super) what: &'static str,
@@ -73,11 +73,10 @@ pub(super) struct ListField {
 /// Defines the lists of [`SubdomainResults`], each with its [`ListField`].
 macro_rules! lists {
     ($($(#[$doc:meta])* $list:ident: $row:ty, $what:literal, $place:literal, $per:ident, $of:ident;)*) => {
-        /// The solution on consecutive subdomains: each list holds what belongs to the first one, then
-        /// what belongs to the next, in the types that the file has.
+        /// The solution on consecutive subdomains: each list contains the rows of the first one, then those of the
+        /// next, and so on, in the types of the file.
         ///
-        /// Stresses are (Pa) in the order XX, YY, ZZ, XY, YZ, XZ; their lists are empty where they are
-        /// left out.
+        /// Stresses are in Pa, in the order XX, YY, ZZ, XY, YZ, XZ; their lists are empty if stresses are left out.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct SubdomainResults {
             /// Number of the first subdomain.
@@ -88,21 +87,21 @@ macro_rules! lists {
         }
 
         impl SubdomainResults {
-            /// Empties all lists for subdomains from `first` on. Their memory stays: fresh pages cost as
-            /// much as what is written into them.
+            /// Empties all lists for subdomains from `first` on, but keeps their memory: touching new pages costs as
+            /// much as writing the data.
             pub fn restart(&mut self, first: usize) {
                 self.first = first;
                 self.sizes.clear();
                 $(self.$list.clear();)*
             }
 
-            /// Appends those of the next subdomains.
+            /// Appends the rows of the next subdomains.
             pub fn append(&mut self, next: Self) {
                 self.sizes.extend(next.sizes);
                 $(self.$list.extend(next.$list);)*
             }
 
-            /// All lists, always in the same order.
+            /// All lists, in a fixed order.
             pub(super) fn lists(&self) -> Vec<(ListField, &dyn List)> {
                 vec![$((
                     ListField { what: $what, place: $place, per: Per::$per, of: Of::$of },
@@ -116,13 +115,13 @@ macro_rules! lists {
 lists! {
     /// Undeformed coordinates of the nodes (m).
     points: [f64; 3], "points", "Points", Node, Mesh;
-    /// The mesh file's tag of each node.
+    /// Tag of each node in the mesh file.
     node_tags: i64, "node tags", "PointData/GlobalNodeId", Node, Mesh;
     /// Displacement of the nodes (m).
     displacement: [f64; 3], "displacements", "PointData/Displacement", Node, Solution;
     /// Stress recovered at the nodes.
     nodal_stress: [f64; 6], "nodal stresses", "PointData/Stress", Node, Stress;
-    /// Von Mises stress of what is recovered at the nodes (Pa).
+    /// Von Mises stress of the stress recovered at the nodes (Pa).
     nodal_von_mises: f64, "nodal von Mises stresses", "PointData/VonMises", Node, Stress;
     /// Nodes of the cells, numbered within their subdomain.
     connectivity: i64, "connectivity", "Connectivity", NodeOfCell, Mesh;
@@ -130,9 +129,9 @@ lists! {
     offsets: i64, "offsets", "Offsets", StartOfCell, Mesh;
     /// VTK's number of the type of every cell.
     types: u8, "cell types", "Types", Cell, Mesh;
-    /// Index of its material for every cell.
+    /// Index of the material of every cell.
     materials: i32, "materials", "CellData/Material", Cell, Mesh;
-    /// Presence of the body of every cell.
+    /// Whether the body of every cell is present.
     present: u8, "presences", "CellData/Present", Cell, Presence;
     /// Stress of the cells.
     cell_stress: [f64; 6], "cell stresses", "CellData/Stress", Cell, Stress;
@@ -142,6 +141,6 @@ lists! {
     von_mises: f64, "von Mises stresses", "CellData/VonMises", Cell, Stress;
     /// Estimated error of the cells in the energy norm (√N, per metre of thickness).
     energy_error: f64, "errors", "CellData/EnergyError", Cell, Stress;
-    /// Parts of the cells in the estimated error of the first quantity, in its unit; NaN where it has none.
+    /// Contributions of the cells to the estimated error of the first quantity, in its unit; NaN in cells without one.
     quantity_error: f64, "errors of a quantity", "CellData/QuantityError", Cell, Quantity;
 }

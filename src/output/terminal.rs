@@ -1,6 +1,6 @@
 //! Text of the root rank: plain lines of fixed columns, the same on a terminal and in a log.
 //!
-//! The caller decides if they are printed, and in colours.
+//! The caller decides whether they are printed, and whether in colour.
 
 mod resultants;
 mod timing;
@@ -18,9 +18,9 @@ use super::report::{FrictionOfStep, Status, StepReport};
 use crate::certificate::Certificate;
 use crate::sweep::SweepRecord;
 
-/// Bodies and contacts up to which all that aren't there are named.
+/// Number of absent bodies and contacts up to which all are named.
 const NAMED: usize = 6;
-/// Time that is left of a run from which on it is told (s).
+/// Remaining time of a run above which it is printed (s).
 const LONG: f64 = 10.0;
 /// Text for sweeps that converged.
 const CONVERGED: Style = AnsiColor::Green.on_default();
@@ -28,7 +28,7 @@ const CONVERGED: Style = AnsiColor::Green.on_default();
 /// The head of the table of sweeps.
 pub const SWEEP_HEADER: &str = "\nsweep    residual    active   changed     seconds";
 
-/// The lines of an event, without the end of the last; nothing of those that people aren't told, or told otherwise.
+/// The text of an event, without the last line's end; `None` for events that aren't printed here.
 pub fn text(event: &Event<'_>) -> Option<String> {
     Some(match event {
         Event::Problem(of) => summary(of),
@@ -50,7 +50,7 @@ pub fn text(event: &Event<'_>) -> Option<String> {
     })
 }
 
-/// The cost of solving, for all ranks together and the largest of them.
+/// The cost of a solution, in total and for the largest rank.
 fn costs(of: &Costs) -> String {
     let giga = |number: f64| number / 1e9;
     let coarse = of.coarse_dofs.map_or_else(String::new, |dofs| {
@@ -69,7 +69,7 @@ fn costs(of: &Costs) -> String {
     )
 }
 
-/// The problem.
+/// Description of the problem.
 fn summary(of: &Summary) -> String {
     let mut lines = vec![format!("contact-dd-mpi {}\n", of.version)];
     if !of.title.is_empty() {
@@ -102,7 +102,7 @@ fn summary(of: &Summary) -> String {
     lines.join("\n")
 }
 
-/// The load step that begins, what is absent in it, and how long the rest takes where that is long.
+/// The load step that begins, what is absent in it, and the remaining time if that is long.
 fn step(of: &Step) -> String {
     let absent = &of.absent;
     let first: Vec<String> = absent
@@ -134,8 +134,8 @@ fn sweep(line: &SweepRecord) -> String {
     )
 }
 
-/// All that follows the sweeps: why they ended, the certificate, the timing table, what was skipped, warnings, and where
-/// the results are.
+/// Everything after the sweeps: why they ended, the certificate, the timing table, skipped parts, warnings, and the
+/// names of the result files.
 fn closing(of: &Finished) -> String {
     let Finished {
         reason,
@@ -190,7 +190,7 @@ fn closing(of: &Finished) -> String {
     lines.join("\n")
 }
 
-/// A line a load step; nothing where there is none.
+/// A line for each load step; empty if there is none.
 fn steps(steps: &[StepReport], units: Units) -> Vec<String> {
     if steps.is_empty() {
         return Vec::new();

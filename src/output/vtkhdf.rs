@@ -1,8 +1,8 @@
 //! The result file: `/VTKHDF`, `/contact`, `/convergence` and the attribute `report`.
 //!
-//! Every subdomain and every contact condition has its place from the start, so each is written
-//! when it arrives, in any order; subdomains in slabs, so that one slab at a time is in memory. After
-//! a load step it is an unfinished file to go on with, by what is [`kept`] beside it.
+//! Every subdomain and every contact constraint has a fixed place in the file, so that results are written when they
+//! arrive, in any order. Subdomains are written in slabs, so that memory holds one slab at a time. After a load step
+//! the file is unfinished but can be resumed, with the state [`kept`] beside it.
 
 pub mod beside;
 mod checkpoint;
@@ -33,20 +33,20 @@ use super::result::SubdomainResults;
 use crate::fem::contact_state::ContactRow;
 use crate::sweep::SweepRecord;
 
-/// A result file that is being written, under a temporary name in the folder of the final one.
+/// A result file during writing, under a temporary name in the folder of the final one.
 ///
-/// Dropped without [`finish`](Self::finish) it leaves nothing behind, unless load steps are finished and
-/// [`kept`](Self::keep); what stood under the final name stays.
+/// If dropped without [`finish`](Self::finish), it is removed, unless load steps are finished and [`kept`](Self::keep);
+/// a file of the final name stays unchanged.
 #[derive(Debug)]
 pub struct ResultFile {
     grid: Grid,
     contacts: ContactTables,
     has_steps: bool,
-    /// Number of load steps, one where the problem has none.
+    /// Number of load steps; 1 if the problem has none.
     steps: usize,
     /// Number of the load step that is being written.
     step: usize,
-    /// The digests of load steps that are written since the last one was kept.
+    /// The digests of load steps written since the last one was kept.
     digests: Vec<Vec<u64>>,
     /// The load steps kept so far.
     kept: Option<Kept>,
@@ -56,16 +56,15 @@ pub struct ResultFile {
 }
 
 impl ResultFile {
-    /// Makes the file and everything in it that doesn't depend on the solution.
+    /// Creates the file and everything in it that doesn't depend on the solution.
     ///
     /// # Errors
-    /// The file can't be made: no such folder, no permission, a name that something else has.
+    /// The file can't be created: a missing folder, no permission, a name already in use.
     pub fn create(path: &Path, layout: &Layout) -> Result<Self, OutputError> {
         Self::open(Destination::new(path)?, layout, None)
     }
 
-    /// Opens the file of a run that was stopped, to go on after the load steps that it finished, which are
-    /// [checked](Kept::check).
+    /// Opens the file of a stopped run, to continue after its finished load steps, which are [checked](Kept::check).
     ///
     /// # Errors
     /// The file can't be opened or written, or has another layout.
@@ -114,12 +113,12 @@ impl ResultFile {
         }
     }
 
-    /// The runs of subdomains that are best written at once: all subdomains, in their order.
+    /// The ranges of subdomains best written at once; together all subdomains, in their order.
     pub fn slabs(&self) -> Vec<Range<usize>> {
         self.grid.slabs()
     }
 
-    /// Writes what belongs to consecutive subdomains.
+    /// Writes the results of consecutive subdomains.
     ///
     /// # Errors
     /// The file can't be written, or `results` doesn't have the sizes of the layout.
@@ -128,8 +127,8 @@ impl ResultFile {
         written.map_err(|error| failure(&self.destination, &error))
     }
 
-    /// Offsets of the datasets that other ranks fill themselves; `None` where one has no place in the file yet, as in
-    /// one that an older run left.
+    /// Offsets of the datasets that other ranks fill themselves; `None` if one isn't allocated in the file yet, as in
+    /// the file of an older version.
     pub fn places(&self) -> Option<Places> {
         let path = self.destination.temporary().to_path_buf();
         Some(Places {
@@ -140,13 +139,13 @@ impl ResultFile {
         })
     }
 
-    /// Takes all subdomains for written in this load step: the ranks did that [beside each other](beside), each with the
-    /// `digests` of what it wrote.
+    /// Marks all subdomains as written in this load step, after the ranks wrote their own to the [shared file](beside),
+    /// with the `digests` of their data.
     pub fn take_as_written(&mut self, digests: &[Vec<u64>]) {
         self.grid.take_as_written(digests);
     }
 
-    /// Writes contact conditions, each at its place in the table of its contact.
+    /// Writes contact constraints, each at its place in the table of its contact.
     ///
     /// # Errors
     /// The file can't be written, or a row has no place in the layout.
@@ -155,10 +154,10 @@ impl ResultFile {
         written.map_err(|error| failure(&self.destination, &error))
     }
 
-    /// Ends a load step: what is written from now on belongs to the next one.
+    /// Ends a load step: subsequent results belong to the next one.
     ///
     /// # Errors
-    /// A subdomain or a contact condition is missing.
+    /// A subdomain or a contact constraint is missing.
     pub fn finish_step(&mut self) -> Result<(), OutputError> {
         let mut finish = || {
             let grid = self.grid.finish_step()?;
@@ -170,11 +169,11 @@ impl ResultFile {
         Ok(())
     }
 
-    /// Keeps what is written so far even if the run is stopped: with the `state` in which it goes on after the
-    /// load steps that are finished, once these are on the disk as they were written.
+    /// Keeps the finished load steps even if the run is stopped, with the `state` from which it continues, once the
+    /// results are verified on disk.
     ///
     /// # Errors
-    /// The file can't be written; what was kept before stays.
+    /// The file can't be written; what was kept before remains.
     pub fn keep(&mut self, state: &[u8]) -> Result<(), OutputError> {
         let Self {
             grid,
@@ -204,7 +203,7 @@ impl ResultFile {
             finished.map_err(|why| destination.failure(why))?;
         }
         if !destination.is_kept() {
-            // That of an older run isn't the state of this one.
+            // The state of an older run doesn't belong to this one.
             forget(destination.path())?;
             destination.keep()?;
         }
@@ -212,8 +211,8 @@ impl ResultFile {
         kept.write(destination.path())
     }
 
-    /// Writes `/convergence`: a row for the start and one for every sweep, from the history of every load step.
-    /// Called once.
+    /// Writes `/convergence`: a row for the start and one for every sweep, from the history of every load step. Called
+    /// once.
     ///
     /// # Errors
     /// The file can't be written.
@@ -237,7 +236,7 @@ impl ResultFile {
         write().map_err(|error: hdf5::Error| failure(&self.destination, &error))
     }
 
-    /// Adds the report, brings the file to the disk and gives it its name.
+    /// Adds the report, flushes the file to disk and gives it its final name.
     ///
     /// # Errors
     /// The file can't be written, or results are missing.
@@ -256,7 +255,7 @@ impl ResultFile {
             if step != steps {
                 return Err(format!("step {step} is missing").into());
             }
-            // Open groups keep the file from being closed.
+            // Open groups would keep the file from being closed.
             drop((grid, contacts));
             attribute(&file, "report", report_json)?;
             file.flush()?;
@@ -265,13 +264,13 @@ impl ResultFile {
         write().map_err(|error| failure(&destination, &error))?;
         let path = destination.path().to_path_buf();
         destination.commit()?;
-        // The result is whole; a state without load steps to go on from does no harm.
+        // The result is complete; a state file left behind without its load steps does no harm.
         let _ = kept.map(|_| forget(&path));
         Ok(())
     }
 }
 
-/// Writes text of any length: an attribute of fixed length ends at 64 KiB.
+/// Writes text of any length; attributes of fixed length are limited to 64 KiB.
 fn attribute(file: &File, name: &str, text: &str) -> hdf5::Result<()> {
     let text: VarLenUnicode = text
         .parse()
@@ -282,7 +281,7 @@ fn attribute(file: &File, name: &str, text: &str) -> hdf5::Result<()> {
     attribute.write_scalar(&text)
 }
 
-/// A temporary file has no other reader, and not every file system can lock.
+/// No locks: a temporary file has no other reader, and not every file system supports them.
 fn without_locks() -> FileBuilder {
     let mut options = File::with_options();
     options.with_fapl(|access| access.file_locking(false));

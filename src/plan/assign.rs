@@ -1,31 +1,31 @@
-//! Owners: subtrees of the hierarchy are handed out by estimated cost.
+//! Owners: distribution of the subtrees of the hierarchy over ranks by estimated cost.
 
 use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::id::TreeNodeId;
 use contact_dd_partition::numbered::Numbered;
 
-/// Splits that are tried, for every rank.
+/// Number of splits tried for every rank.
 const SPLITS: usize = 8;
 
-/// Least gain of a further split.
+/// Ratio of the estimated times after and before a further split above which it isn't worth it.
 const GAIN: f64 = 0.97;
 
-/// Estimated time of every node.
+/// Estimated time of every node (flops).
 type Costs = Numbered<TreeNodeId, f64>;
 
-/// A way to hand out the tree.
+/// A distribution of the tree.
 struct Share {
     owner: Numbered<TreeNodeId, usize>,
     /// Estimated time until all clusters are condensed.
     end: f64,
 }
 
-/// The owner of every node of `tree`, where each node costs `costs` itself; `clusters` are the nodes
-/// above which nothing is merged.
+/// The owner of every node of `tree`, where `costs` are those of each node alone; `clusters` are the nodes above which
+/// nothing is merged.
 ///
-/// Each rank gets whole subtrees as far as that balances; the largest ones are split first, and
-/// what is above a split goes to the owner of its most expensive part. Where it is about as good, ranks get clusters that
-/// are together in the hierarchy.
+/// Each rank gets whole subtrees as far as the load stays balanced. The largest ones are split first, and the nodes
+/// above a split go to the owner of its most expensive part. Among nearly equal distributions, ranks get clusters that
+/// are adjacent in the hierarchy.
 pub(super) fn assign(
     tree: &Tree,
     clusters: &[TreeNodeId],
@@ -72,7 +72,7 @@ pub(super) fn assign(
     }
 }
 
-/// The owners of `tasks`, subtrees, the most expensive first, each that of the rank that has least.
+/// The owners of `tasks`, which are subtrees: the most expensive first, each to the rank with the smallest load.
 fn by_cost(tasks: &[TreeNodeId], of_subtree: &Costs, ranks: usize) -> Vec<(TreeNodeId, usize)> {
     let mut order = tasks.to_vec();
     order.sort_by(|&a, &b| of_subtree[b].total_cmp(&of_subtree[a]).then(a.cmp(&b)));
@@ -91,7 +91,8 @@ fn by_cost(tasks: &[TreeNodeId], of_subtree: &Costs, ranks: usize) -> Vec<(TreeN
     owners
 }
 
-/// The owners of `tasks` where each rank gets what is together in the hierarchy: what is above is shared as well.
+/// The owners of `tasks` if each rank gets adjacent ones in the hierarchy, so that the nodes above are distributed as
+/// well.
 fn in_a_row(
     tree: &Tree,
     tasks: &[TreeNodeId],
@@ -113,7 +114,7 @@ fn in_a_row(
     row.into_iter().map(owner).collect()
 }
 
-/// Hands out subtrees, the tasks, to `owners`.
+/// The distribution in which subtrees, the tasks, have these `owners`.
 fn share(
     tree: &Tree,
     owners: Vec<(TreeNodeId, usize)>,
@@ -150,7 +151,7 @@ fn share(
         owner[v] = rank;
         end = end.max(done[v]);
     }
-    // What lies under a task belongs to its owner.
+    // Nodes below a task belong to its owner.
     for v in tree.nodes.ids().rev() {
         if owner[v] == NOBODY {
             owner[v] = tree.nodes[v].parent.map_or(0, |parent| owner[parent]);

@@ -1,4 +1,4 @@
-//! The choice of the operator that answers for contact conditions, with its reason, before any work is done with it.
+//! Choice of the operator for contact constraints, with its reason, before any work is done with it.
 
 use contact_dd_partition::hierarchy::choice::{Operator, OperatorTimes};
 use contact_dd_partition::problem::Catalog;
@@ -11,27 +11,27 @@ use super::memory::{CERTAIN, LIKELY, afford};
 use crate::comm::Comm;
 use crate::error::Failure;
 
-/// Wishes of the user.
+/// The user's choices.
 #[derive(Clone, Copy, Debug)]
 pub struct Wishes {
     /// The method of the sweeps.
     pub method: Method,
-    /// True if the interface solver is to iterate; `None` where nothing is said.
+    /// True for the iterative interface solver, false for the direct one; `None` if not chosen.
     pub iterative: Option<bool>,
-    /// True if another solution with friction is looked for.
+    /// True if another solution with friction is sought.
     pub second_start: bool,
 }
 
-/// The choice of a treatment of contact in the merging, and its reason.
+/// A treatment of contact in merging, and the reason for it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// The merging, which says what answers for contact conditions.
+    /// The treatment of contact, which determines the operator for contact constraints.
     pub merging: Merging,
-    /// The reason in words.
+    /// The reason, as text.
     pub why: String,
 }
 
-/// A choice with the plan that follows from it and what that needs.
+/// A choice with its plan and the estimated cost.
 #[derive(Clone, Debug)]
 pub struct ChosenPlan {
     /// The choice.
@@ -40,11 +40,11 @@ pub struct ChosenPlan {
     pub plan: Plan,
     /// The cost of every rank.
     pub costs: Vec<CostEstimate>,
-    /// Memory that there is (bytes).
+    /// Available memory (bytes).
     pub available: f64,
 }
 
-/// The merging with which an operator answers.
+/// The treatment of contact in merging for an operator.
 fn merging_of(operator: Operator) -> Merging {
     match operator {
         Operator::Dense => Merging::All,
@@ -59,11 +59,11 @@ impl Choice {
         Self { merging, why }
     }
 
-    /// The choices for a problem, the best one first: picard inverts S_0 alone, which has to be that of all linear
-    /// subdomains; anderson needs the contact problems of groups; newton takes what costs least.
+    /// The choices for a problem, the best one first: picard inverts S_0 alone, which then consists of the linear
+    /// subdomains; anderson needs the contact problems of groups; newton takes the operator with the least cost.
     ///
     /// # Errors
-    /// The iterative solver is asked for, and the problem file has no clusters.
+    /// The iterative solver is requested, but the problem file has no clusters.
     pub fn all(catalog: &Catalog, wishes: Wishes) -> Result<Vec<Self>, Failure> {
         let only = |merging, why: &str| Ok(vec![Self::new(merging, why)]);
         match wishes.method {
@@ -97,8 +97,8 @@ impl Choice {
         Ok(operators.into_iter().map(choice).collect())
     }
 
-    /// The choice that takes over where newton doesn't converge with a `merging`: the fastest direct operator from
-    /// iterations, the dense matrix of all conditions from the tree.
+    /// The choice to take over if newton doesn't converge with a `merging`: from the iterative solver the fastest
+    /// direct operator, from the tree the dense matrix of all constraints.
     pub fn more_robust(catalog: &Catalog, merging: Merging) -> Option<Self> {
         let times = OperatorTimes::new(catalog);
         let operator = match merging {
@@ -109,10 +109,10 @@ impl Choice {
         Some(Self::new(merging_of(operator), times.reason(operator)))
     }
 
-    /// The plan of this choice, if the hosts have memory for a share of what it needs. Collective.
+    /// The plan of this choice, if the hosts have memory for this `share` of its estimated need. Collective.
     ///
     /// # Errors
-    /// The first host with too little.
+    /// The first host with too little memory.
     fn plan(self, comm: &Comm, catalog: &Catalog, share: f64) -> Result<ChosenPlan, Refusal> {
         let plan = Plan::new(catalog, comm.size(), self.merging);
         let costs = plan.cost_estimates(catalog, comm.size());
@@ -129,18 +129,18 @@ impl Choice {
     }
 }
 
-/// A choice for which there is too little memory.
+/// A choice for which memory is insufficient.
 struct Refusal {
     failure: Failure,
-    /// Memory that it needs (bytes).
+    /// Memory needed (bytes).
     needed: f64,
 }
 
 impl ChosenPlan {
-    /// The first of some choices for which there is memory, with a margin if that can be. Collective.
+    /// The first of some choices for which there is memory, with a margin if possible. Collective.
     ///
     /// # Errors
-    /// There is too little memory for any.
+    /// Too little memory for any of them.
     pub fn new(comm: &Comm, catalog: &Catalog, choices: &[Choice]) -> Result<Self, Failure> {
         let mut least: Option<Refusal> = None;
         for share in [LIKELY, CERTAIN] {

@@ -1,25 +1,24 @@
-//! Clusters: what the sweeps see as one block.
+//! Clusters: the parts of the scene that the sweeps treat as one block each.
 
 use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::id::{GroupId, TreeNodeId};
 use contact_dd_partition::numbered::Numbered;
 
-/// Most contact conditions in a cluster of several groups: its law is dense.
+/// Most contact constraints of a cluster of several groups, as its contact problem is dense.
 const MAX_CONDITIONS: usize = 2_000;
 
 /// Treatment of contact groups in the merging of Schur complements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Merging {
-    /// A cluster may hold groups: S_CON is that of the groups with what is around them.
+    /// Clusters may contain groups: S_CON is that of the groups with their surroundings.
     All,
-    /// Only what has no contact is merged: S_0 and S_CON are those of the paper, (15).
+    /// Only subdomains without contact are merged: S_0 and S_CON are those of the paper, (15).
     Linear,
-    /// Contact groups are merged each by itself, so that Γ is away from contact: S_CON is as smooth as it can be.
+    /// Contact groups are merged separately, so that Γ keeps away from contact and S_CON is as smooth as possible.
     Groups,
-    /// Fronts without contact are merged once, the others for every active set anew.
+    /// Fronts without contact are merged once, the others again for every active set.
     ActiveSet,
-    /// Active sets are fixed, too, and fronts merged no further than to the clusters between which the iterative
-    /// interface solver works.
+    /// The same up to the clusters only, between which the iterative interface solver works.
     Clusters,
 }
 
@@ -39,29 +38,29 @@ impl Merging {
     }
 }
 
-/// The blocks under one node of the hierarchy, condensed onto what other clusters share and onto
-/// their own contacts.
+/// The blocks below one node of the hierarchy, condensed onto the unknowns shared with other clusters and onto their
+/// own contacts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ClusterPlan {
     /// The node.
     pub node: TreeNodeId,
     /// The rank that owns the node.
     pub owner: usize,
-    /// The groups, by their place among all of the plan, in the order in which they are merged.
+    /// The groups, by their number in the plan, in the order in which they are merged.
     pub groups: Vec<GroupId>,
-    /// Number of conditions of its contact points, without those of ties.
+    /// Number of constraints of its contact points, without those of ties.
     pub conditions: usize,
 }
 
 impl ClusterPlan {
-    /// True if anything in it is in contact.
+    /// True if the cluster contains contact points other than ties.
     pub fn is_in_contact(&self) -> bool {
         self.conditions > 0
     }
 }
 
-/// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless contact points
-/// belong to them; what is under a node with contact points is one cluster with it.
+/// The nodes of `tree` that are clusters. Its roots are left to the interface problem, unless they have contact points;
+/// a node with contact points forms one cluster with everything below it.
 pub(super) fn cluster_nodes(
     tree: &Tree,
     merging: Merging,
@@ -81,7 +80,7 @@ pub(super) fn cluster_nodes(
     })
 }
 
-/// Nodes of `tree` that are above all of some.
+/// Flags of the nodes of `tree` that are above all of these `nodes`.
 fn above(tree: &Tree, nodes: &[TreeNodeId]) -> Numbered<TreeNodeId, bool> {
     let mut is_above = tree.nodes.like(true);
     for v in nodes.iter().flat_map(|&v| tree.subtree(v)) {

@@ -1,9 +1,9 @@
-//! The cost of a run: memory and arithmetic of every rank, before either is spent.
+//! Estimated cost of a run: memory and arithmetic of every rank, before the work starts.
 //!
-//! The constants of memory are measured: in the plane on 45 peaks of 1 and 2 ranks, from 20 thousand to 2 million dofs, in 8
-//! to 1000 subdomains, with up to 5000 contact conditions; in space on 7 of boxes and pins on 2 ranks, from 20 to 212
-//! thousand dofs, with 441 to 5043 conditions: what was estimated over what was measured is 0.94 to 1.07 with a dense matrix
-//! of them.
+//! The constants of memory are fitted to measurements: in the plane to 45 peaks on 1 and 2 ranks, from 20 thousand to 2
+//! million dofs, in 8 to 1000 subdomains, with up to 5000 contact constraints; in space to 7 of boxes and pins on 2
+//! ranks, from 20 to 212 thousand dofs, with 441 to 5043 constraints. With a dense matrix of constraints, estimate over
+//! measurement is 0.94 to 1.07.
 
 use contact_dd_partition::flops::{Front, condensation};
 use contact_dd_partition::id::TreeNodeId;
@@ -12,24 +12,24 @@ use contact_dd_partition::problem::Catalog;
 use super::Plan;
 use super::cluster::Merging;
 
-/// Memory of a program that does nothing yet (bytes).
+/// Memory of an idle program (bytes).
 const AT_REST: f64 = 2.8e7;
-/// A block of n dofs, by nested dissection n log n, in bytes: its factor and its mesh.
+/// Memory of a block of n dofs by nested dissection, over n log₂ n (bytes): its factor and its mesh.
 const PER_DOF: f64 = 50.0;
-/// Time of other cells over that of triangles of three nodes: a constant, and for each node by cell.
+/// Time of other cells over that of three-node triangles: a constant, and a factor of the number of nodes per cell.
 const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
-/// The part of a block's factor that its boundary adds, by its size times √n (bytes).
+/// Memory that its boundary adds to a block's factor, over the boundary's size times √n (bytes).
 const PER_BOUNDARY: f64 = 165.0;
 /// An entry of a matrix (bytes).
 const PER_ENTRY: f64 = 8.0;
-/// Most memory of matrices that are kept for others to take it (bytes).
+/// Most memory of matrices kept for reuse (bytes).
 const SPARE: f64 = 2.7e8;
-/// Part of what waits to be merged that stays in pieces which nothing else fits in, and most of that (bytes): matrices up to a
-/// size are kept when they are freed.
+/// Fragmentation: the part of the memory of matrices waiting to be merged that isn't reused, and its largest amount
+/// (bytes). Freed matrices up to some size are kept by the allocator.
 const IN_PIECES: f64 = 0.5;
 const MOST_PIECES: f64 = 1e8;
-/// Matrices of all conditions together that are held while they are solved for: S of the cluster, H at the root, and what
-/// of it is condensed onto those that touch.
+/// Number of matrices over all constraints held at once during the solution: S of the cluster, H at the root, and H
+/// condensed onto the closed constraints.
 const OF_CONDITIONS: f64 = 4.5;
 
 /// The estimated cost of a rank.
@@ -50,7 +50,7 @@ impl CostEstimate {
         }
     }
 
-    /// The memory of the rank that needs most of it, and the arithmetic of the one that needs most of that.
+    /// The largest memory of any rank, and the largest arithmetic of any.
     pub fn largest(ranks: &[Self]) -> Self {
         let largest = |of: fn(&Self) -> f64| ranks.iter().map(of).fold(0.0, f64::max);
         Self {
@@ -61,12 +61,12 @@ impl CostEstimate {
 }
 
 impl Plan {
-    /// True if the front of node v is made again for every active set.
+    /// True if the front of node v is eliminated again for every active set.
     fn has_active_set_at(&self, v: TreeNodeId) -> bool {
         self.merging.has_active_set() && self.tree.nodes[v].conditions > 0
     }
 
-    /// The cost of every one of `ranks` ranks.
+    /// The cost of each of `ranks` ranks.
     pub fn cost_estimates(&self, catalog: &Catalog, ranks: usize) -> Vec<CostEstimate> {
         let mut estimates = vec![CostEstimate::default(); ranks];
         for (v, &owner) in self.node_owners.each() {
@@ -88,7 +88,7 @@ impl Plan {
                 let of_kind = least + more * subdomain.nodes as f64 / subdomain.cells.max(1) as f64;
                 estimate.bytes += PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
             } else {
-                // Open jumps are eliminated, too, closed ones kept.
+                // Open jumps are eliminated, too; closed ones are kept.
                 let own = match self.has_active_set_at(v) {
                     true => self.tree.own_conditions(v) as f64,
                     false => 0.0,
@@ -116,7 +116,7 @@ impl Plan {
         estimates
     }
 
-    /// The most memory that matrices take on every one of `ranks` ranks that wait to be merged, with the one that they are
+    /// For each of `ranks` ranks the most memory of matrices waiting to be merged, including the one that they are
     /// merged into.
     fn waiting(&self, dim: usize, ranks: usize) -> Vec<f64> {
         let (mut now, mut most) = (vec![0.0; ranks], vec![0.0f64; ranks]);
@@ -134,7 +134,7 @@ impl Plan {
                     now[self.node_owners[child]] -= s(child);
                 }
             }
-            // Where active sets are fixed that of a cluster is counted with what is kept for other sets.
+            // With fixed active sets, the cluster's matrix is counted among those kept for other sets.
             if self.merging.has_active_set() {
                 now[cluster.owner] -= s(cluster.node);
             }
@@ -142,7 +142,7 @@ impl Plan {
         most
     }
 
-    /// The front of node v as this plan merges it.
+    /// The front of node v in this plan.
     fn front(&self, v: TreeNodeId, dim: usize) -> Front {
         let front = self.tree.front_of(v, dim, self.merging.has_active_set());
         match self.leaves_its_nodes(v) {
@@ -154,7 +154,7 @@ impl Plan {
         }
     }
 
-    /// Memory of the problem on Γ and of all conditions, at the root.
+    /// Memory of the problem on Γ and of all constraints, at the root.
     fn of_interface_problem(&self, dim: usize) -> f64 {
         let roots = self.tree.roots();
         let [mut shared, mut conditions] = [0.0; 2];

@@ -11,11 +11,11 @@ use contact_dd_partition::problem::{Catalog, SubdomainNode};
 pub struct GroupPlan {
     /// The node.
     pub node: TreeNodeId,
-    /// The nodes of its points, each once, in the order in which the group numbers them, and their numbers on Γ.
+    /// The nodes of its points, each once, in the order of the group's numbering, and their numbers on Γ.
     pub nodes: Vec<(SubdomainNode, u32)>,
-    /// The group's number of every node that a point names; copies of a node have one.
+    /// The group's number of every node of its points; copies of a node have the same.
     pub numbers: BTreeMap<SubdomainNode, u32>,
-    /// Number of conditions of its points.
+    /// Number of constraints of its points.
     pub conditions: usize,
 }
 

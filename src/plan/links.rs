@@ -1,4 +1,4 @@
-//! Links between contact groups and the subdomains that have their nodes.
+//! Messages between contact groups and the subdomains that contain their nodes.
 
 use std::collections::BTreeMap;
 
@@ -12,8 +12,8 @@ use super::Plan;
 use crate::comm::Comm;
 
 impl Plan {
-    /// Brings what blocks `say` of nodes to the groups that name them: for every group of this rank, node by
-    /// node. Collective; `say` is asked on the owner of a block for some of its nodes.
+    /// Sends the data that blocks `say` about nodes to the groups that use them: for every group of this rank, node by
+    /// node. Collective; `say` is called on the owner of a block for some of its nodes.
     pub fn nodes_to_groups<T: Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
@@ -29,8 +29,8 @@ impl Plan {
         arrived
     }
 
-    /// Brings what groups say of their nodes to the blocks that have them: node of the block and what was said,
-    /// group after group. Collective.
+    /// Sends data of groups about their nodes to the blocks that contain them: node of the block and datum, group after
+    /// group. Collective.
     pub fn nodes_to_blocks<T: Clone + Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
@@ -50,7 +50,7 @@ impl Plan {
         arrived
     }
 
-    /// The nodes of the hierarchy below clusters that have nodes of contact points, and the clusters.
+    /// Flags of the nodes of the hierarchy below clusters that contain nodes of contact points, and of these clusters.
     pub fn around_contact(&self) -> Numbered<TreeNodeId, bool> {
         let mut around = self.tree.nodes.like(false);
         for link in self.links() {
@@ -91,11 +91,11 @@ impl Plan {
     }
 }
 
-/// Some nodes that a group and a block have.
+/// Some nodes common to a group and a block.
 struct Link<'a> {
     group: GroupId,
     block: BlockId,
-    /// The group's number of the first one.
+    /// The group's number of the first node.
     first: usize,
     nodes: &'a [(SubdomainNode, u32)],
 }

@@ -1,4 +1,4 @@
-//! Memory of this process: its peak, its limit, and whether that will do.
+//! Memory of this process: its peak, its limit, and whether the limit suffices.
 
 use std::collections::BTreeMap;
 use std::fs::read_to_string;
@@ -8,7 +8,7 @@ use super::cost::CostEstimate;
 use crate::comm::Comm;
 use crate::error::Failure;
 
-/// Peak resident memory of this process (bytes); 0 where the system doesn't tell.
+/// Peak resident memory of this process (bytes); 0 if the system doesn't report it.
 pub fn peak_memory_bytes() -> u64 {
     read_to_string("/proc/self/status")
         .ok()
@@ -16,22 +16,22 @@ pub fn peak_memory_bytes() -> u64 {
         .unwrap_or(0)
 }
 
-/// Memory that the machine has left, or that the control groups of this process allow, if that is
-/// less (bytes); `None` where the system doesn't tell.
+/// Memory available on the machine, or allowed by the control groups of this process if less (bytes); `None` if the
+/// system doesn't report it.
 pub fn available_memory_bytes() -> Option<u64> {
     let left = read_to_string("/proc/meminfo")
         .ok()
         .and_then(|meminfo| kibibytes(&meminfo, "MemAvailable:"));
     let groups = read_to_string("/proc/self/cgroup").unwrap_or_default();
     let limits = limit_files(&groups);
-    // A group without a limit says "max", or a number that no machine has.
+    // A group without a limit has "max", or a number larger than any machine's memory.
     let limits = limits
         .iter()
         .filter_map(|file| read_to_string(file).ok()?.trim().parse().ok());
     limits.chain(left).chain(address_space()).min()
 }
 
-/// Rest of the address space that this process may have (`ulimit -v`), where that is limited (bytes).
+/// Rest of the address space allowed to this process (`ulimit -v`), if limited (bytes).
 fn address_space() -> Option<u64> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let limit = limit_of(&limits, "Max address space")?;
@@ -39,14 +39,13 @@ fn address_space() -> Option<u64> {
     Some(limit.saturating_sub(kibibytes(&status, "VmSize:")?))
 }
 
-/// The limit `name` that now holds (bytes), by Linux' table of them; `None` where it is unlimited.
+/// The soft limit `name` in Linux' table of limits (bytes); `None` if unlimited.
 fn limit_of(limits: &str, name: &str) -> Option<u64> {
     let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// The files with the limits of the control groups that `/proc/self/cgroup` names, and of those above
-/// them, of version 1 and 2.
+/// The files with the limits of the control groups in `/proc/self/cgroup` and of their ancestors, of versions 1 and 2.
 fn limit_files(groups: &str) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for line in groups.lines() {
@@ -68,16 +67,16 @@ fn limit_files(groups: &str) -> Vec<PathBuf> {
     files
 }
 
-/// The entry `name` of a list of Linux' (bytes).
+/// The entry `name` of a Linux status table (bytes).
 fn kibibytes(list: &str, name: &str) -> Option<u64> {
     let line = list.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
 }
 
-/// Share of the estimate that is needed for certain.
+/// Fraction of the estimate that is certainly needed.
 pub const CERTAIN: f64 = 0.8;
-/// Share of the estimate that is needed most likely.
+/// Fraction of the estimate that is most likely needed.
 pub const LIKELY: f64 = 1.0;
 
 /// The memory of a host, and the need of its ranks.
@@ -88,14 +87,13 @@ struct Host {
     ranks: usize,
 }
 
-/// Refuses a run for which a host has less memory than this share of what it needs, limits of control groups among it; each
-/// of its ranks has one of `costs`. Returns what the hosts have together, on the root (bytes).
-/// Collective.
+/// Refuses a run if a host has less memory, including limits of control groups, than this `share` of the estimated need
+/// of its ranks, given by `costs`. Returns the memory of all hosts together, on the root (bytes). Collective.
 ///
 /// # Errors
-/// The first host with too little.
+/// The first host with too little memory.
 pub fn afford(comm: &Comm, costs: &[CostEstimate], share: f64) -> Result<f64, Failure> {
-    // Where the system doesn't tell, nothing is refused.
+    // If the system doesn't report memory, nothing is refused.
     let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
     let ranks = comm.collect(&(comm.host_name(), available));

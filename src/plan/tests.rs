@@ -6,7 +6,7 @@ use contact_dd_partition::solver::SolverSettings;
 
 use super::*;
 
-/// Two contact points between subdomains 1 and 3; 0, 2 and 4 linear, 4 the largest.
+/// Two contact points between subdomains 1 and 3; subdomains 0, 2 and 4 are linear, 4 is the largest.
 fn catalog() -> Catalog {
     let sizes = [40, 30, 20, 30, 90];
     let node = |subdomain, node| SubdomainNode { subdomain, node };
@@ -60,7 +60,8 @@ fn catalog() -> Catalog {
     }
 }
 
-/// The number in the tree of what is node v in the file: two subdomains have nodes that points alone name.
+/// The number in the tree of node v of the file, after two leaves for subdomains with nodes only used by contact
+/// points.
 fn inner(v: usize) -> TreeNodeId {
     TreeNodeId::new(v + 2)
 }
@@ -74,7 +75,7 @@ fn contact_points_belong_where_all_that_have_their_nodes_come_together() {
     assert_eq!((group.node, group.nodes.len()), (inner(5), 4));
     let node = &plan.tree.nodes[inner(5)];
     assert_eq!((&node.points[..], node.conditions), (&[0, 1][..], 2));
-    // Nodes that the points alone name go there, too.
+    // Nodes only used by contact points belong there, too.
     assert_eq!(plan.tree.interface_nodes, 7);
     assert_eq!(node.eliminated, [2, 4, 5, 6]);
     assert_eq!(node.kept, [0, 1, 3]);
@@ -120,7 +121,7 @@ fn subtrees_are_split_until_ranks_have_about_the_same_to_do() {
     assert_eq!((of_rank(0), of_rank(1)), (110, 100));
 }
 
-/// Normals across which nodes of one subdomain slide, in `catalog`.
+/// Normals along which nodes of one subdomain slide, in `catalog`.
 fn slides(catalog: &Catalog) -> Vec<Option<[f64; 3]>> {
     let tree = Tree::new(catalog);
     tree.unshared.iter().map(|own| own.slides).collect()
@@ -130,7 +131,7 @@ fn slides(catalog: &Catalog) -> Vec<Option<[f64; 3]>> {
 fn without_friction_a_node_that_others_have_not_is_on_the_interface_along_its_normal() {
     let mut catalog = catalog();
     let n = [1.0, 0.0, 0.0];
-    // Subdomain 2 has node 7 of subdomain 1, too.
+    // Node 7 of subdomain 1 also belongs to subdomain 2.
     assert_eq!(slides(&catalog), [Some(n); 3]);
     let node = &Tree::new(&catalog).nodes[inner(5)];
     assert_eq!(node.dofs, [2 + 3, 3 * 2]);

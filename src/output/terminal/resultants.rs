@@ -1,4 +1,4 @@
-//! The tables of what contacts and supports carry.
+//! Tables of the resultants of contacts and supports.
 
 use contact_dd_partition::scene::units::Units;
 
@@ -7,10 +7,10 @@ use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants};
 use crate::fem::stress_intensity::StressIntensity;
 use crate::fem::tightened_bolt::TightenedBolt;
 
-/// Most lines that are printed of a table; the report has all.
+/// Most lines printed of a table; the report has all of them.
 const LINES: usize = 12;
 
-/// Contacts and reactions, of a problem whose forces are those of `dim` dimensions.
+/// Contacts and reactions of a problem with forces in `dim` dimensions.
 pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<String> {
     let Resultants {
         contacts,
@@ -72,14 +72,14 @@ pub(super) fn lines(resultants: &Resultants, units: Units, dim: usize) -> Vec<St
     lines
 }
 
-/// The lines of bolts and crack tips.
+/// Tables of bolts and crack tips.
 fn places(resultants: &Resultants, units: Units, dim: usize) -> Vec<String> {
     let mut lines = bolts(&resultants.pretensions, units, dim);
     lines.extend(tips(&resultants.crack_tips, units));
     lines
 }
 
-/// Force and shortening of bolts.
+/// Table of the force and shortening of bolts.
 fn bolts(bolts: &[TightenedBolt], units: Units, dim: usize) -> Vec<String> {
     let title = "pretension";
     let names = bolts.iter().map(|bolt| bolt.name.chars().count());
@@ -98,7 +98,7 @@ fn bolts(bolts: &[TightenedBolt], units: Units, dim: usize) -> Vec<String> {
     })
 }
 
-/// The stress intensity factors of crack tips, and by how much they depend on the disc that is evaluated.
+/// Table of the stress intensity factors of crack tips, and their dependence on the radius of the evaluated disc.
 fn tips(tips: &[StressIntensity], units: Units) -> Vec<String> {
     let title = "crack tip";
     let names = tips.iter().map(|tip| tip.tip.chars().count());
@@ -121,8 +121,8 @@ fn tips(tips: &[StressIntensity], units: Units) -> Vec<String> {
     })
 }
 
-/// The quantities that the scene asks for, the estimated error of the mesh in each, and the parameter that changes it most, in
-/// proportion to its own value.
+/// Table of the quantities of interest, the estimated mesh error in each, and the parameter with the largest relative
+/// derivative.
 fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<String> {
     let title = "quantity";
     let names = quantities.iter().map(|of| of.name.chars().count());
@@ -141,7 +141,7 @@ fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<
             "energy" => units.work(dim).to_owned(),
             _ => units.stress().to_owned(),
         };
-        // Of the parameters that have a size of their own.
+        // Only parameters with a nonzero value have a relative derivative.
         let shares = of.derivatives.iter().filter_map(|one| {
             let share = one.derivative * one.at? / of.value;
             (share.is_finite() && share != 0.0).then_some((share, &one.parameter))
@@ -156,7 +156,7 @@ fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<
     })
 }
 
-/// The lines of the head and a line for each of `all`; nothing where there is none.
+/// The header and a line for each of `all`; empty if there is none.
 fn table<T>(head: String, all: &[T], line: impl Fn(&T) -> String) -> Vec<String> {
     if all.is_empty() {
         return Vec::new();
@@ -232,7 +232,7 @@ mod tests {
                     .filter(|w| !w.is_empty())
                     .collect();
                 assert_eq!(words, expected[..words.len()]);
-                // The moment, or the third component, ends where its unit does.
+                // The moment, or the third component, ends at the same column as its unit.
                 let end = ends(units, expected[2]).unwrap();
                 assert!(
                     numbers[..end].ends_with("e0") && end <= numbers.len(),

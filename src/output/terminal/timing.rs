@@ -1,8 +1,8 @@
-//! The table of times over the ranks.
+//! Table of times over the ranks.
 
 use crate::comm::ranks::{PhaseSeconds, RankReport};
 
-/// The time that each phase took over the ranks, and its share of the mean total.
+/// The time of each phase over the ranks, and its fraction of the mean total.
 pub(super) fn lines(ranks: &[RankReport]) -> Vec<String> {
     let seconds: Vec<PhaseSeconds> = ranks.iter().map(|rank| rank.seconds).collect();
     let totals: Vec<f64> = seconds.iter().map(|rank| rank.total).collect();

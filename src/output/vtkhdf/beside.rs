@@ -1,5 +1,5 @@
-//! A result file that every rank fills beside the others: its datasets have their places in it from the start, so
-//! that what a rank found goes there without passing through the root.
+//! Parallel writing of the result file: its datasets have fixed places, so that every rank writes its results itself,
+//! without sending them to the root.
 
 use std::fs::{File, OpenOptions};
 use std::os::unix::fs::{FileExt, MetadataExt};
@@ -13,8 +13,8 @@ use super::super::result::SubdomainResults;
 use super::Layout;
 use super::grid::GridPlacement;
 
-/// File systems on which ranks of several hosts see at once what each other writes, by Linux' numbers for them:
-/// Lustre, GPFS, BeeGFS, CephFS, OrangeFS.
+/// File systems on which ranks of several hosts see each other's writes immediately, by Linux' magic numbers: Lustre,
+/// GPFS, BeeGFS, CephFS, OrangeFS.
 const COHERENT: [u32; 5] = [
     0x0bd0_0bd0,
     0x4750_4653,
@@ -26,17 +26,17 @@ const COHERENT: [u32; 5] = [
 /// The places of the datasets in the file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Places {
-    /// The file, while it isn't complete.
+    /// Path of the unfinished file.
     pub(super) path: PathBuf,
     /// Inode number.
     pub(super) inode: u64,
     /// The first byte of every dataset of the grid.
     pub(super) datasets: Vec<u64>,
-    /// Number of load steps that are in it.
+    /// Number of load steps already in it.
     pub(super) finished: usize,
 }
 
-/// The result file as a rank sees it that writes what is its own.
+/// The result file on a rank that writes its own part.
 #[derive(Debug)]
 pub struct FileBeside {
     placement: GridPlacement,
@@ -50,7 +50,7 @@ pub struct FileBeside {
 }
 
 impl FileBeside {
-    /// Opens the file that the root made for `path`; `None` where this rank doesn't see it, or several `hosts` may not
+    /// Opens the file that the root created for `path`; `None` if this rank doesn't see it, or if several `hosts` can't
     /// write to it at once.
     pub fn open(places: &Places, path: &Path, layout: &Layout, hosts: usize) -> Option<Self> {
         let file = OpenOptions::new().write(true).open(&places.path).ok()?;
@@ -69,7 +69,7 @@ impl FileBeside {
         })
     }
 
-    /// Writes what belongs to consecutive subdomains.
+    /// Writes the results of consecutive subdomains.
     ///
     /// # Errors
     /// The file can't be written, or `results` doesn't have the sizes of the layout.
@@ -93,11 +93,11 @@ impl FileBeside {
         failed.map_or(Ok(()), |error| Err(destination::failure(&self.path, error)))
     }
 
-    /// Ends a load step, for all hosts to see; what is written from now on belongs to the next one. Returns the digests of
-    /// the datasets.
+    /// Ends a load step, and makes it visible to all hosts; subsequent results belong to the next one. Returns the
+    /// digests of the datasets.
     ///
     /// # Errors
-    /// Error of the system.
+    /// An error of the system.
     pub fn finish_step(&mut self, hosts: usize) -> Result<Vec<u64>, OutputError> {
         self.step += 1;
         if hosts > 1 {

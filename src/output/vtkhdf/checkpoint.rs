@@ -1,9 +1,9 @@
-//! Checkpoints: digests that tell whether the finished load steps of an unfinished result file are whole, and make the
-//! rest of it whole again.
+//! Checkpoints: digests by which the finished load steps of an unfinished result file are verified, and the data to
+//! restore the rest of it.
 //!
-//! All columns have their places from the start, and each load step its rows in them: writing one step touches no other.
-//! A digest for every column and step tells whether rows are those that were written. What is in the file beside the
-//! columns changes in the end alone; it is kept as it is before that.
+//! All columns have fixed places, and each load step has its rows in them: writing one step changes no other. A digest
+//! for every column and step tells whether the rows are those written. The remainder of the file changes only at the
+//! end; a copy from before is kept.
 
 use std::fs::File;
 use std::io;
@@ -13,11 +13,11 @@ use hdf5::{Dataset, Result};
 use serde::{Deserialize, Serialize};
 use twox_hash::XxHash3_64;
 
-/// Most bytes that are read at once.
+/// Most bytes read at once.
 const PIECE: usize = 1 << 20;
 
-/// A digest of rows from row `first` of their column on: the sum over rows of a hash (XXH3) of each and its place,
-/// whoever writes them and in whichever order.
+/// A digest of rows from row `first` of their column on: the sum of a hash (XXH3) of each row with its number,
+/// independent of the order of writing and of the ranks that write.
 pub(super) fn digest(first: usize, row_bytes: usize, rows: &[u8]) -> u64 {
     let rows = rows.chunks_exact(row_bytes.max(1));
     let hash = |(row, bytes): (u64, &[u8])| XxHash3_64::oneshot_with_seed(row, bytes);
@@ -27,20 +27,20 @@ pub(super) fn digest(first: usize, row_bytes: usize, rows: &[u8]) -> u64 {
         .fold(0, u64::wrapping_add)
 }
 
-/// A dataset as it lies in the file.
+/// A dataset by its place in the file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Column {
     /// Path.
     name: String,
     first_byte: u64,
     row_bytes: usize,
-    /// Number of rows, in every load step where they change.
+    /// Number of rows, for each load step if they change.
     rows: usize,
     changes: bool,
 }
 
 impl Column {
-    /// A dataset of `rows` rows, which has so many anew in each of some `steps` or the same in all of them.
+    /// A dataset of `rows` rows: different ones in each of the `steps`, or the same in all.
     pub(super) fn new(dataset: &Dataset, rows: usize, steps: Option<usize>) -> Result<Self> {
         let bytes = dataset.size() * dataset.dtype()?.size();
         let place = dataset.offset().or((bytes == 0).then_some(0));
@@ -53,14 +53,14 @@ impl Column {
         })
     }
 
-    /// Size in the file, for so many load steps (bytes).
+    /// Place and length in the file, for this number of load steps (bytes).
     fn bytes(&self, steps: usize) -> (u64, u64) {
         let steps = if self.changes { steps } else { 1 };
         let length = self.rows * self.row_bytes * steps;
         (self.first_byte, self.first_byte + length as u64)
     }
 
-    /// The digest of what it has of load step `k`, as it is in the file.
+    /// The digest of its rows of load step `k`, read from the file.
     fn read(&self, file: &File, k: usize) -> io::Result<u64> {
         if k > 0 && !self.changes {
             return Ok(0);
@@ -80,13 +80,13 @@ impl Column {
     }
 }
 
-/// A result file after some finished load steps.
+/// State of a result file after some finished load steps.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// Length of the file (bytes).
     length: u64,
     columns: Vec<Column>,
-    /// Parts of the file beside the columns, and their offsets.
+    /// The parts of the file outside the columns, with their offsets.
     rest: Vec<(u64, Part)>,
     /// The digest of every column in each finished load step.
     digests: Vec<Vec<u64>>,
@@ -96,7 +96,7 @@ pub struct Checkpoint {
 struct Part(#[serde(with = "crate::bytes")] Vec<u8>);
 
 impl Checkpoint {
-    /// A file with places for so many `steps`, none of which is finished; nothing in it is still on its way.
+    /// The checkpoint of a flushed file for this number of `steps`, none of them finished.
     ///
     /// # Errors
     /// The file can't be read.
@@ -126,19 +126,19 @@ impl Checkpoint {
         self.digests.len()
     }
 
-    /// Ends a load step with the digests of what was written of it, column by column, once it is in the file so.
+    /// Finishes a load step with the digests of its data, column by column, after verifying them against the file.
     ///
     /// # Errors
-    /// The first column that isn't what was written.
+    /// The first column whose rows differ from those written.
     pub(super) fn finish_step(&mut self, file: &File, digests: Vec<u64>) -> Result<(), String> {
         self.digests.push(digests);
         self.check(file, self.finished() - 1)
     }
 
-    /// Checks all finished load steps.
+    /// Verifies all finished load steps.
     ///
     /// # Errors
-    /// The first column that isn't what was written.
+    /// The first column whose rows differ from those written.
     pub(super) fn check_all(&self, file: &File) -> Result<(), String> {
         (0..self.finished()).try_for_each(|k| self.check(file, k))
     }
@@ -159,10 +159,10 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Puts the file back to where no later load step is finished.
+    /// Restores the file to the state before any later load step.
     ///
     /// # Errors
-    /// It can't be written.
+    /// The file can't be written.
     pub(super) fn restore(&self, file: &File) -> io::Result<()> {
         for (at, Part(bytes)) in &self.rest {
             file.write_all_at(bytes, *at)?;

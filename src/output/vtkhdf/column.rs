@@ -1,4 +1,4 @@
-//! One dataset: an array with a row for each node, cell or condition.
+//! A dataset: an array with a row for each node, cell or constraint.
 
 use bytemuck::Pod;
 use hdf5::plist::dataset_create::AllocTime;
@@ -7,7 +7,7 @@ use ndarray::ArrayViewD;
 
 use super::checkpoint::{Column, digest};
 
-/// A row of a dataset: a number, or some.
+/// A row of a dataset: one number or several.
 pub(crate) trait Row: Pod {
     /// The type of its numbers.
     type Number: H5Type + Pod;
@@ -39,21 +39,21 @@ where
     const WIDTH: Option<usize> = Some(N);
 }
 
-/// Rows for a dataset, whatever their type.
+/// Rows of a dataset, of any type.
 pub(crate) trait List {
     /// Number of rows.
     fn rows(&self) -> usize;
 
-    /// Makes a dataset for `rows` rows of this type, in each of so many load `steps`, see [`empty`].
+    /// Creates a dataset for `rows` rows of this type in each of the load `steps`, see [`empty`].
     fn empty(&self, group: &Group, name: &str, steps: usize, rows: usize) -> Result<Dataset>;
 
-    /// Fills what a dataset has of a load step from row `start` on.
+    /// Writes the rows of a load step from row `start` on.
     fn fill(&self, dataset: &Dataset, step: usize, start: usize) -> Result<()>;
 
-    /// Rows as the file has them.
+    /// The rows as stored in the file.
     fn bytes(&self) -> &[u8];
 
-    /// Bytes of a row.
+    /// Size of a row (bytes).
     fn row_bytes(&self) -> usize;
 }
 
@@ -79,20 +79,20 @@ impl<R: Row> List for Vec<R> {
     }
 }
 
-/// A dataset that is filled in every load step, or in the first one.
+/// A dataset that is written in every load step, or in the first one only.
 #[derive(Debug)]
 pub(super) struct Written {
     dataset: Dataset,
-    /// Number of rows, in every load step where it has them.
+    /// Number of rows, for every load step if it has them.
     rows: usize,
-    /// Number of load steps that it has rows for.
+    /// Number of load steps with their own rows.
     steps: Option<usize>,
-    /// Digest of the values written in this load step.
+    /// Digest of the rows written in this load step.
     digest: u64,
 }
 
 impl Written {
-    /// One that is [`empty`], for rows like those of a list.
+    /// An [`empty`] dataset for rows like those of `list`.
     pub(super) fn empty(
         list: &dyn List,
         group: &Group,
@@ -108,7 +108,7 @@ impl Written {
         })
     }
 
-    /// [Fills](fill) what it has of a load step from row `start` on.
+    /// [Writes](fill) rows of a load step from row `start` on.
     pub(super) fn fill(&mut self, step: usize, start: usize, list: &dyn List) -> Result<()> {
         let first = self.steps.map_or(start, |_| step * self.rows + start);
         let of_rows = digest(first, list.row_bytes(), list.bytes());
@@ -116,18 +116,18 @@ impl Written {
         list.fill(&self.dataset, step, start)
     }
 
-    /// Ends a load step; returns the digest of what was written in it.
+    /// Ends a load step; returns the digest of the rows written in it.
     pub(super) fn finish_step(&mut self) -> u64 {
         std::mem::take(&mut self.digest)
     }
 
-    /// The column as it lies in the file.
+    /// The column by its place in the file.
     pub(super) fn column(&self) -> Result<Column> {
         Column::new(&self.dataset, self.rows, self.steps)
     }
 }
 
-/// A group, which an earlier run may have made.
+/// A group, created unless an earlier run has done so.
 pub(super) fn group(parent: &Group, name: &str) -> Result<Group> {
     match parent.link_exists(name) {
         true => parent.group(name),
@@ -135,8 +135,8 @@ pub(super) fn group(parent: &Group, name: &str) -> Result<Group> {
     }
 }
 
-/// A dataset of `rows` rows to be filled later, or that of an earlier run; (steps, rows) or (steps, rows, width) where
-/// there are load `steps`.
+/// A dataset of `rows` rows to be filled later, or the one created by an earlier run; of shape (steps, rows) or (steps,
+/// rows, width) if there are load `steps`.
 pub(super) fn empty<R: Row>(
     group: &Group,
     name: &str,
@@ -148,12 +148,12 @@ pub(super) fn empty<R: Row>(
     }
     let steps = (steps > 0).then_some(steps).into_iter();
     let shape: Vec<usize> = steps.chain([rows]).chain(R::WIDTH).collect();
-    // It has its place in the file from the start.
+    // Allocated immediately, so that its place in the file is fixed.
     let new = group.new_dataset::<R::Number>().shape(shape);
     new.alloc_time(Some(AllocTime::Early)).create(name)
 }
 
-/// A column that is filled at once.
+/// A column that is written at once.
 pub(super) fn whole<R: Row>(
     group: &Group,
     name: &str,
@@ -163,7 +163,7 @@ pub(super) fn whole<R: Row>(
     fill(&empty::<R>(group, name, 0, values.len())?, 0, 0, &values)
 }
 
-/// Fills what a dataset has of a load step from row `start` on; all of it where it has no steps.
+/// Writes the rows of a load step from row `start` on, to a dataset with or without load steps.
 pub(super) fn fill<R: Row>(dataset: &Dataset, step: usize, start: usize, rows: &[R]) -> Result<()> {
     let numbers: &[R::Number] = bytemuck::cast_slice(rows);
     let shape: Vec<usize> = [rows.len()].into_iter().chain(R::WIDTH).collect();

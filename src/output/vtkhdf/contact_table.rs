@@ -8,7 +8,7 @@ use super::column::{self, List, Row, Written};
 use crate::comm::is_asked_to_stop;
 use crate::fem::contact_state::ContactRow;
 
-/// The table of every contact, and which of its rows have been written in a load step.
+/// The table of every contact, and flags of the rows written in a load step.
 #[derive(Debug)]
 pub(super) struct ContactTables {
     tables: Vec<Table>,
@@ -17,7 +17,7 @@ pub(super) struct ContactTables {
 #[derive(Debug)]
 struct Table {
     name: String,
-    /// Each with its place among all.
+    /// Each with its index in `COLUMNS`.
     columns: Vec<(usize, Written)>,
     written: Vec<bool>,
 }
@@ -27,16 +27,16 @@ struct Table {
 enum In {
     First,
     Each,
-    /// Each one, where the contact has friction or is a tie.
+    /// Each, if the contact has friction or is a tie.
     EachWithFriction,
-    /// Each one, where the contact is compliant.
+    /// Each, if the contact is compliant.
     EachOfCompliant,
 }
 
-/// The values of a column in some rows.
+/// Function for the values of a column in some rows.
 type Values = fn(&[ContactRow]) -> Box<dyn List>;
 
-/// The columns, those that not every contact has last.
+/// The columns; those that some contacts don't have come last.
 const COLUMNS: [(&str, In, Values); 11] = [
     ("node_a", In::First, |run| list(run, |(p, _)| p.tag_a)),
     ("node_b", In::First, |run| list(run, |(p, _)| p.tag_b)),
@@ -61,16 +61,16 @@ const COLUMNS: [(&str, In, Values); 11] = [
     }),
 ];
 
-/// A list of values, one a row.
+/// A list of values, one for each row.
 fn list<R: Row>(run: &[ContactRow], of: fn(&ContactRow) -> R) -> Box<dyn List> {
     Box::new(run.iter().map(of).collect::<Vec<R>>())
 }
 
 impl ContactTables {
-    /// Makes all tables in their final sizes; thousands of contacts take seconds.
+    /// Creates all tables in their final sizes; for thousands of contacts this takes seconds.
     ///
     /// # Errors
-    /// One can't be made, or a signal asked the run to stop.
+    /// A table can't be created, or a signal asked the run to stop.
     pub(super) fn create(file: &File, contacts: &[ContactSummary], steps: usize) -> Result<Self> {
         let parent = column::group(file, "contact")?;
         let tables = contacts
@@ -83,7 +83,7 @@ impl ContactTables {
         Ok(Self { tables })
     }
 
-    /// Writes `rows`, which may belong to several contacts, in a load step.
+    /// Writes `rows` of a load step; they may belong to several contacts.
     pub(super) fn write(&mut self, rows: &[ContactRow], step: usize) -> Result<()> {
         let mut rows = rows.to_vec();
         rows.sort_by_key(|(point, _)| (point.contact, point.place));
@@ -101,13 +101,13 @@ impl ContactTables {
         Ok(())
     }
 
-    /// All datasets as they lie in the file.
+    /// All datasets by their places in the file.
     pub(super) fn columns(&self) -> Result<Vec<Column>> {
         let all = self.tables.iter().flat_map(|table| &table.columns);
         all.map(|(_, column)| column.column()).collect()
     }
 
-    /// Checks that every row was written in a load step, and makes ready for the next one; returns the digests of the
+    /// Checks that every row was written in a load step, and prepares for the next one; returns the digests of the
     /// datasets.
     pub(super) fn finish_step(&mut self) -> Result<Vec<u64>> {
         for Table { name, written, .. } in &mut self.tables {
@@ -146,7 +146,7 @@ impl Table {
         })
     }
 
-    /// Writes rows whose places follow each other.
+    /// Writes rows with consecutive places.
     fn write(&mut self, run: &[ContactRow], step: usize) -> Result<()> {
         let start = run[0].0.place as usize;
         let Some(written) = self.written.get_mut(start..start + run.len()) else {

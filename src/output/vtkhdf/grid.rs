@@ -1,4 +1,4 @@
-//! `/VTKHDF`: an UnstructuredGrid of VTK's HDF format 2.0 with one partition a subdomain.
+//! `/VTKHDF`: an UnstructuredGrid in VTK's HDF format 2.0 with one partition for each subdomain.
 
 use std::iter::repeat_n;
 use std::ops::Range;
@@ -11,9 +11,9 @@ use super::checkpoint::{Column, digest};
 use super::column::List;
 use super::{Layout, column};
 
-/// Most nodes of a slab of more than one subdomain. With its cells it is about 6 MB, which is still
-/// in the cache when it is written and doesn't count beside what the root holds anyway; yet its
-/// columns of numbers are past the 64 KiB up to which HDF5 reads from a file where it writes.
+/// Most nodes of a slab of more than one subdomain. With its cells it has about 6 MB, which still fits in the cache and
+/// adds little to the root's memory; yet its columns of numbers exceed 64 KiB, up to which HDF5 reads the file before
+/// it writes.
 const SLAB_POINTS: usize = 1 << 14;
 
 /// Offsets of the subdomains in the datasets of the grid.
@@ -23,7 +23,7 @@ pub(super) struct GridPlacement {
     total: PartitionSize,
     sizes: Vec<PartitionSize>,
     starts: Vec<PartitionSize>,
-    /// True if there are load steps to go on from.
+    /// True if there are load steps from which a run may be resumed.
     is_kept: bool,
 }
 
@@ -45,7 +45,7 @@ impl GridPlacement {
         }
     }
 
-    /// Adds rows from `row` on to the digest of their dataset, where there are load steps to go on from.
+    /// Adds rows from `row` on to the digest of their dataset, if finished load steps are kept.
     pub(super) fn sum(&self, digest_of_step: &mut u64, row: usize, list: &dyn List) {
         if self.is_kept {
             let of_rows = digest(row, list.row_bytes(), list.bytes());
@@ -53,11 +53,11 @@ impl GridPlacement {
         }
     }
 
-    /// Hands the lists of consecutive subdomains in a load step to `put`: with the number of its dataset, and the row
-    /// from which on it has its place there.
+    /// Calls `put` with each list of consecutive subdomains in a load step, the number of its dataset, and its first
+    /// row there.
     ///
     /// # Errors
-    /// Results that don't have the sizes of the layout, or what `put` said.
+    /// Results that don't have the sizes of the layout, or an error of `put`.
     pub(super) fn each(
         &self,
         results: &SubdomainResults,
@@ -98,11 +98,11 @@ impl GridPlacement {
     }
 }
 
-/// The grid, and which subdomains have been written.
+/// The grid, and flags of the subdomains written.
 #[derive(Debug)]
 pub(super) struct Grid {
-    /// A dataset for each list that there is, and for the number of its subdomain for each cell; to find one by its
-    /// name costs as much as to write a small subdomain.
+    /// A dataset for each list, and one for the subdomain number of each cell. They stay open, because finding one by
+    /// name costs as much as writing a small subdomain.
     datasets: Vec<Dataset>,
     placement: GridPlacement,
     written: Vec<bool>,
@@ -111,7 +111,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Makes all datasets in their final sizes, or takes those that an earlier run made.
+    /// Creates all datasets in their final sizes, or opens those created by an earlier run.
     pub(super) fn create(file: &File, layout: &Layout) -> Result<Self> {
         let sizes = &layout.partitions;
         let is_new = !file.link_exists("VTKHDF");
@@ -161,14 +161,14 @@ impl Grid {
         })
     }
 
-    /// The first byte of every dataset in the file; `None` where one has no place yet.
+    /// The first byte of every dataset in the file; `None` if one isn't allocated yet.
     pub(super) fn places(&self) -> Option<Vec<u64>> {
         let is_empty = |dataset: &Dataset| dataset.size() == 0;
         let place = |dataset: &Dataset| dataset.offset().or(is_empty(dataset).then_some(0));
         self.datasets.iter().map(place).collect()
     }
 
-    /// Runs of subdomains of at most [`SLAB_POINTS`] nodes together, or of a single larger one.
+    /// Ranges of subdomains with at most [`SLAB_POINTS`] nodes in total, or of a single larger one.
     pub(super) fn slabs(&self) -> Vec<Range<usize>> {
         let mut slabs: Vec<Range<usize>> = Vec::new();
         let mut points = 0;
@@ -202,7 +202,7 @@ impl Grid {
         Ok(())
     }
 
-    /// Takes all partitions for written: their owners have done so, each with these digests.
+    /// Marks all partitions as written by their owners, with these digests.
     pub(super) fn take_as_written(&mut self, digests: &[Vec<u64>]) {
         self.written.fill(true);
         for of_rank in digests {
@@ -212,7 +212,7 @@ impl Grid {
         }
     }
 
-    /// All datasets as they lie in a file of some load `steps`.
+    /// All datasets by their places in a file of this number of load `steps`.
     pub(super) fn columns(&self, steps: usize) -> Result<Vec<Column>> {
         let GridPlacement {
             left_out,
@@ -230,7 +230,7 @@ impl Grid {
             .collect()
     }
 
-    /// Checks that every partition was written in a load step, and makes ready for the next one; returns the digests of
+    /// Checks that every partition was written in a load step, and prepares for the next one; returns the digests of
     /// the datasets.
     pub(super) fn finish_step(&mut self) -> Result<Vec<u64>> {
         if let Some(index) = self.written.iter().position(|&written| !written) {
@@ -242,7 +242,7 @@ impl Grid {
     }
 }
 
-/// The lists that the file has.
+/// The lists present in the file.
 fn written<'a>(
     results: &'a SubdomainResults,
     left_out: &[Of],
@@ -251,10 +251,10 @@ fn written<'a>(
     lists.filter(|(field, _)| !left_out.contains(&field.of))
 }
 
-/// Writes `/VTKHDF/Steps`: load steps as a time series of VTK's HDF format, on a mesh that stays the same.
+/// Writes `/VTKHDF/Steps`: load steps as a time series of VTK's HDF format, on a constant mesh.
 ///
-/// Fields of step k follow those of step k − 1 in one array; for every step there is an offset into each
-/// array, always the same one into those of the mesh. `total` is the size of all partitions together.
+/// The rows of step k follow those of step k − 1 in one array; every step has an offset into each array, which is
+/// constant for those of the mesh. `total` is the size of all partitions together.
 fn create_steps(grid: &Group, layout: &Layout, total: &PartitionSize) -> Result<()> {
     let steps = layout.times.len();
     let is_new = !grid.link_exists("Steps");
@@ -269,7 +269,7 @@ fn create_steps(grid: &Group, layout: &Layout, total: &PartitionSize) -> Result<
     for name in ["PartOffsets", "PointOffsets"] {
         column::whole(&group, name, repeat_n(0_i64, steps))?;
     }
-    // A column for each type of cell that has an array of its own; unstructured grids have one.
+    // A column for each type of cell with its own array; unstructured grids have one.
     for name in ["CellOffsets", "ConnectivityIdOffsets"] {
         column::whole(&group, name, repeat_n([0_i64], steps))?;
     }
@@ -290,7 +290,7 @@ fn create_steps(grid: &Group, layout: &Layout, total: &PartitionSize) -> Result<
     offsets("CellData/Subdomain", 0)
 }
 
-/// Checks that each partition has the size in `sizes`, and that the lists hold what these say.
+/// Checks that each partition has the size in `sizes`, and that the lengths of the lists agree with these.
 fn check_sizes(results: &SubdomainResults, sizes: &[PartitionSize], left_out: &[Of]) -> Result<()> {
     let check = |whose: &str, checks: &[(&str, usize, usize)]| match checks
         .iter()

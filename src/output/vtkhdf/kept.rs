@@ -1,5 +1,5 @@
-//! The state that a run keeps beside its finished load steps, in `RESULT.unfinished.state`: a file that is written anew
-//! after every load step, and takes the place of the one before when it is on the disk.
+//! The state kept with the finished load steps, in `RESULT.unfinished.state`. After every load step it is written to a
+//! new file, which replaces the previous one once it is on disk.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -18,15 +18,15 @@ use super::checkpoint::Checkpoint;
 pub struct Kept {
     /// The finished load steps in the result file.
     pub(super) checkpoint: Checkpoint,
-    /// The state in which the run goes on.
+    /// The state from which the run continues.
     #[serde(with = "crate::bytes")]
     pub state: Vec<u8>,
 }
 
-/// The file as it is.
+/// The content of the state file.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
-    /// The program's version, which every version can read.
+    /// The version of the program, in a format that all versions can read.
     version: String,
     /// A hash (XXH3) of the content.
     digest: u64,
@@ -35,7 +35,7 @@ struct Sealed {
 }
 
 impl Kept {
-    /// Before there is a state.
+    /// The state before any load step is finished.
     pub(super) fn new(checkpoint: Checkpoint) -> Self {
         Self {
             checkpoint,
@@ -48,10 +48,10 @@ impl Kept {
         self.checkpoint.finished()
     }
 
-    /// State that the last run with the result `path` kept; `None` where there is none.
+    /// State kept by the last run with the result `path`; `None` if there is none.
     ///
     /// # Errors
-    /// It is of another version of the program, or not what was written.
+    /// The state was written by another version of the program, or is damaged.
     pub fn read(path: &Path) -> Result<Option<Self>, InputError> {
         let state = state_of(path);
         if !unfinished(path).exists() || !state.exists() {
@@ -79,10 +79,10 @@ impl Kept {
         read.map(Some).map_err(|error| unread(&state, &error))
     }
 
-    /// Checks that the unfinished file of the result `path` holds what was written of the finished load steps.
+    /// Checks that the unfinished file of the result `path` contains the finished load steps as they were written.
     ///
     /// # Errors
-    /// It doesn't, or can't be read; the first dataset that isn't what was written is named.
+    /// It doesn't, or can't be read; the message names the first dataset with a difference.
     pub fn check(&self, path: &Path) -> Result<(), InputError> {
         let file = File::open(unfinished(path)).map_err(|error| error.to_string());
         let whole = file.and_then(|file| self.checkpoint.check_all(&file));
@@ -92,10 +92,10 @@ impl Kept {
         })
     }
 
-    /// Keeps this for the result `path`.
+    /// Writes this state for the result `path`.
     ///
     /// # Errors
-    /// The file can't be written; the one before stays.
+    /// The file can't be written; the one before remains.
     pub(super) fn write(&self, path: &Path) -> Result<(), OutputError> {
         let fails = |error: ciborium::ser::Error<io::Error>| failure(path, error);
         let (mut content, mut bytes) = (Vec::new(), Vec::new());
@@ -110,16 +110,16 @@ impl Kept {
     }
 }
 
-/// An error for what has the right version and digest, and can't be read all the same.
+/// The error of a state with the right version and digest that can't be read.
 pub fn unread(state: &Path, error: &ciborium::de::Error<io::Error>) -> InputError {
     let why = format!("it can't be read, as where another build of the program wrote it: {error}");
     InputError::new(why).in_file(state)
 }
 
-/// Forgets what was kept for the result `path`.
+/// Deletes the state kept for the result `path`.
 ///
 /// # Errors
-/// It can't be removed.
+/// It can't be deleted.
 pub(super) fn forget(path: &Path) -> Result<(), OutputError> {
     match fs::remove_file(state_of(path)) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failure(path, error)),
@@ -127,7 +127,7 @@ pub(super) fn forget(path: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// The name of what is kept for the result `path`.
+/// The name of the state file of the result `path`.
 pub fn state_of(path: &Path) -> PathBuf {
     let mut name = OsString::from(unfinished(path));
     name.push(".state");

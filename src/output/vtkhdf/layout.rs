@@ -9,11 +9,11 @@ use super::super::result::{Of, PartitionSize};
 /// Sizes of all parts of a result file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// One entry a subdomain.
+    /// One entry for each subdomain.
     pub partitions: Vec<PartitionSize>,
-    /// One entry a contact.
+    /// One entry for each contact.
     pub contacts: Vec<ContactSummary>,
-    /// Time of every load step; none where the problem has no steps.
+    /// Time of every load step; empty if the problem has no steps.
     pub times: Vec<f64>,
     /// True if there are stresses.
     pub stress: bool,
@@ -21,17 +21,16 @@ pub struct Layout {
     pub presence: bool,
     /// True if there are stresses and quantities.
     pub quantities: bool,
-    /// The scene's title; may be empty.
+    /// The scene's title, which may be empty.
     pub title: String,
-    /// The units that its numbers are meant in.
+    /// The units of its numbers.
     pub units: Units,
     /// Plane state; `None` in space.
     pub plane: Option<PlaneState>,
 }
 
 impl Layout {
-    /// The layout for `catalog`; `connectivity` has, for every subdomain, the sum of the number of
-    /// nodes over its cells.
+    /// The layout for `catalog`; `connectivity` is, for every subdomain, the sum of the number of nodes over its cells.
     pub fn new(catalog: &Catalog, connectivity: &[usize], stress: bool) -> Self {
         let sizes = catalog.subdomains.iter().zip(connectivity);
         let partitions = sizes.map(|(subdomain, &connectivity)| PartitionSize {
@@ -54,7 +53,7 @@ impl Layout {
 }
 
 impl Layout {
-    /// The lists that the file doesn't have.
+    /// The groups of lists that the file doesn't contain.
     pub(super) fn left_out(&self) -> Vec<Of> {
         let kinds = [
             (Of::Stress, self.stress),
