@@ -1,5 +1,5 @@
-//! The time that a rank would have on a core of its own and a known network, whatever else the machine does:
-//! its work as the clock of its thread measures it, its waiting as its messages imply it.
+//! Clock of a model machine, where each rank has its own core and messages take the time of a known network, whatever
+//! else the real machine does. Work is the measured thread time; waiting follows from the messages.
 
 use std::cell::Cell;
 use std::ops::{AddAssign, Sub};
@@ -7,23 +7,23 @@ use std::time::Instant;
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// Bytes per second of the network that is assumed.
+/// Bandwidth of the model network (bytes per second).
 pub const BANDWIDTH: f64 = 12.5e9;
 
-/// Time of an empty message (s).
+/// Latency of the model network: time of an empty message (s).
 pub const LATENCY: f64 = 2e-6;
 
-/// Share of the latency that keeps a rank busy, at either end.
+/// Fraction of the latency during which each end is busy.
 const BUSY: f64 = 0.25;
 
-/// The place of a rank in its run.
+/// Times of a rank since the start of the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Times {
-    /// Time by the clock on the wall (s).
+    /// Wall-clock time (s).
     pub elapsed: f64,
-    /// Work, without messages and waiting (s).
+    /// Processor time, without messages and waiting (s).
     pub work: f64,
-    /// Time on a core of its own, messages by the network that is assumed (s).
+    /// Modelled time, on a core of its own and with the model network (s).
     pub modelled: f64,
 }
 
@@ -47,12 +47,12 @@ impl AddAssign for Times {
     }
 }
 
-/// Time of sending, which a message carries to its receiver.
+/// The sender's clock, which is sent with a message.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stamp {
     /// The sender's modelled time (s).
     pub modelled: f64,
-    /// Number of messages one after the other that led to it, this one among them.
+    /// Length of the longest chain of messages up to this one, inclusive.
     pub chain: f64,
 }
 
@@ -60,14 +60,14 @@ pub struct Stamp {
 #[derive(Debug)]
 pub struct Clock {
     began: Instant,
-    /// Thread time when the last message was done with (s).
+    /// Thread time at the end of the last message (s).
     resumed: Cell<f64>,
     work: Cell<f64>,
     stamp: Cell<Stamp>,
 }
 
 impl Clock {
-    /// Starts at zero.
+    /// A clock that starts at zero.
     pub fn start() -> Self {
         Self {
             began: Instant::now(),
@@ -87,12 +87,12 @@ impl Clock {
         }
     }
 
-    /// The longest chain of messages that led here.
+    /// Length of the longest chain of messages up to now.
     pub fn chain(&self) -> u64 {
         self.stamp.get().chain as u64
     }
 
-    /// Ends the work before a message: what the thread does until it resumes is the message's.
+    /// Ends the work before a message: thread time until the clock resumes counts for the message.
     pub fn pause(&self) -> Stamp {
         let times = self.times();
         self.work.set(times.work);
@@ -105,19 +105,19 @@ impl Clock {
         now
     }
 
-    /// Goes on after a message that was sent `times` times, one after the other.
+    /// Resumes after a message was sent `times` times in succession.
     pub fn resume_sender(&self, bytes: usize, times: u32) {
         let mut stamp = self.stamp.get();
         stamp.modelled += f64::from(times) * (BUSY * LATENCY + bytes as f64 / BANDWIDTH);
         self.resume(stamp);
     }
 
-    /// Goes on with a message that left at `sent` and came by way of some `hops`.
+    /// Resumes after a message arrived that was sent at `sent` and passed over `hops` successive messages.
     pub fn resume_receiver(&self, sent: Stamp, bytes: usize, hops: u32) {
         let (mine, hops) = (self.stamp.get(), f64::from(hops));
         let on_the_way = hops * LATENCY + (hops - 1.0) * bytes as f64 / BANDWIDTH;
         let busy = BUSY * LATENCY;
-        // One message after the other comes in.
+        // Messages arrive one after another.
         let begin = (mine.modelled + busy).max(sent.modelled + on_the_way);
         self.resume(Stamp {
             modelled: begin + bytes as f64 / BANDWIDTH,
@@ -125,7 +125,7 @@ impl Clock {
         });
     }
 
-    /// Goes on together with all other ranks, of which `latest` is the last.
+    /// Resumes simultaneously on all ranks, of which the last arrived at `latest`.
     pub fn resume_all(&self, latest: Stamp, hops: u32) {
         self.resume(Stamp {
             modelled: latest.modelled + f64::from(hops) * LATENCY,
@@ -170,7 +170,7 @@ mod tests {
         clock.resume_receiver(at(3.0, 4.0), 12_500_000_000, 1);
         let Stamp { modelled, chain } = clock.pause();
         assert!((modelled - 4.0).abs() < 1e-2 && chain == 5.0, "{modelled}");
-        // One that waits already takes no longer than it takes to read it.
+        // A message that has arrived already takes only the time to read it.
         clock.resume_receiver(at(0.0, 0.0), 12_500_000_000, 1);
         let Stamp { modelled, chain } = clock.pause();
         assert!((modelled - 5.0).abs() < 1e-2 && chain == 5.0, "{modelled}");

@@ -1,4 +1,4 @@
-//! Collective messages: to the root, from it, from any to any.
+//! Collective messages: to the root, from the root, and between any ranks.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -10,12 +10,12 @@ use super::owners::Owners;
 use super::{Comm, ROOT};
 use crate::bytes::Reals;
 
-/// Most values that are gathered or scattered at once.
+/// Most values gathered or scattered at once.
 const AT_ONCE: usize = 4096;
 
 impl Comm {
-    /// Brings one value for each of `owners` to the root, in their order whoever owns what, those of a rank together.
-    /// Collective.
+    /// Sends one value for each of `owners` to the root, which receives them in their order, whichever rank owns what;
+    /// the values of a rank travel together. Collective.
     ///
     /// `make(i)` is called on the owner of `i`, `take(i, value)` on the root.
     pub fn gather<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
@@ -42,7 +42,8 @@ impl Comm {
         }
     }
 
-    /// The values that [`gather`](Self::gather) brings to the root, in their order; nothing elsewhere. Collective.
+    /// The values that [`gather`](Self::gather) sends to the root, in their order; empty on the other ranks.
+    /// Collective.
     pub fn gathered<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
         &self,
         owners: &O,
@@ -53,7 +54,7 @@ impl Comm {
         all
     }
 
-    /// The values that [`scatter`](Self::scatter) brings to this rank, by their number. Collective.
+    /// The values that [`scatter`](Self::scatter) sends to this rank, by their number. Collective.
     pub fn scattered<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
         &self,
         owners: &O,
@@ -66,7 +67,8 @@ impl Comm {
         own
     }
 
-    /// Brings one value of the root to each of `owners`, in their order, those of a rank together. Collective.
+    /// Sends one value of the root to each of `owners`, in their order; the values for a rank travel together.
+    /// Collective.
     ///
     /// `make(i)` is called on the root, `take(i, value)` on the owner of `i`.
     pub fn scatter<O: Owners + ?Sized, T: Serialize + DeserializeOwned>(
@@ -92,7 +94,7 @@ impl Comm {
         }
     }
 
-    /// Brings a value along each of `routes`, from one rank to another, in their order. Collective.
+    /// Sends a value along each of `routes`, from one rank to another, in their order. Collective.
     ///
     /// `make(i)` is called where route `i` begins, `take(i, value)` where it ends.
     pub fn route<T: Serialize + DeserializeOwned>(
@@ -111,8 +113,8 @@ impl Comm {
         }
     }
 
-    /// Brings a list along each of `routes`, from one rank to another, all between two ranks in one message; returns those
-    /// that end here, by the number of their route. Collective.
+    /// Sends a list along each of `routes`, from one rank to another, with a single message between any two ranks;
+    /// returns the lists that end here, by the number of their route. Collective.
     ///
     /// `make(i)` is called where route `i` begins.
     pub fn route_lists(
@@ -135,11 +137,11 @@ impl Comm {
         lists.collect()
     }
 
-    /// Gives every rank the part of all others' that has its number, in the order of ranks. Collective.
+    /// Sends `parts[r]` to every rank r; returns the received parts in the order of ranks. Collective.
     pub fn exchange<T: Serialize + DeserializeOwned + Default>(&self, mut parts: Vec<T>) -> Vec<T> {
         let (me, ranks) = (self.rank(), self.size());
         let mut arrived: Vec<T> = (0..ranks).map(|_| T::default()).collect();
-        // In every round all ranks talk to another one, in pairs, so that none waits for a third.
+        // In every round the ranks exchange in disjoint pairs, so that none waits for a third.
         for round in 0..ranks.next_power_of_two() {
             let other = me ^ round;
             if other >= ranks {
@@ -162,14 +164,14 @@ impl Comm {
         arrived
     }
 
-    /// Brings the value of every rank to the root, which gets them in the order of ranks; the
-    /// others get nothing. Collective.
+    /// Sends the value of every rank to the root, which gets them in the order of ranks; empty on the other ranks.
+    /// Collective.
     pub fn collect<T: Serialize + DeserializeOwned + Clone>(&self, value: &T) -> Vec<T> {
         let ranks: Vec<usize> = (0..self.size()).collect();
         self.gathered(&ranks, |_| value.clone())
     }
 
-    /// The largest size of all numbers on all ranks. Collective.
+    /// The largest magnitude of all numbers on all ranks. Collective.
     pub fn largest<'a>(&self, own: impl IntoIterator<Item = &'a f64>) -> f64 {
         let own = own.into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let mut largest = self.collect(&own).into_iter().fold(0.0, f64::max);
@@ -178,7 +180,7 @@ impl Comm {
     }
 }
 
-/// The places of each owner among some consecutive ones, by rank.
+/// The numbers owned by each rank, in consecutive chunks of all numbers.
 fn bundles(owners: &[usize]) -> impl Iterator<Item = BTreeMap<usize, Vec<usize>>> + '_ {
     let chunks = owners.chunks(AT_ONCE).enumerate();
     chunks.map(|(chunk, owners)| {

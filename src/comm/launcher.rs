@@ -1,16 +1,16 @@
-//! Variables of launchers in the environment of a process: whether it is one of many, and which.
+//! Environment variables of MPI launchers: whether a process is one of several ranks, and which.
 
 use std::env;
 
 use crate::error::Failure;
 
-/// The variables in which launchers of MPIs give the number of ranks.
+/// The variables in which MPI launchers state the number of ranks.
 const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE"];
 
-/// Processes that srun counts: its tasks, or the daemons of an `mpirun` that starts them by srun.
+/// Number of processes of srun: its tasks, or the daemons of an `mpirun` that srun starts.
 const SRUN_SIZE: &str = "SLURM_STEP_NUM_TASKS";
 
-/// The variables in which launchers give the rank of a process. Some give no size, PMIx only on request.
+/// The variables in which launchers state the rank of a process; some state no size, PMIx only on request.
 const RANKS: [&str; 8] = [
     "OMPI_COMM_WORLD_RANK",
     "PMI_RANK",
@@ -22,7 +22,7 @@ const RANKS: [&str; 8] = [
     "FLUX_TASK_RANK",
 ];
 
-/// Number of a process among the tasks of srun, and with 0 the script of a batch job.
+/// Number of a process among the tasks of srun; 0 also in the script of a batch job.
 const SRUN_RANK: &str = "SLURM_PROCID";
 
 /// The value of an environment variable.
@@ -30,13 +30,13 @@ fn variable(name: &str) -> Option<String> {
     env::var(name).ok()
 }
 
-/// True if the launcher of an MPI started this process, be it as the only rank.
+/// True if an MPI launcher started this process, even as the only rank.
 pub fn is_launched() -> bool {
     let mut names = SIZES.iter().chain(&RANKS);
     names.any(|name| variable(name).is_some())
 }
 
-/// True if this process is the first that its launcher started, or has no launcher.
+/// True if this process is the first one of its launcher, or has no launcher.
 pub fn is_first() -> bool {
     is_first_by(variable)
 }
@@ -46,7 +46,7 @@ fn is_first_by(variable: impl Fn(&str) -> Option<String>) -> bool {
     names.find_map(variable).is_none_or(|rank| rank == "0")
 }
 
-/// True if this process may be one of several ranks, which only MPI can tell.
+/// True if this process may be one of several ranks; only MPI can tell for certain.
 pub(super) fn is_one_of_several() -> bool {
     is_one_of_several_by(variable)
 }
@@ -63,10 +63,10 @@ fn is_one_of_several_by(variable: impl Fn(&str) -> Option<String>) -> bool {
     }
 }
 
-/// The launcher's own count of ranks must be MPI's.
+/// Checks that the launcher's number of ranks is MPI's.
 ///
 /// # Errors
-/// The launcher belongs to another MPI than the program: it started n programs of one rank each.
+/// The launcher belongs to another MPI than the program, and has started n programs of one rank each.
 pub(super) fn check(size: usize) -> Result<(), Failure> {
     match launched(|name| variable(name)?.parse().ok()) {
         Some((name, launched)) if launched != size => Err(Failure::input(format!(
@@ -91,7 +91,7 @@ fn launched(number: impl Fn(&str) -> Option<usize>) -> Option<(&'static str, usi
 mod tests {
     use super::*;
 
-    /// An environment.
+    /// An environment with the `given` variables.
     fn of<'a>(given: &'a [(&str, &str)]) -> impl Fn(&str) -> Option<String> + 'a {
         |name| {
             let (_, value) = given.iter().find(|(n, _)| *n == name)?;
@@ -129,7 +129,7 @@ mod tests {
         let several: [&[(&str, &str)]; 6] = [
             &[("OMPI_COMM_WORLD_SIZE", "2"), ("OMPI_COMM_WORLD_RANK", "1")],
             &[("PMI_SIZE", "many"), ("PMI_RANK", "1")],
-            // One launcher within another, whichever is the inner one.
+            // One launcher within another, in either order.
             &[
                 ("OMPI_COMM_WORLD_SIZE", "1"),
                 ("PMI_SIZE", "4"),
@@ -141,7 +141,7 @@ mod tests {
                 ("PMIX_RANK", "1"),
             ],
             &[(SRUN_SIZE, "4"), (SRUN_RANK, "1")],
-            // No size is told.
+            // No size is stated.
             &[("PMIX_RANK", "1")],
         ];
         for given in several {

@@ -1,7 +1,7 @@
-//! Ranks that end or stop on purpose, in a phase of the tests' choice.
+//! Deliberate failures of ranks in a given phase, for tests.
 //!
-//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank fail, panic, be killed, or stop until it is continued,
-//! when it comes to a phase. Only a build with debug assertions, which is what tests run, looks at it.
+//! `CONTACT_DD_END="RANK KIND PHASE"` makes a rank fail, panic, be killed, or stop until it is continued, when it
+//! enters a phase. Only builds with debug assertions, which tests use, evaluate it.
 
 use std::sync::OnceLock;
 use std::{env, thread};
@@ -13,12 +13,12 @@ use crate::error::Failure;
 
 static RANK: OnceLock<usize> = OnceLock::new();
 
-/// Makes known which rank this is.
+/// Sets the number of this rank.
 pub fn set_rank(rank: usize) {
     RANK.get_or_init(|| rank);
 }
 
-/// Ends or stops this rank if that is to happen in `phase`.
+/// Ends or stops this rank if the variable asks for that in `phase`.
 #[expect(clippy::panic, reason = "that's the purpose")]
 pub fn end(phase: &str) {
     match wish(phase).as_deref() {
@@ -34,13 +34,13 @@ pub fn end(phase: &str) {
     }
 }
 
-/// The failure that this rank is to have in `phase`.
+/// The failure that the variable asks for on this rank in `phase`.
 pub fn failure(phase: &str) -> Option<Failure> {
     let wish = wish(phase)?;
     (wish == "failure").then(|| Failure::ill_posed("on purpose"))
 }
 
-/// The end that this rank is to take in `phase`.
+/// The kind of end that the variable asks for on this rank in `phase`.
 fn wish(phase: &str) -> Option<String> {
     let wish = env::var("CONTACT_DD_END").ok()?;
     let mut words = wish.splitn(3, ' ');

@@ -1,13 +1,13 @@
-//! Owners of what ranks share.
+//! Owners of distributed data.
 
 use contact_dd_partition::numbered::Numbered;
 
-/// The rank that owns each of some things, which are numbered one after the other.
+/// The rank that owns each of several consecutively numbered items.
 pub trait Owners {
-    /// Their numbers.
+    /// The type of their numbers.
     type Of: Copy + Ord + From<usize>;
 
-    /// The ranks.
+    /// The owner of each item.
     fn ranks(&self) -> &[usize];
 }
 

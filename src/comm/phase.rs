@@ -1,4 +1,4 @@
-//! The phase of this rank, for the messages of failures and panics.
+//! The current phase of this rank, for messages of failures and panics.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,7 +7,7 @@ use super::on_purpose;
 
 static PHASE: Mutex<&str> = Mutex::new("starting");
 
-/// Names what this rank is doing, for the messages of failures and panics.
+/// Sets the phase of this rank, for messages of failures and panics.
 pub fn phase(name: &'static str) {
     *PHASE.lock().unwrap_or_else(PoisonError::into_inner) = name;
     #[cfg(debug_assertions)]

@@ -56,19 +56,19 @@ impl PhaseSeconds {
     }
 }
 
-/// The phases of a rank by three clocks.
+/// The phases of a rank, measured by three clocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RankSeconds {
-    /// By the clock on the wall.
+    /// Wall-clock time.
     pub elapsed: PhaseSeconds,
     /// Processor time, without messages and waiting.
     pub work: PhaseSeconds,
-    /// On a core of its own, messages by the network that is assumed.
+    /// Modelled time, on a core of its own and with the model network.
     pub modelled: PhaseSeconds,
 }
 
 impl RankSeconds {
-    /// Adds what was done meanwhile to a phase.
+    /// Adds times to a phase.
     pub fn add(&mut self, of: fn(&mut PhaseSeconds) -> &mut f64, times: Times) {
         *of(&mut self.elapsed) += times.elapsed;
         *of(&mut self.work) += times.work;

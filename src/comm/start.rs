@@ -1,4 +1,4 @@
-//! Starting MPI where there are several ranks, and what happens when a rank fails without a word to the others.
+//! Start of MPI if there are several ranks, and the handling of panics.
 
 use std::cell::Cell;
 use std::{panic, process};
@@ -16,7 +16,7 @@ use super::signals::listen;
 use super::{Clock, Comm, launcher};
 use crate::error::Failure;
 
-/// All ranks, and MPI where there are several; it ends when this is dropped.
+/// All ranks, and MPI if there are several; MPI ends when this is dropped.
 pub struct World {
     /// `None` for a single rank, which sends no messages.
     universe: Option<Universe>,
@@ -39,14 +39,14 @@ impl World {
     }
 }
 
-/// Starts MPI unless the environment says that this rank is the only one, and makes the panic of any
-/// rank the end of all. Collective.
+/// Starts MPI unless the environment shows that this rank is the only one, and makes a panic on any rank end all of
+/// them. Collective.
 ///
-/// A rank that is killed is the launcher's affair, which ends the others.
+/// If a rank is killed, the launcher ends the others.
 ///
 /// # Errors
-/// MPI was started already, or the launcher belongs to another MPI than the program: then it
-/// started n programs of one rank each.
+/// MPI was started already, or the launcher belongs to another MPI than the program, and has started n programs of one
+/// rank each.
 pub fn start() -> Result<World, Failure> {
     let universe = match launcher::is_one_of_several() {
         true => {
@@ -87,12 +87,12 @@ fn end_all_at_a_panic(comm: &Comm) {
     }));
 }
 
-/// The MPI library and its version, as it calls itself.
+/// Name and version of the MPI library, as it reports them.
 pub fn library() -> String {
     let said = mpi::environment::library_version().unwrap_or_default();
-    // MPICH tells in further lines how it was configured.
+    // MPICH reports its configuration in further lines.
     let name = said.lines().next().unwrap_or_default();
-    // Open MPI counts the end of its string to it.
+    // Open MPI includes the terminating zero.
     let name = name.trim_end_matches('\0');
     name.split_whitespace().collect::<Vec<_>>().join(" ")
 }

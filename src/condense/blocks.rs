@@ -19,7 +19,7 @@ pub struct CondensedBlock {
     pub dofs: Dofs,
     /// The diagonal of its stiffness (Pa).
     pub diagonal: Vec<f64>,
-    /// The springs in it.
+    /// Springs added to its stiffness.
     pub springs: Vec<Spring>,
     /// Factor of K_II.
     pub factor: LocalSchur,
@@ -30,7 +30,8 @@ pub struct CondensedBlock {
 pub struct ContactCluster {
     /// Schur complement, both triangles.
     pub condensed: Rc<Condensed>,
-    /// The bounds on its normal jumps in the first load step. Which conditions they are of is the same in all.
+    /// The bounds on its normal jumps in the first load step; the constraints that they belong to are the same in all
+    /// steps.
     pub limits: Limits,
 }
 
@@ -41,10 +42,10 @@ pub struct CondensedBlocks {
     pub blocks: OnBlocks<CondensedBlock>,
     /// The merge at every inner node of the hierarchy.
     pub merges: OnTreeNodes<Merge>,
-    /// T: the clusters without contact, by their place among all.
+    /// T: the clusters without contact, by their number among all.
     pub linear: OnClusters<Condensed>,
-    /// ϑ: the clusters in contact, by their place among those.
+    /// ϑ: the clusters in contact, by their number among the pairs.
     pub contact: OnPairs<ContactCluster>,
-    /// Time for assembling and for factorizing (s).
+    /// Time of assembly and of factorization (s).
     pub seconds: [Times; 2],
 }

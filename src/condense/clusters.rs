@@ -1,4 +1,4 @@
-//! Clusters: what blocks were merged into, with the contacts of all that lies in them.
+//! Clusters of merged blocks, with the contacts within them.
 
 use std::rc::Rc;
 
@@ -11,8 +11,8 @@ use crate::interface::rigid_modes::{RigidBasis, RigidModes};
 use crate::plan::Plan;
 use crate::schur::condensed::Condensed;
 
-/// Makes the clusters of this rank of what was `merged`; of those in contact `modes` are what rigid motions of
-/// bodies that lie wholly in one make of its conditions, and `limits` bound the normal jumps.
+/// The clusters of this rank from the `merged` nodes; of those in contact, `modes` are their constraints in the rigid
+/// motions of bodies that lie wholly in them, and `limits` are the bounds of the normal jumps.
 pub fn take_clusters(
     plan: &Plan,
     modes: &OnPairs<RigidModes>,
@@ -41,8 +41,8 @@ pub fn take_clusters(
     }
 }
 
-/// Makes S exact along rigid motions of the bodies that lie wholly in the cluster; `modes` is that of its
-/// conditions, of which the normal jumps are the `defining` ones.
+/// Makes S exact along rigid motions of bodies that lie wholly in the cluster; `modes` are its constraints in these
+/// motions, and the `defining` ones are its normal jumps.
 fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], modes: &RigidModes) {
     let m = defining.len();
     let Some(basis) = basis(defining, modes, &cluster.diagonal[..m]) else {
@@ -62,14 +62,14 @@ fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], modes: &Rig
     }
 }
 
-/// The same for the `load` on the normal jumps; `diagonal` is that of the matrix they are condensed from.
+/// The same for the `load` on the normal jumps; `diagonal` is that of the matrix from which they are condensed.
 pub fn make_load_exact(load: &mut [f64], defining: &[usize], modes: &RigidModes, diagonal: &[f64]) {
     if let Some(basis) = basis(defining, modes, diagonal) {
         basis.set_load(load);
     }
 }
 
-/// The motions of `modes` as the normal jumps see them; `None` where there is none.
+/// The motions of `modes` by their normal jumps; `None` if there is none.
 fn basis(defining: &[usize], modes: &RigidModes, diagonal: &[f64]) -> Option<RigidBasis> {
     let columns = modes.rows.ncols();
     if columns == 0 {

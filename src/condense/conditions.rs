@@ -1,4 +1,4 @@
-//! Exchange of contact conditions between contact groups and clusters.
+//! Exchange of data of contact constraints between contact groups and clusters.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use serde::de::DeserializeOwned;
 use crate::condense::substitute::Factors;
 
 impl Factors<'_> {
-    /// Brings what is said of the conditions of every contact group to its cluster, group after group.
-    /// Collective; groups by number, clusters by their place among those in contact.
+    /// Sends data of the constraints of every contact group to its cluster, group after group. Collective; groups by
+    /// number, clusters by their number among the pairs.
     pub fn collect_conditions<T: Serialize + DeserializeOwned>(
         &self,
         mut of_groups: OnGroups<Vec<T>>,
@@ -26,7 +26,7 @@ impl Factors<'_> {
         of_clusters
     }
 
-    /// Brings what is said of every condition of a cluster to the groups that they belong to. Collective.
+    /// Sends data of every constraint of a cluster to the group that it belongs to. Collective.
     pub fn spread_conditions<T: Serialize + DeserializeOwned>(
         &self,
         mut of_clusters: OnPairs<Vec<T>>,
@@ -50,7 +50,7 @@ impl Factors<'_> {
         of_groups
     }
 
-    /// Cluster, by its place among those in contact, and group, cluster by cluster.
+    /// Pair and group, cluster by cluster.
     fn places(&self) -> Vec<(PairId, GroupId)> {
         let plan = self.context.plan;
         let contact = plan.pairs.each();

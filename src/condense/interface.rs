@@ -1,4 +1,4 @@
-//! Bringing the clusters together at the root: Γ, S_0 and the bilateral operator.
+//! Assembly at the root: Γ, S_0 and the bilateral operator from all clusters.
 
 use contact_dd_partition::id::ClusterId;
 use faer::Par;
@@ -13,11 +13,11 @@ use crate::interface::operator::{Contribution, Interface};
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
 
-/// Numbers what clusters share of Γ and assembles S_0 and the bilateral operator on the root.
-/// Collective; the other ranks get nothing.
+/// Numbers the unknowns of Γ shared by clusters and assembles S_0 and the bilateral operator on the root. Collective;
+/// `None` on the other ranks.
 ///
 /// # Errors
-/// Supports that differ between subdomains, or a singular bilateral problem.
+/// Supports of a shared node differ between subdomains, or the bilateral problem is singular.
 pub fn assemble_interface(
     context: &Context<'_>,
     blocks: &CondensedBlocks,
@@ -29,7 +29,7 @@ pub fn assemble_interface(
         par,
         ..
     } = context;
-    // Few enough conditions for the root to solve for all of them at once.
+    // With few constraints the root solves the coupled contact problem of all pairs.
     let with_laws = catalog.conditions() <= MAX_JUMPS;
     let mut interface_dofs: Vec<Vec<InterfaceDof>> = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
@@ -37,7 +37,7 @@ pub fn assemble_interface(
         &plan.cluster_owners(),
         |c| contribution(blocks, plan, c, with_laws),
         |_, sent| {
-            // Owners have all that is their own.
+            // Owners keep their own data; only the root assembles.
             let Some((list, contribution)) = sent else {
                 return;
             };
@@ -49,7 +49,7 @@ pub fn assemble_interface(
     comm.agree(comm.is_root().then(assemble).transpose())
 }
 
-/// The interface problem of what the clusters sent to the root.
+/// The interface problem from the contributions of the clusters.
 fn assemble(
     plan: &Plan,
     interface_dofs: &[Vec<InterfaceDof>],
@@ -64,7 +64,7 @@ fn assemble(
     Ok((numbering, interface))
 }
 
-/// The traces of cluster c of this rank, and what it contributes.
+/// The traces of cluster c of this rank, and its contribution.
 fn contribution(
     blocks: &CondensedBlocks,
     plan: &Plan,

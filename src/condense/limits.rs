@@ -1,4 +1,4 @@
-//! Bounds on normal jumps: made where the contact groups are, joined where their clusters are.
+//! Bounds of normal jumps: computed on the owners of contact groups, joined on the owners of their clusters.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +12,10 @@ use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 
-/// The jumps of the ties of every contact group of this rank, by its number, each with its condition (m).
+/// The known jumps of the ties of every contact group of this rank, by its number, each with its constraint (m).
 pub type TiedJumps = OnGroups<Vec<(usize, f64)>>;
 
-/// The jumps of ties among limits of groups.
+/// The known jumps of ties from the limits of groups.
 pub fn tied_jumps(of_groups: &OnGroups<Limits>) -> TiedJumps {
     let tied = of_groups
         .iter()
@@ -23,8 +23,8 @@ pub fn tied_jumps(of_groups: &OnGroups<Limits>) -> TiedJumps {
     tied.collect()
 }
 
-/// The bounds on the normal jumps of every cluster in contact of this rank in a load step, by its place among
-/// those, joined from those `made` of its groups. Collective.
+/// The bounds of the normal jumps of every cluster in contact of this rank in a load step, by its number among the
+/// pairs, joined from the limits `made` of its groups. Collective.
 pub fn limits_of_clusters(context: &Context<'_>, made: &OnGroups<Limits>) -> OnPairs<Limits> {
     let Context { comm, plan, .. } = context;
     let groups = plan.groups_by_cluster();
@@ -46,10 +46,10 @@ pub fn limits_of_clusters(context: &Context<'_>, made: &OnGroups<Limits>) -> OnP
     .collect()
 }
 
-/// The bounds on the normal jumps of every contact group of this rank in a load step, by its number. Collective.
+/// The bounds of the normal jumps of every contact group of this rank in a load step, by its number. Collective.
 ///
 /// # Errors
-/// Supports that make two sides penetrate.
+/// Prescribed displacements by which two sides penetrate.
 pub fn limits_of_groups(context: &Context<'_>, loads: &Loads) -> Result<OnGroups<Limits>, Failure> {
     let made = context.groups.iter().map(|(&g, group)| {
         let limits = of_group(context, g, group, &loads.groups[&g])?;
@@ -58,7 +58,7 @@ pub fn limits_of_groups(context: &Context<'_>, loads: &Loads) -> Result<OnGroups
     context.comm.agree(made.collect())
 }
 
-/// The bounds on the normal jumps of group g.
+/// The bounds of the normal jumps of group g.
 fn of_group(
     context: &Context<'_>,
     g: GroupId,
@@ -88,11 +88,11 @@ fn of_group(
     ))
 }
 
-/// Checks that supports and other ties prescribe no other jump than a tie has, where they prescribe all of it: `bounds` are
-/// what is missing to it, of displacements up to a scale.
+/// Checks that supports and other ties don't contradict the jump of a tie if they prescribe all of it: `bounds` are the
+/// differences, compared with the scale of displacements.
 ///
 /// # Errors
-/// The first condition with another one.
+/// The first contradictory constraint.
 fn check_ties(
     context: &Context<'_>,
     group: &ContactGroup,

@@ -1,4 +1,4 @@
-//! Loads up the hierarchy and solutions down again, with the factors at hand.
+//! Condensation of loads up the hierarchy, and back-substitution down again, with existing factors.
 
 use std::collections::BTreeMap;
 
@@ -18,14 +18,14 @@ pub struct Factors<'a> {
     pub context: Context<'a>,
     /// The factors of this rank.
     pub condensed: &'a CondensedBlocks,
-    /// The nodes of the hierarchy on which loads act and of which solutions are wanted, with all above them up to the
-    /// clusters, whose own are among them; all nodes where it is left out.
+    /// The nodes of the hierarchy with loads or requested solutions, and all nodes between them and the clusters,
+    /// inclusive; all nodes if `None`.
     pub only: Option<&'a Numbered<TreeNodeId, bool>>,
 }
 
 impl Factors<'_> {
-    /// Condenses `loads` on the blocks up to the clusters, where ties have these jumps; returns the load of every node of this
-    /// rank. Collective.
+    /// Condenses `loads` on the blocks up to the clusters, where ties have these jumps; returns the load of every node
+    /// of this rank. Collective.
     pub fn condense(
         &self,
         mut loads: OnBlocks<Vec<f64>>,
@@ -44,7 +44,7 @@ impl Factors<'_> {
                 let load = loads.remove(&b).unwrap_or_default();
                 of_nodes.insert(v, block.factor.condense(load));
             } else if let Some(merge) = condensed.merges.get(&v) {
-                // Absent children have no load.
+                // Children without a load have none to send.
                 let arrived = children.iter().map(|child| arrived.get(child));
                 let of_children: Vec<&[f64]> = arrived
                     .map(|load: Option<&Vec<f64>>| load.map_or(&[][..], Vec::as_slice))
@@ -58,8 +58,8 @@ impl Factors<'_> {
         of_nodes
     }
 
-    /// The unknowns of every block of this rank for those on the `boundaries` of its clusters, by node,
-    /// where `loads` are the condensed ones, and the forces of ties below clusters, by contact group. Collective.
+    /// The unknowns of every block of this rank from those on the `boundaries` of its clusters, by node, where `loads`
+    /// are the condensed loads; and the forces of ties below clusters, by contact group. Collective.
     pub fn recover(
         &self,
         loads: &OnTreeNodes<CondensedLoad>,
@@ -89,7 +89,7 @@ impl Factors<'_> {
         (of_blocks, of_ties)
     }
 
-    /// The nodes of all clusters, children before parents, on all ranks the same.
+    /// The nodes of all clusters, children before parents, the same on all ranks.
     fn nodes(&self) -> Vec<TreeNodeId> {
         let clusters = self.context.plan.clusters.iter();
         clusters
@@ -98,13 +98,13 @@ impl Factors<'_> {
             .collect()
     }
 
-    /// The block that node v is, if it is one of this rank.
+    /// The block of node v, if this rank has it.
     fn block(&self, v: TreeNodeId) -> Option<(BlockId, &CondensedBlock)> {
         let b = self.context.plan.tree.block(v)?;
         Some((b, self.condensed.blocks.get(&b)?))
     }
 
-    /// True if a node is one of those that loads and solutions are of.
+    /// True if a node takes part in condensation and back-substitution.
     fn has(&self, v: TreeNodeId) -> bool {
         self.only.is_none_or(|only| only[v])
     }

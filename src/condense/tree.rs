@@ -1,4 +1,4 @@
-//! Up the hierarchy: blocks are condensed and merged until the clusters are left.
+//! Condensation of blocks and merging up the hierarchy to the clusters.
 
 use std::collections::BTreeMap;
 
@@ -16,11 +16,11 @@ use crate::interface::rigid_modes::RigidModes;
 use crate::schur::condensed::{Condensed, InterfaceDof};
 use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
 
-/// Condenses the `blocks` of this rank and merges them, and what other ranks send, up to the
+/// Condenses the `blocks` of this rank and merges them, with the Schur complements that other ranks send, up to the
 /// clusters. Collective.
 ///
 /// # Errors
-/// A part that can move although its boundary is held, or supports that differ between subdomains.
+/// A part with a free motion although its boundary is held, or supports that differ between subdomains.
 pub fn condense_clusters(
     condensation: &Condensation<'_>,
     modes: &OnPairs<RigidModes>,
@@ -50,7 +50,7 @@ pub fn condense_clusters(
         listener.done((spent / all).clamp(f64::MIN_POSITIVE, 1.0));
     };
     listener.done(0.0);
-    // First what needs no other rank, depth first, so that little waits at a time.
+    // First the nodes that need no other rank, depth first, so that few matrices wait at a time.
     let mut merged = alone.into_iter().try_for_each(|v| {
         if is_asked_to_stop() {
             return Err(Failure::interrupted("interrupted while factorizing"));
@@ -59,7 +59,7 @@ pub fn condense_clusters(
         is_done(v);
         Ok(())
     });
-    // Then, while others may still be at their own: what failed here is missed where it should go.
+    // Then those across ranks, even if this rank has failed: the missing child then makes its parent fail.
     for v in across {
         let result = merging.node_across_ranks(v);
         merged = merged.and(result);
@@ -79,19 +79,19 @@ pub fn condense_clusters(
     Ok(condensed)
 }
 
-/// The merges of this rank.
+/// State of the merges of this rank.
 struct Merging<'a> {
     condensation: &'a Condensation<'a>,
     condensed: CondensedBlocks,
-    /// Nodes that are condensed and not merged yet.
+    /// Condensed nodes waiting to be merged.
     waiting: OnTreeNodes<Condensed>,
-    /// Memory of what was merged.
+    /// Memory of matrices already merged.
     spare: Spare,
 }
 
 impl Merging<'_> {
-    /// The nodes of clusters under which everything is this rank's, depth first, and, on all ranks
-    /// the same, those with parts of several ranks.
+    /// The nodes of clusters for which all nodes below belong to this rank, depth first; and, the same on all ranks,
+    /// those with nodes of several ranks below.
     fn nodes(&self) -> (Vec<TreeNodeId>, Vec<TreeNodeId>) {
         let plan = self.condensation.context.plan;
         let (mut alone, mut across) = (Vec::new(), Vec::new());
@@ -112,7 +112,7 @@ impl Merging<'_> {
         (alone, across)
     }
 
-    /// Condenses a block or merges the children of an inner node, all of them this rank's.
+    /// Condenses a block, or merges the children of an inner node, all of them on this rank.
     fn own_node(&mut self, v: TreeNodeId) -> Result<(), Failure> {
         let Context { plan, blocks, .. } = self.condensation.context;
         if let Some((b, block)) = (plan.tree.block(v)).and_then(|b| Some((b, blocks.get(&b)?))) {
@@ -128,7 +128,7 @@ impl Merging<'_> {
         self.merge(v, children)
     }
 
-    /// Merges the children of an inner node, which come from several ranks. Collective.
+    /// Merges the children of an inner node that belong to several ranks. Collective.
     fn node_across_ranks(&mut self, v: TreeNodeId) -> Result<(), Failure> {
         let plan = self.condensation.context.plan;
         let (me, owner) = (self.condensation.context.comm.rank(), plan.node_owners[v]);
@@ -148,7 +148,7 @@ impl Merging<'_> {
                 _ => {}
             }
         }
-        // A child that failed isn't there; its owner says why.
+        // A child is missing if it failed; its owner reports the failure.
         if owner == me && arrived.len() == children.len() {
             self.merge(v, arrived)?;
         }

@@ -9,7 +9,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;
 
-/// Carries a vector of node v between its owner and that of its `parent`; where it has none, the owner keeps it.
+/// Sends a vector of node v between its owner and that of its `parent`; without a parent, the owner keeps it.
 /// Collective.
 pub fn carry(
     context: &Context<'_>,
@@ -41,16 +41,16 @@ pub fn carry(
 /// The direction of a message along the hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub enum Direction {
-    /// Step from a node to the one that it is merged into.
+    /// From a node to the one that it is merged into.
     Up,
-    /// Step to a node from the one that it was merged into.
+    /// To a node from the one that it was merged into.
     Down,
 }
 
-/// The limits of contact group g of this rank without loads: which dependent rows there are doesn't depend on gaps.
+/// The limits of contact group g of this rank without loads, as the dependent rows don't depend on gaps.
 ///
 /// # Errors
-/// A contact point that nothing can be replaced for.
+/// A contact point none of whose unknowns can be replaced by its jump.
 pub fn resting_limits(
     context: &Context<'_>,
     g: GroupId,
@@ -65,7 +65,7 @@ pub fn resting_limits(
 /// The jumps of contact group g of this rank.
 ///
 /// # Errors
-/// A contact point that nothing can be replaced for.
+/// A contact point none of whose unknowns can be replaced by its jump.
 pub fn jumps(context: &Context<'_>, g: GroupId, group: &ContactGroup) -> Result<Jumps, Failure> {
     let node = &context.plan.tree.nodes[context.plan.groups[g].node];
     group.jumps(&node.eliminated).map_err(|NoUnknown(j)| {

@@ -1,4 +1,4 @@
-//! The cases of a study: values of parameters that leave all factors as they are.
+//! Cases of a study: values of parameters on which no factorization depends.
 
 use std::path::Path;
 
@@ -24,10 +24,10 @@ pub struct Cases {
 }
 
 impl Cases {
-    /// Reads those of a file, for a problem with this `catalog`.
+    /// Reads the cases of a file, for a problem with this `catalog`.
     ///
     /// # Errors
-    /// A file that isn't one, a parameter that isn't there or changes factors, a value that can't be.
+    /// A malformed file, a parameter that doesn't exist or that a factorization depends on, an invalid value.
     pub fn read(path: &Path, catalog: &Catalog) -> Result<Self, Failure> {
         let wrong = |why: String| Failure::input(format!("--study {}: {why}", path.display()));
         let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
@@ -66,7 +66,7 @@ impl Cases {
     /// The parameters.
     ///
     /// # Errors
-    /// One that isn't there, or changes factors.
+    /// One doesn't exist, or a factorization depends on it.
     pub fn of<'a>(&self, catalog: &'a Catalog) -> Result<Vec<&'a Parameter>, String> {
         let can_vary = |parameter: &&Parameter| {
             !matches!(
@@ -101,7 +101,7 @@ impl Cases {
     }
 }
 
-/// The parts of a problem that differ from case to case.
+/// The parts of a problem that vary from case to case.
 pub struct Varied {
     catalog: Catalog,
     blocks: OnBlocks<Block>,
@@ -109,7 +109,7 @@ pub struct Varied {
 }
 
 impl Varied {
-    /// A case with these values of some parameters.
+    /// The case with these values of some parameters.
     pub fn new(base: &Context<'_>, parameters: &[&Parameter], values: &[f64]) -> Self {
         let mut varied = Self {
             catalog: base.catalog.clone(),
@@ -135,9 +135,9 @@ impl Varied {
         varied
     }
 
-    /// Multiplies the load that parameter `number` is.
+    /// Multiplies the load of parameter `number` by a factor.
     fn scale_load(&mut self, number: Option<usize>, factor: f64) {
-        // A factor of 1 leaves the load bit for bit.
+        // With a factor of 1 the load must keep all of its bits.
         if factor == 1.0 {
             return;
         }
@@ -164,7 +164,7 @@ impl Varied {
     }
 }
 
-/// Gives a point of a contact its gap or its friction.
+/// Changes the gap or the coefficient of friction of a contact point.
 fn vary<N>(point: &mut ContactPoint<N>, parameter: &Parameter, value: f64) {
     if Some(&point.contact) != parameter.of.first() {
         return;

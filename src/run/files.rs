@@ -24,23 +24,24 @@ use crate::recover::solution::Solution;
 use crate::report::totals::Totals;
 use crate::settings::Settings;
 
-/// The output files, as this rank has them, under temporary names until they are finished.
+/// The output files on this rank, under temporary names until they are finished.
 #[derive(Debug, Default)]
 pub struct RunFiles {
     /// The results; on the root.
     pub result: Option<ResultFile>,
-    /// The report, where one is asked for; on the root.
+    /// The report, if requested; on the root.
     report: Option<ReportFile>,
-    /// The result file beside the root's, where all ranks may write to it at once.
+    /// The result file as opened by this rank, if all ranks can write to it in parallel.
     beside: Option<FileBeside>,
 }
 
 impl RunFiles {
-    /// Creates the output files, so that a folder that can't be written is found before the work, or opens those of a run
-    /// that was stopped, with what it kept of `finished` load steps. Collective.
+    /// Creates the output files, so that an unwritable folder is found before the work starts, or opens those of a
+    /// stopped run with its `finished` load steps. Collective.
     ///
     /// # Errors
-    /// A file can't be made, or doesn't hold what was written of finished load steps, or a signal asked the run to stop.
+    /// A file can't be created, or doesn't contain the finished load steps as written, or a signal asked the run to
+    /// stop.
     pub fn create(
         context: &Context<'_>,
         settings: &Settings,
@@ -62,7 +63,7 @@ impl RunFiles {
         };
         let create = || {
             let created = create(&layout);
-            // What was made after that may be half of it.
+            // After a signal the files may be incomplete.
             match is_asked_to_stop() {
                 false => created,
                 true => Err(Failure::interrupted(
@@ -72,7 +73,7 @@ impl RunFiles {
         };
         let created = comm.agree(comm.is_root().then(create).transpose())?;
         let (result, report) = created.unzip();
-        // A single rank needs no others.
+        // A single rank needs no parallel writing.
         let shared = result.as_ref().filter(|_| comm.size() > 1);
         let mut places = shared.and_then(ResultFile::places);
         comm.broadcast(&mut places);
@@ -86,8 +87,8 @@ impl RunFiles {
         })
     }
 
-    /// Writes the solution of load step `step`, with rows of the contact points that are `absent`; returns what contacts and
-    /// supports carry, which the root knows. Collective.
+    /// Writes the solution of load step `step`, including rows of the contact points that are `absent`; returns, on the
+    /// root, the resultants of contacts and supports. Collective.
     ///
     /// # Errors
     /// The file can't be written.
@@ -116,7 +117,7 @@ impl RunFiles {
     /// Finishes the result file and writes the report. On the root.
     ///
     /// # Errors
-    /// One of them can't be written.
+    /// One of the files can't be written.
     pub fn finish(self, totals: &Totals<'_>, report: &Report) -> Result<(), Failure> {
         let json = report.to_json();
         if let Some(mut result) = self.result {

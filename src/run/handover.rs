@@ -1,4 +1,4 @@
-//! A handover of a load step that a solver doesn't converge in, or whose contact points weren't enough.
+//! Handover of a load step in which a solver doesn't converge, or whose working set of contact points is too small.
 
 use std::collections::BTreeMap;
 
@@ -13,14 +13,14 @@ use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
-/// A handover: where a load step is to be solved again, by a more robust solver or for more contact points.
+/// A handover: a load step is solved again, with a more robust solver or for more contact points.
 #[derive(Clone)]
 pub struct Handover {
-    /// The state before the load step, with the owners of the plan before.
+    /// The state before the load step, distributed over the owners of the previous plan.
     pub state: StepState,
-    /// The plan before.
+    /// The previous plan.
     pub plan: Plan,
-    /// The change.
+    /// The change for the next attempt.
     pub to: Successor,
 }
 
@@ -31,16 +31,16 @@ pub enum Successor {
     Solver {
         /// The choice.
         choice: Choice,
-        /// The solver that didn't converge, and the reason, as the root knows it.
+        /// The solver that didn't converge, and the reason, as text; on the root.
         why: String,
     },
-    /// A larger working set of contact points, with the transfer of the slips to it; none before the first load step.
+    /// A larger working set of contact points, and the transfer of slips to it; `None` before the first load step.
     Points(Option<StageTransfer>),
 }
 
 impl Handover {
-    /// The handover from the solver of a plan, which didn't converge for this reason, to another one, from the `state` before
-    /// the load step.
+    /// The handover from the solver of a plan, which didn't converge for the reason `why`, to another one, from the
+    /// `state` before the load step.
     pub fn to_solver(plan: &Plan, to: &Choice, state: StepState, why: &str) -> Self {
         let (from, choice) = (plan.merging, to.clone());
         let why = format!(
@@ -51,8 +51,8 @@ impl Handover {
         Self::new(plan, state, Successor::Solver { choice, why })
     }
 
-    /// The handover of load step k of a `stage` to other contact points, from the state before it, when those that were left
-    /// out had these jumps. Collective.
+    /// The handover of load step k of a `stage` to another set of contact points, from the state before it; the jumps
+    /// of the points outside the present set are given. Collective.
     pub fn to_points(
         context: &Context<'_>,
         (stage, whole): (&Stage<'_>, &Catalog),
@@ -64,7 +64,7 @@ impl Handover {
         Self::new(context.plan, start.clone(), Successor::Points(transfer))
     }
 
-    /// The solver that took over and the reason, where one did.
+    /// The solver that took over and the reason, as text, if one did.
     pub fn why(&self) -> Option<String> {
         match &self.to {
             Successor::Solver { why, .. } => Some(why.clone()),
@@ -75,7 +75,7 @@ impl Handover {
     /// The handover from the `state` before a load step.
     fn new(plan: &Plan, state: StepState, to: Successor) -> Self {
         Self {
-            // Of other unknowns the state on Γ says nothing.
+            // With other unknowns on Γ, the state there can't be used.
             state: StepState {
                 interface: None,
                 pairs: BTreeMap::new(),
@@ -87,8 +87,8 @@ impl Handover {
     }
 }
 
-/// The reason for a handover where a load step ended with an outcome, which the root has, converged or not, or failed;
-/// `None` where it converged, or a signal stopped it.
+/// The reason for a handover after a load step that ended with this result: converged or not with an outcome, which the
+/// root has, or failed. `None` if it converged, or a signal stopped it.
 pub fn reason_to_hand_over(
     ended: Result<(bool, Option<&SweepOutcome>), &Failure>,
 ) -> Option<String> {

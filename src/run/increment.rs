@@ -1,4 +1,4 @@
-//! An increment of load: from the state before it to the state after it.
+//! Load increment: from the state before it to the state after it.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, SweepStatus, Sweeps
 use crate::tree::contact;
 use crate::tree::fronts::ActiveSetFronts;
 
-/// Data that all increments share: everything made of matrices.
+/// Data common to all increments, including all factorized matrices.
 #[derive(Clone, Copy)]
 pub struct Increments<'a> {
     /// Context of the run.
@@ -44,40 +44,41 @@ pub struct Increments<'a> {
     pub log: &'a RunLog<'a>,
     /// Operators of the stage.
     pub operators: &'a Operators,
-    /// True if another solver takes over where this one doesn't converge.
+    /// True if another solver takes over if this one doesn't converge.
     pub is_relieved: bool,
-    /// True if quantities get derivatives.
+    /// True if derivatives of quantities are computed.
     pub has_derivatives: bool,
-    /// Linear problems that were solved for contact conditions, in tries that were given up, too; on the root.
+    /// Number of linear systems solved for contact constraints, including abandoned attempts; on the root.
     pub linear_solves: &'a Cell<usize>,
 }
 
-/// An increment that was solved, or tried.
+/// An attempted increment, converged or not.
 pub struct Increment {
     /// The clusters in contact of this rank.
     pairs: OnPairs<ContactPair>,
-    /// The statuses of the contact groups of this rank, where the tree solves for them.
+    /// The statuses of the contact groups of this rank, if the tree solver is used.
     statuses: OnGroups<Statuses>,
     /// Outcome of the sweeps; on the root.
     pub outcome: Option<SweepOutcome>,
     /// Solution on the blocks of this rank.
     pub solution: Solution,
-    /// Slips of the tangential conditions.
+    /// Slips at the tangential constraints.
     pub slips: Slips,
-    /// Data for the balance of energy of the next increment.
+    /// Data for the energy balance of the next increment.
     energies: OnBlocks<BlockEnergy>,
-    /// The balance of this one, and of those before it in the load step; on the root.
+    /// The energy balance of the load step up to the end of this increment; on the root.
     pub energy: EnergyBalance,
-    /// The scales of this one and those before, as far as they converged; on the root.
+    /// The scales of this increment and of those before, as far as they converged; on the root.
     scales: Scales,
 }
 
 impl Increments<'_> {
-    /// Solves load step k from the state `before`; `at_end` knows its rigid motions, `earlier` are the closing motions
-    /// of the step before. Where friction keeps it from converging at once, in halves. Collective.
+    /// Solves load step k from the state `before`; `at_end` is the rigid-body analysis at its end, `earlier` are the
+    /// closing motions of the step before. If friction prevents convergence in one increment, the step is halved.
+    /// Collective.
     ///
     /// # Errors
-    /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
+    /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that stopped the run.
     pub fn step(
         &self,
         k: usize,
@@ -102,8 +103,8 @@ impl Increments<'_> {
         Ok(at_once)
     }
 
-    /// Solves load step k in halves, halves of these and so on, after the closing motions `earlier`;
-    /// `None` where small parts don't converge either. Collective.
+    /// Solves load step k in successively halved increments, starting from the closing motions `earlier`; `None` if the
+    /// smallest increment doesn't converge either. Collective.
     fn in_halves(
         &self,
         k: usize,
@@ -141,13 +142,12 @@ impl Increments<'_> {
         }
     }
 
-    /// Counts linear problems that were solved.
+    /// Adds a number of linear systems.
     fn count(&self, solves: usize) {
         self.linear_solves.set(self.linear_solves.get() + solves);
     }
 
-    /// End of a load step's sweeps: converged or not, and their outcome, which the root has, or its failure.
-    /// Collective.
+    /// Result of a load step's sweeps: convergence and the outcome, which the root has, or the failure. Collective.
     pub fn ended<'s>(
         &self,
         solved: &'s Result<Increment, Failure>,
@@ -162,11 +162,11 @@ impl Increments<'_> {
         (self.context.comm).decide(status == Some(&SweepStatus::Converged))
     }
 
-    /// Solves for the loads of a moment, of which `analysis` knows the rigid motions, from the state `before`.
-    /// Collective.
+    /// Solves for the loads at a point of the load path, whose rigid-body analysis is `analysis`, from the state
+    /// `before`. Collective.
     ///
     /// # Errors
-    /// Supports that make two sides penetrate, a part that moves freely, or a signal that stopped the sweeps.
+    /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that stopped the run.
     fn solve(
         &self,
         moment: LoadPoint,
@@ -206,7 +206,7 @@ impl Increments<'_> {
         if let Some(outcome) = &mut swept.outcome {
             outcome.is_settled &= self.settings.max_sweeps.is_none();
         }
-        // From here on the load step is finished first: what was found is kept.
+        // From here on the load step is finished before the run stops, so that its solution is kept.
         go_on(&context)?;
 
         // Back-substitution, and the check of the full discrete problem.
@@ -233,8 +233,8 @@ impl Increments<'_> {
         })
     }
 
-    /// Solves S_0 U + S_CON(U) = F, (14), from the `start` and tells of every sweep: the root solves for U, the other
-    /// ranks serve S_CON. Collective.
+    /// Solves S_0 U + S_CON(U) = F, (14), from the `start` and logs every sweep: the root solves for U, the other ranks
+    /// evaluate S_CON on request. Collective.
     ///
     /// # Errors
     /// A signal stopped the sweeps.
@@ -273,11 +273,11 @@ impl Increments<'_> {
         })
     }
 
-    /// Finds which of many conditions are closed, one fixed active set after the other, and tells of every one; the first
-    /// has the statuses of the load step `before`. Collective.
+    /// Active-set iteration of the tree solver, which logs every iteration; the first active set has the statuses of
+    /// the load step `before`. Collective.
     ///
     /// # Errors
-    /// Some part of the scene moves freely.
+    /// A part of the scene has a free rigid-body motion.
     fn sweep_active_sets(
         &self,
         fronts: &RefCell<ActiveSetFronts>,
@@ -302,7 +302,7 @@ impl Increments<'_> {
         })
     }
 
-    /// The problem of a load step whose active sets the `outcome` of the sweeps fixed.
+    /// The problem of a load step with the active sets fixed by the `outcome` of the sweeps.
     fn fixed<'a>(
         &'a self,
         step: &'a StepProblem<'a>,
@@ -326,7 +326,7 @@ impl Increments<'_> {
         )
     }
 
-    /// Takes what the sweeps found to the full discrete problem by back-substitution. Collective.
+    /// Back-substitution: from the result of the sweeps to the full discrete solution. Collective.
     fn discrete(
         &self,
         swept: &mut Swept,
@@ -342,8 +342,8 @@ impl Increments<'_> {
         recover(fixed.factors(), step, u.zip(numbers))
     }
 
-    /// Accepts the `outcome` of the sweeps as far as the `solution` that it led to is one; returns the scales of this one and
-    /// the `earlier` ones, as far as they converged; on the root. Collective.
+    /// Checks the `outcome` of the sweeps against the certificate of the `solution`; returns the scales of this
+    /// increment and the `earlier` ones, as far as they converged; on the root. Collective.
     fn accept(
         &self,
         outcome: &mut Option<SweepOutcome>,
@@ -367,21 +367,21 @@ impl Increments<'_> {
     }
 }
 
-/// Boundaries of clusters, and forces and closed conditions of contact groups, as the tree has them.
+/// Boundaries of clusters, and force and status of every contact constraint, from the tree solver.
 type InTree = (OnTreeNodes<Vec<f64>>, OnGroups<Vec<(f64, bool)>>);
 
-/// The end of the sweeps, on this rank.
+/// Result of the sweeps on this rank.
 #[derive(Default)]
 struct Swept {
-    /// Their outcome; on the root.
+    /// The outcome; on the root.
     outcome: Option<SweepOutcome>,
-    /// The statuses of the contact groups, where the tree solved for them.
+    /// The statuses of the contact groups, if the tree solver was used.
     statuses: OnGroups<Statuses>,
     in_tree: Option<InTree>,
 }
 
 impl Increment {
-    /// The state that it leaves.
+    /// The state after the increment.
     pub fn into_state(self, method: Method) -> StepState {
         let outcome = self.outcome.as_ref();
         let from = (outcome, self.scales);

@@ -1,5 +1,5 @@
-//! The operators of a stage, made of matrices once for all of its load steps: factors, S_0 and the bilateral operator, or
-//! the fronts above all contact.
+//! Operators of a stage, computed once for all of its load steps: the factors, and S_0 with the bilateral operator or
+//! the fronts of the tree solver.
 
 use std::cell::RefCell;
 
@@ -20,23 +20,23 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::step::Loading;
 use crate::tree::fronts::ActiveSetFronts;
 
-/// The operators of a stage, as this rank has them.
+/// The operators of a stage on this rank.
 pub struct Operators {
     /// The factors of this rank.
     pub condensed: CondensedBlocks,
-    /// Γ and the operators on it; on the root, where they are assembled.
+    /// Γ and the operators on it, if they are assembled; on the root.
     pub interface: Option<(Numbering, Interface)>,
-    /// The fronts above all contact, where active sets are fixed one after the other.
+    /// The fronts above all contacts, if active sets are fixed.
     pub fronts: Option<RefCell<ActiveSetFronts>>,
 }
 
 impl Operators {
-    /// S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy; then S_0, (15), and the
-    /// bilateral operator at the root. `loads` are those of the stage's first load step, whose rigid motions `analysis`
-    /// knows. Collective.
+    /// S_i of the linear subdomains, (11), and S_kl of the pairs, (12), merged up the hierarchy; then S_0, (15), and
+    /// the bilateral operator at the root. `loads` are those of the stage's first load step, `analysis` is its
+    /// rigid-body analysis. Collective.
     ///
     /// # Errors
-    /// A part that can move although its boundary is held, or a signal that asked the run to stop.
+    /// A part with a free motion although its boundary is held, or a signal that stopped the run.
     pub fn new(
         context: Context<'_>,
         log: &RunLog<'_>,
@@ -56,7 +56,7 @@ impl Operators {
             .map_err(|failure| context.of_pivot(failure))?;
         let [assembling, factorizing] = condensed.seconds;
         let condensing = Times {
-            // Waiting is nobody's time on the wall.
+            // Elapsed time is the rank's own, without the waiting for others.
             elapsed: factorizing.elapsed,
             ..comm.times() - lap - assembling
         };
@@ -85,7 +85,7 @@ impl Operators {
         })
     }
 
-    /// The parts of the problem of a load step that don't depend on its loads, but for the rigid motions.
+    /// The parts of a load step's problem that don't depend on its loads, but on the rigid-body analysis.
     pub fn loading<'a>(
         &'a self,
         context: Context<'a>,
@@ -99,11 +99,11 @@ impl Operators {
         }
     }
 
-    /// Takes the laws of friction under other `loads` on the same bodies, and forgets what the last solution has left to begin
-    /// with: the next one has the bits of the first one of a run. Collective.
+    /// Sets the friction laws for other `loads` on the same bodies, and clears the state of the last solution, so that
+    /// the next one is bitwise equal to the first one of a run. Collective.
     ///
     /// # Errors
-    /// Supports that make two sides penetrate.
+    /// Prescribed displacements by which two sides penetrate.
     pub fn begin_anew(&mut self, context: &Context<'_>, loads: &Loads) -> Result<(), Failure> {
         let limits = limits_of_clusters(context, &limits_of_groups(context, loads)?);
         let mut all: Vec<Vec<TangentialLimit>> = Vec::new();
@@ -125,7 +125,7 @@ impl Operators {
         Ok(())
     }
 
-    /// The smallest pivot relative to its diagonal entry; on the root.
+    /// The smallest pivot, relative to its diagonal entry; on the root.
     pub fn smallest_pivot(&self) -> f64 {
         match (&self.interface, &self.fronts) {
             (Some((_, interface)), _) => interface.smallest_pivot(),

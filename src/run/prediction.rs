@@ -1,5 +1,5 @@
-//! The prediction of the contacts that close in a stage with friction: the same problem without friction, which is convex and
-//! has a third of the conditions.
+//! Prediction of the contacts that close in a stage with friction, from the same problem without friction, which is
+//! convex and has a third of the constraints.
 
 use std::cell::Cell;
 
@@ -16,8 +16,8 @@ use crate::step::state::{StepState, analyse_steps, stop_if_asked};
 use crate::step::working_set::{ClosestApproaches, WorkingSet};
 
 impl Stages<'_> {
-    /// The working set of a stage with friction: the points that close without it, and those nearest to that; `None` where
-    /// that isn't solved, or where they are most. Collective.
+    /// The working set of a stage with friction: the points that close without friction, and those nearest to closing;
+    /// `None` if that problem isn't solved, or if these are most points. Collective.
     ///
     /// # Errors
     /// A signal stopped the run.
@@ -37,10 +37,11 @@ impl Stages<'_> {
         }
     }
 
-    /// The closest approaches of the points of a stage without friction; `None` where a load step isn't solved. Collective.
+    /// The closest approaches of the points of a stage without friction; `None` if a load step isn't solved.
+    /// Collective.
     ///
     /// # Errors
-    /// As a whole run.
+    /// Those of the whole run.
     fn close_without_friction(
         &self,
         stage: &Stage<'_>,

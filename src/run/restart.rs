@@ -1,7 +1,7 @@
-//! Going on after the load steps that a stopped run finished.
+//! Restart of a stopped run after its finished load steps.
 //!
-//! After every load step but the last its results are on disk, under the result's name + `.unfinished`, and beside
-//! them the state that the next step starts from. `--restart` takes both, on any number of ranks.
+//! After every load step but the last, its results are on disk, under the result's name + `.unfinished`, together with
+//! the state from which the next step starts. `--restart` reads both, on any number of ranks.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -32,7 +32,7 @@ use crate::step::state::StepState;
 use crate::step::transfer::StageTransfer;
 use crate::step::working_set::WorkingSet;
 
-/// State that a run keeps beside the results of its finished load steps.
+/// State kept with the results of the finished load steps.
 #[derive(Default, Serialize, Deserialize)]
 struct KeptState {
     /// The identity of the run.
@@ -43,19 +43,19 @@ struct KeptState {
     interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
     /// The clusters in contact.
     pairs: Vec<PairState>,
-    /// The statuses of every contact group, where the tree solves for them.
+    /// The statuses of every contact group, if the tree solver is used.
     statuses: Vec<Option<Statuses>>,
     /// The tangential jumps of every contact group (m).
     slips: Vec<Vec<f64>>,
-    /// Data of every block for the balance of energy, where there is friction.
+    /// Data of every block for the energy balance, if there is friction.
     energies: Vec<BlockEnergy>,
     /// Transfer to the stage of the next load step.
     transfer: StageTransfer,
-    /// The working set of contact points, where there is one.
+    /// The working set of contact points, if there is one.
     working_set: Option<WorkingSet>,
 }
 
-/// Two runs that agree in this go the same way.
+/// Identity of a run: runs with equal ones have equal results.
 #[derive(Default, PartialEq, Serialize, Deserialize)]
 struct Identity {
     problem: u64,
@@ -77,7 +77,7 @@ impl Identity {
     }
 }
 
-/// A number that is another one for another file.
+/// A hash of a file's content.
 fn digest(path: &Path) -> std::io::Result<u64> {
     let (mut file, mut hasher) = (File::open(path)?, DefaultHasher::new());
     let mut bytes = vec![0; 1 << 20];
@@ -89,29 +89,29 @@ fn digest(path: &Path) -> std::io::Result<u64> {
     }
 }
 
-/// The finished load steps of a run that was stopped, and the state after them.
+/// The finished load steps of a stopped run, and the state after them.
 #[derive(Default)]
 pub struct Finished {
     /// Number of finished load steps.
     pub count: usize,
     /// The totals of the finished load steps; on the root.
     pub steps: Vec<StepTotals>,
-    /// Transfer to the stage of the next one.
+    /// Transfer to the stage of the next load step.
     pub transfer: StageTransfer,
-    /// The working set of contact points, where there is one.
+    /// The working set of contact points, if there is one.
     pub working_set: Option<WorkingSet>,
-    /// The state that the next one starts from; on the root.
+    /// The state from which the next load step starts; on the root.
     kept: Option<KeptState>,
     /// The unfinished result file; on the root.
     pub file: Option<file::Kept>,
-    /// The warning of a missing file; on the root.
+    /// The warning that there is no state to restart from; on the root.
     pub warning: Option<String>,
 }
 
-/// Looks for what a run like this one kept, where `settings` ask for that. Collective.
+/// Finds the state kept by a run with this identity, if `settings` ask for a restart. Collective.
 ///
 /// # Errors
-/// It is that of another problem, of other settings or of another version of the program.
+/// It is the state of another problem, of other settings or of another version of the program.
 pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Failure> {
     if !settings.restart {
         return Ok(Finished::default());
@@ -141,7 +141,7 @@ pub fn finished_steps(comm: &Comm, settings: &Settings) -> Result<Finished, Fail
 }
 
 impl Finished {
-    /// The state that the next load step of a `stage` starts from, that of a `handover` if there was one. Collective.
+    /// The state from which the next load step of a `stage` starts: that of a `handover` if there is one. Collective.
     pub fn start(
         &mut self,
         context: &Context<'_>,
@@ -168,13 +168,13 @@ impl Finished {
         };
         let scales = self.steps.iter().map(|step| step.scales);
         StepState {
-            // Those of the finished load steps that converged; on the root.
+            // The scales of the finished load steps that converged; on the root.
             scales: scales.fold(Scales::default(), Scales::and),
             ..state
         }
     }
 
-    /// The state that the load step after the finished ones starts from, in the middle of a stage. Collective.
+    /// The state from which the load step after the finished ones starts, within a stage. Collective.
     fn state(&mut self, context: &Context<'_>) -> StepState {
         let Context { comm, plan, .. } = *context;
         let mut kept = self.kept.take().unwrap_or_default();
@@ -221,8 +221,8 @@ fn read(settings: &Settings) -> Result<Option<(file::Kept, KeptState)>, Failure>
     )))
 }
 
-/// Keeps the results of the `finished` load steps and the `state` after them for a run that goes on. Collective; `result`
-/// is the root's.
+/// Keeps the results of the `finished` load steps and the `state` after them for a restart. Collective; `result` is the
+/// root's.
 ///
 /// # Errors
 /// The file can't be written.

@@ -1,4 +1,4 @@
-//! A stage: load steps in which the same bodies and contacts are there, and which share one factorization.
+//! A stage: load steps with the same bodies and contacts, which share one factorization.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ use crate::run::handover::{Handover, Successor};
 use crate::settings::Settings;
 use crate::step::state::analyse_steps;
 
-/// The data that all stages of a run share.
+/// The data common to all stages of a run.
 #[derive(Clone, Copy)]
 pub struct Stages<'a> {
     /// All ranks.
@@ -38,23 +38,23 @@ pub struct Stages<'a> {
     pub par: Par,
 }
 
-/// The part of a stage that a rank has.
+/// The part of a stage on one rank.
 pub struct Parts {
-    /// The owners of everything.
+    /// The plan, which assigns owners.
     pub plan: Plan,
     blocks: OnBlocks<Block>,
     groups: OnGroups<ContactGroup>,
     costs: Vec<CostEstimate>,
     available: f64,
-    /// Reason for the choice of the solver of contact conditions, in words.
+    /// Reason for the choice of the solver of contact constraints, as text.
     pub why: String,
 }
 
 impl Stages<'_> {
-    /// Checks the rigid motions in load `steps` in which the same is there. Collective.
+    /// Checks the rigid-body motions in load `steps` of one stage. Collective.
     ///
     /// # Errors
-    /// A part that moves freely, or one for which there is no place.
+    /// A part with a free rigid-body motion driven by the load, or contradictory constraints on a node.
     pub fn check(&self, steps: Range<usize>) -> Result<Checked, Failure> {
         let stage = self.file.catalog().stage(steps, &[]);
         let choices = self.choices(&stage.catalog, None)?;
@@ -73,11 +73,11 @@ impl Stages<'_> {
         })
     }
 
-    /// The choices of the operator for the contact conditions of a stage, the best one first; that of a handover if there
-    /// was one. Collective.
+    /// The choices of the operator for the contact constraints of a stage, the best one first; after a handover to
+    /// another solver, its choice only. Collective.
     ///
     /// # Errors
-    /// Wishes that exclude each other.
+    /// Contradictory choices of the user.
     pub fn choices(
         &self,
         catalog: &Catalog,
@@ -89,9 +89,9 @@ impl Stages<'_> {
         }
     }
 
-    /// The choice that takes over where a `merging` doesn't lead to a solution, if there is memory for it. Collective.
+    /// The choice to take over if a `merging` doesn't converge, if there is memory for it. Collective.
     pub fn more_robust(&self, catalog: &Catalog, merging: Merging) -> Option<Choice> {
-        // A limit on sweeps is one on all solvers.
+        // A limit on sweeps applies to all solvers together.
         if self.settings.max_sweeps.is_some() {
             return None;
         }
@@ -100,11 +100,11 @@ impl Stages<'_> {
         Some(robust)
     }
 
-    /// The part of this rank of a stage to be solved by the first of some `choices` for which there is memory; of the `first`
-    /// stage the log describes the problem. Collective.
+    /// This rank's part of a stage, for the first of some `choices` for which there is memory; for the `first` stage
+    /// the problem is logged. Collective.
     ///
     /// # Errors
-    /// Too little memory, or a part of the problem file that isn't what it should be.
+    /// Too little memory, or invalid data in the problem file.
     pub fn parts(
         &self,
         stage: &Stage<'_>,
@@ -144,7 +144,7 @@ impl Stages<'_> {
         })
     }
 
-    /// The context of all phases that work on a stage.
+    /// The context of all phases of a stage.
     pub fn context<'a>(&'a self, stage: &'a Stage<'_>, parts: &'a Parts) -> Context<'a> {
         Context {
             comm: self.comm,

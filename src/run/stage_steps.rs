@@ -1,4 +1,4 @@
-//! The load steps of a stage, and what the last of them passes on.
+//! Load steps of a stage, and the transfer from the last of them to the next stage.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -20,7 +20,7 @@ use crate::step::state::StepState;
 use crate::step::transfer::StageEnd;
 use crate::step::working_set::WorkingSet;
 
-/// The data that the load steps of a stage share.
+/// The data common to the load steps of a stage.
 pub struct StageSteps<'a> {
     /// The stage.
     pub stage: &'a Stage<'a>,
@@ -30,7 +30,7 @@ pub struct StageSteps<'a> {
     pub next: Option<&'a Range<usize>>,
     /// The context of its phases.
     pub context: Context<'a>,
-    /// The rigid motions at the end of every load step.
+    /// The rigid-body analysis at the end of every load step.
     pub analyses: &'a [RigidBodyAnalysis],
     /// The closing motions before the first one.
     pub before: &'a [Vec<f64>],
@@ -38,12 +38,12 @@ pub struct StageSteps<'a> {
     pub operators: &'a Operators,
     /// The rows of contact points that are absent; on the root.
     pub absent: &'a [ContactRow],
-    /// The solver that takes over where the steps don't converge.
+    /// The solver that takes over if the steps don't converge.
     pub robust: Option<&'a Choice>,
 }
 
 impl StageSteps<'_> {
-    /// The increments of a load step, which count their `linear_solves`.
+    /// The increments of a load step; `linear_solves` counts their linear systems.
     pub fn increments<'a>(
         &'a self,
         settings: &'a Settings,
@@ -61,7 +61,7 @@ impl StageSteps<'_> {
         }
     }
 
-    /// Passes what the last load step of the stage leaves on to the `next` stage. Collective.
+    /// Transfer from the last load step of the stage to the `next` stage. Collective.
     pub fn pass_on(
         &self,
         (solved, analysis): (&Increment, &RigidBodyAnalysis),
@@ -77,8 +77,8 @@ impl StageSteps<'_> {
         finished.transfer = transfer.after(&self.context, self.stage, end, self.whole, next);
     }
 
-    /// The handover of load step k, before which the state is `start` and what is `finished` ends, to the more robust
-    /// solver, or to all contact points where there is none. Collective.
+    /// The handover of load step k to the more robust solver, or to all contact points if there is none; `start` is the
+    /// state before the step, `finished` are the steps before it. Collective.
     pub fn to_more_robust(
         &self,
         (k, start): (usize, &StepState),
@@ -94,8 +94,7 @@ impl StageSteps<'_> {
         }
     }
 
-    /// The handover of a load step, before which the state is given and what is `finished` ends, to another working set.
-    /// Collective.
+    /// The handover of a load step to another working set, from the state before it. Collective.
     pub fn with_set(
         &self,
         set: WorkingSet,

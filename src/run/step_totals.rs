@@ -1,4 +1,4 @@
-//! The totals of a load step: what is kept of its solution for the report.
+//! Totals of a load step, kept for the report.
 
 use contact_dd_partition::id::BlockId;
 use contact_dd_partition::magnitude::short;
@@ -13,12 +13,13 @@ use crate::report::totals::StepTotals;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::sweep::{SweepOutcome, SweepStatus};
 
-/// Part of the bodies with large strains from which on these are worth a warning: at an edge or a tip strains are as large as
-/// cells are small.
+/// Fraction of the bodies' measure with large strains above which a warning is given: at edges and crack tips strains
+/// grow without bound as cells become smaller.
 const SEEN: f64 = 1e-3;
 
 impl StepTotals {
-    /// The totals of a load step whose `solution` the sweeps' `outcome` led to, by way of so many `linear_solves`.
+    /// The totals of a load step with this `solution` and `outcome` of the sweeps, after this number of
+    /// `linear_solves`.
     pub fn new(
         (outcome, linear_solves): (SweepOutcome, usize),
         solution: &Solution,
@@ -60,7 +61,7 @@ impl StepTotals {
     }
 }
 
-/// The warning of the largest strain, that of a block, where it isn't small.
+/// A warning of the largest strain of any block, if it isn't small.
 fn large_strain((block, largest): (BlockId, LargestStrain), catalog: &Catalog) -> Option<String> {
     if largest.large <= SEEN * largest.whole {
         return None;
@@ -78,7 +79,7 @@ fn large_strain((block, largest): (BlockId, LargestStrain), catalog: &Catalog) -
     ))
 }
 
-/// The warning of a motion at the limit of friction.
+/// The warning of a motion at the friction limit.
 fn at_limit(motion: &str) -> String {
     format!(
         "limit of friction: friction alone holds {motion}, with all the force that the law allows, which is the same \

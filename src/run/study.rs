@@ -1,4 +1,4 @@
-//! A study: the quantities of many cases, by the factors of one run.
+//! A study: quantities of many cases with the factors of one run.
 
 use std::cell::Cell;
 use std::path::Path;
@@ -41,18 +41,19 @@ struct Case {
     values: Vec<f64>,
     /// "converged", "not_converged" or "ill_posed".
     status: &'static str,
-    /// Reason for which it is ill-posed, in words.
+    /// Reason why it is ill-posed, as text.
     #[serde(skip_serializing_if = "Option::is_none")]
     why: Option<String>,
-    /// The values of the quantities; none where it is ill-posed.
+    /// The values of the quantities; empty if it is ill-posed.
     quantities: Vec<f64>,
 }
 
 impl Stages<'_> {
-    /// Solves for the cases of a study and writes the table of its quantities; returns whether all converged. Collective.
+    /// Solves the cases of a study and writes the table of their quantities; returns true if all converged. Collective.
     ///
     /// # Errors
-    /// As a whole run, but for cases that are ill-posed; load steps, of which a study has none.
+    /// Those of the whole run, except that a case may be ill-posed; a problem with load steps, which a study can't
+    /// have.
     pub fn study(&self, path: &Path) -> Result<bool, Failure> {
         let catalog = self.file.catalog();
         let read = || match (catalog.steps.is_empty(), catalog.quantities.is_empty()) {
@@ -92,7 +93,7 @@ impl Stages<'_> {
         Ok(self.comm.decide(all_converged))
     }
 
-    /// Solves for all cases by the same factors. Collective.
+    /// Solves all cases with the same factors. Collective.
     fn solve_cases(&self, asked: &Cases, parameters: &[&Parameter]) -> Result<Vec<Case>, Failure> {
         let settings = &Settings {
             no_stress: true,
@@ -151,7 +152,7 @@ impl Stages<'_> {
 /// The row of a case. Collective.
 ///
 /// # Errors
-/// One that isn't that the case is ill-posed.
+/// An error other than an ill-posed case.
 fn row(
     increments: &Increments<'_>,
     values: &[f64],

@@ -9,7 +9,7 @@ use contact_dd_partition::manual::{Answer, Document, Manual};
 use contact_dd_partition::solver::SolverSettings;
 use serde::Serialize;
 
-/// Text of the manual beside the options.
+/// Text of the manual in addition to the options.
 pub const MANUAL: Manual = Manual {
     examples: &[
         (
@@ -169,10 +169,10 @@ pub enum LogFormat {
 }
 
 impl CommandLine {
-    /// Parses the arguments that the program was started with.
+    /// Parses the arguments of this program.
     ///
     /// # Errors
-    /// They ask for no run, or aren't what was expected: the answer to them.
+    /// The arguments ask for no run, or are invalid: the answer to print.
     pub fn of_this_program() -> Result<Self, Answer> {
         let command_line = Self::try_parse().map_err(|error| Answer::of(&error))?;
         if let Some(document) = command_line.generate {
@@ -189,13 +189,13 @@ impl CommandLine {
 
     /// The problem file.
     pub fn problem(&self) -> PathBuf {
-        // The parser insists on one where it is asked for.
+        // The parser requires one whenever a run needs it.
         self.problem.clone().unwrap_or_default()
     }
 }
 
 impl LogFormat {
-    /// The format that the program's arguments ask for, be they right in all else or not.
+    /// The log format of the program's arguments, even if these are invalid otherwise.
     pub fn of_this_program() -> Self {
         let words: Vec<String> = std::env::args_os()
             .map(|word| word.to_string_lossy().into_owned())

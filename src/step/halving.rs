@@ -1,6 +1,6 @@
-//! The way through a load step in halves, and halves of these.
+//! Halving of the increments of a load step.
 
-/// Smallest part of a load step that is tried.
+/// Smallest increment tried, as a fraction of the load step.
 const SMALLEST: f64 = 1.0 / 8.0;
 
 /// Progress of a load step.
@@ -8,7 +8,7 @@ const SMALLEST: f64 = 1.0 / 8.0;
 pub struct StepHalving {
     done: f64,
     part: f64,
-    /// Increments that were accepted.
+    /// Number of accepted increments.
     pub increments: usize,
 }
 
@@ -23,19 +23,19 @@ impl Default for StepHalving {
 }
 
 impl StepHalving {
-    /// Share of the load at the end of the next increment.
+    /// Fraction of the load at the end of the next increment.
     pub fn next(&self) -> f64 {
         f64::min(1.0, self.done + self.part)
     }
 
-    /// Accepts the next increment; whether it was the last.
+    /// Accepts the next increment; returns true if it was the last.
     pub fn accept(&mut self) -> bool {
         self.done = self.next();
         self.increments += 1;
         self.done >= 1.0
     }
 
-    /// Makes the next increment half as large; whether it isn't too small for that.
+    /// Halves the next increment; returns false if that is too small.
     pub fn halve(&mut self) -> bool {
         self.part *= 0.5;
         self.part >= SMALLEST

@@ -1,4 +1,4 @@
-//! Load steps: what acts in one, and the state that it starts from and leaves.
+//! State between load steps.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -26,23 +26,23 @@ use crate::sweep::{Method, Start, SweepOutcome, SweepStatus};
 pub struct StepState {
     /// U, and the statuses of every cluster in contact; on the root.
     pub interface: Option<(Vec<f64>, Vec<Vec<Status>>)>,
-    /// The clusters in contact of this rank, by their place among those.
+    /// The clusters in contact of this rank, by their number among the pairs.
     pub pairs: OnPairs<PairState>,
-    /// The statuses of the contact groups of this rank, where the tree solves for them; none where they weren't found.
+    /// The statuses of the contact groups of this rank, if the tree solver is used; empty if unknown.
     pub statuses: OnGroups<Statuses>,
-    /// The tangential jumps at the tangential conditions of every contact group of this rank, since the bodies
-    /// were unloaded (m).
+    /// The tangential jumps at the tangential constraints of every contact group of this rank, since the bodies were
+    /// unloaded (m).
     pub slips: OnGroups<Vec<f64>>,
-    /// Data of the blocks of this rank for the balance of energy, where there is friction.
+    /// Data of the blocks of this rank for the energy balance, if there is friction.
     pub energies: OnBlocks<BlockEnergy>,
-    /// The scales of the load steps that converged so far; on the root.
+    /// The scales of the converged load steps so far; on the root.
     pub scales: Scales,
 }
 
 impl StepState {
-    /// The state after a step that ended with `outcome` and `scales`, which the root has, `slips` and `energies`. A step that went nowhere is no
-    /// place to start from; neither are others for picard, whose relaxation is that of the contacts that the
-    /// bilateral solution leaves closed.
+    /// The state after a step with these `slips` and `energies`, and on the root its `outcome` and `scales`. A diverged
+    /// step leaves no start for the next one; nor do others with picard, whose relaxation is determined for the
+    /// contacts closed in the bilateral solution.
     pub fn after(
         (pairs, statuses): (OnPairs<ContactPair>, OnGroups<Statuses>),
         slips: OnGroups<Vec<f64>>,
@@ -64,8 +64,8 @@ impl StepState {
         }
     }
 
-    /// The loads at a moment after this state, without the closing motions of `analysis`: the sides stick where it leaves
-    /// them, and friction opposes the way from there.
+    /// The loads at a point of the load path after this state, without the closing motions of `analysis`; sides stick
+    /// at this state's tangential jumps, and friction opposes the slip from there.
     pub fn loads(
         &self,
         context: &Context<'_>,
@@ -81,7 +81,7 @@ impl StepState {
         without_closing_motions(context, loads, analysis)
     }
 
-    /// The state that the owners of groups and blocks of a plan `before` have, with the owners of the plan of now.
+    /// The state redistributed from the owners of groups and blocks in the plan `before` to those in the present plan.
     /// Collective.
     #[must_use]
     pub fn handed_over(mut self, context: &Context<'_>, before: &Plan) -> Self {
@@ -107,7 +107,7 @@ impl StepState {
         Self {
             slips,
             energies,
-            // Another solver begins where all is closed.
+            // Another solver starts from the bilateral problem.
             statuses: BTreeMap::new(),
             ..self
         }
@@ -122,11 +122,11 @@ impl StepState {
     }
 }
 
-/// Looks at the rigid motions of the scene at the end of these load steps, which come after the closing motions `before`.
+/// Rigid-body analysis of the scene at the end of these load steps, starting from the closing motions `before`.
 /// Collective.
 ///
 /// # Errors
-/// Prescribed displacements that leave no place for a node, or a load that drives a motion that nothing holds.
+/// Prescribed displacements that contradict obstacles at a node, or a load that drives a free rigid-body motion.
 pub fn analyse_steps(
     context: &Context<'_>,
     steps: Range<usize>,
@@ -142,11 +142,11 @@ pub fn analyse_steps(
     Ok(analyses)
 }
 
-/// Looks at the rigid motions of the scene at a moment, which comes after the closing motions `before`, none at first.
-/// Collective.
+/// Rigid-body analysis of the scene at a point of the load path, starting from the closing motions `before`, which are
+/// empty at first. Collective.
 ///
 /// # Errors
-/// Prescribed displacements that leave no place for a node, or a load that drives a motion that nothing holds.
+/// Prescribed displacements that contradict obstacles at a node, or a load that drives a free rigid-body motion.
 pub fn analyse(
     context: &Context<'_>,
     moment: LoadPoint,
@@ -160,7 +160,7 @@ pub fn analyse(
     analyse_bodies(context, &loads, before)
 }
 
-/// A failure after k load steps, which says where their results are if it was a signal.
+/// A failure after k load steps; if it was a signal, the message states where their results are.
 pub fn finished(failure: Failure, context: &Context<'_>, settings: &Settings, k: usize) -> Failure {
     failure.after(
         k,
@@ -169,18 +169,18 @@ pub fn finished(failure: Failure, context: &Context<'_>, settings: &Settings, k:
     )
 }
 
-/// Ends the run before load step k if a signal asked for that. Collective.
+/// Ends the run before load step k if a signal has asked for that. Collective.
 ///
 /// # Errors
-/// A signal did.
+/// A signal has asked the run to stop.
 pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Result<(), Failure> {
     go_on(context).map_err(|failure| finished(failure, context, settings, k))
 }
 
-/// Goes on unless a signal has asked the run to stop. Collective.
+/// Returns an error if a signal has asked the run to stop. Collective.
 ///
 /// # Errors
-/// A signal did.
+/// A signal has asked the run to stop.
 pub fn go_on(context: &Context<'_>) -> Result<(), Failure> {
     match context.comm.is_any_asked_to_stop() {
         false => Ok(()),

@@ -1,5 +1,4 @@
-//! The transfer of state from one stage to the next: from the load steps before bodies or contacts are added or removed
-//! to those after that.
+//! Transfer of state from one stage to the next, between which bodies or contacts are added or removed.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -15,19 +14,19 @@ use crate::bytes::Reals;
 use crate::context::Context;
 use crate::step::state::StepState;
 
-/// Transfer from one stage to the next, by the places of contact points in the catalog of the whole problem; nothing
-/// before the first.
+/// Transfer from one stage to the next; contact points are given by their index in the catalog of the whole problem.
+/// Empty before the first stage.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct StageTransfer {
-    /// The jump ⟦u⟧ that every point had when it came (m).
+    /// The jump ⟦u⟧ of every point when it was added (m).
     pub since: Vec<[f64; 3]>,
-    /// The tangential jumps of those that were there and have friction (m).
+    /// The tangential jumps of the points with friction that were present (m).
     slips: BTreeMap<usize, Vec<f64>>,
     /// The closing motions of bodies.
     pub closing_motions: Vec<Vec<f64>>,
 }
 
-/// The end of a stage.
+/// The state at the end of a stage.
 #[derive(Clone, Copy)]
 pub struct StageEnd<'a> {
     /// The displacement of every block of this rank, node by node (m).
@@ -39,8 +38,8 @@ pub struct StageEnd<'a> {
 }
 
 impl StageTransfer {
-    /// The transfer from the last load step of a `stage`, which began with this and ended as `end` says, to the load
-    /// steps `next`; `whole` is the problem. Collective.
+    /// The transfer from the last load step of a `stage`, which began with this transfer and ended in the state `end`,
+    /// to the load steps `next`; `whole` is the problem. Collective.
     pub fn after(
         &self,
         context: &Context<'_>,
@@ -70,8 +69,8 @@ impl StageTransfer {
         transfer
     }
 
-    /// The transfer within a stage, from a working set of contact points to another: the tangential jumps of its points are
-    /// `slips`, those of the points `outside` follow from their jumps. Collective.
+    /// The transfer within a stage from one working set of contact points to another: the tangential jumps of its
+    /// points are `slips`, those of the points `outside` are computed from their jumps. Collective.
     pub fn between_sets(
         context: &Context<'_>,
         stage: &Stage<'_>,
@@ -93,7 +92,7 @@ impl StageTransfer {
         transfer
     }
 
-    /// The state in which a `stage` begins: what comes sticks where it is put.
+    /// The initial state of a `stage`: added contacts stick where they are added.
     pub fn state(&self, context: &Context<'_>, stage: &Stage<'_>) -> StepState {
         if self.since.is_empty() {
             return StepState::default();
@@ -120,7 +119,7 @@ impl StageTransfer {
     }
 }
 
-/// The jumps ⟦u⟧ of these contact points of the `whole` problem under the displacement of every block (m); on the root.
+/// The jumps ⟦u⟧ of these contact points of the `whole` problem for the displacement of every block (m); on the root.
 /// Collective.
 pub fn jumps_of(
     places: &[usize],
@@ -132,7 +131,7 @@ pub fn jumps_of(
     jumps_of_points(&points.collect::<Vec<_>>(), context, displacement)
 }
 
-/// The jumps ⟦u⟧ of points under the displacement of every block (m); on the root. Collective.
+/// The jumps ⟦u⟧ of points for the displacement of every block (m); on the root. Collective.
 pub fn jumps_of_points(
     points: &[ContactPoint<SubdomainNode>],
     context: &Context<'_>,
@@ -164,8 +163,8 @@ pub fn jumps_of_points(
     own.map(|point| jump(point, &mut of_node)).collect()
 }
 
-/// The tangential jumps of the contact points of a `stage` with friction (m), by their places in the `whole` problem, from
-/// those of the groups of this rank; on the root. Collective.
+/// The tangential jumps of the contact points of a `stage` with friction (m), by their index in the `whole` problem,
+/// from those of the groups of this rank; on the root. Collective.
 fn slips_of_points(
     context: &Context<'_>,
     stage: &Stage<'_>,
@@ -192,7 +191,7 @@ fn slips_of_points(
     of_points
 }
 
-/// The jump of a point under the displacements of its nodes, of an equation along the axis of its first one.
+/// The jump of a point for the displacements of its nodes; that of an equation is along the axis of its first one.
 fn jump(
     point: &ContactPoint<SubdomainNode>,
     mut displacement: impl FnMut(&SubdomainNode) -> [f64; 3],

@@ -1,8 +1,8 @@
-//! The working set of contact points: those that a run with friction solves for, where most points never close.
+//! Working set of contact points: the points that a run with friction solves for, if most points never close.
 //!
-//! The matrix of all conditions grows with the square of their number, and of a pin with clearance one point in ten is
-//! closed. Points outside of the set are left open and have no unknowns. Their gaps are checked after every load step:
-//! points that overlap join, and the step is solved again. Where none overlaps, the solution is that of all points.
+//! The matrix of all constraints grows with the square of their number, and in a pin with clearance one point in ten is
+//! closed. Points outside the set stay open and have no unknowns. Their gaps are checked after every load step: points
+//! that overlap are added, and the step is solved again. If none overlaps, the solution is that of all points.
 
 use std::collections::BTreeMap;
 
@@ -18,33 +18,33 @@ use crate::fem::contact_state::{ContactRow, ContactState};
 use crate::settings::Settings;
 use crate::step::transfer::jumps_of;
 
-/// Conditions, tangential ones among them, up to which all points are solved for at once.
+/// Number of constraints, tangential ones included, up to which all points are solved for at once.
 const FEW: usize = 3000;
-/// Share of the points that have to be apart at first: where sides touch, most points stay closed.
+/// Smallest fraction of points with an initial gap: where sides touch initially, most points stay closed.
 const APART: f64 = 0.5;
-/// Largest share of all points in a set: a larger one saves less than it costs.
+/// Largest fraction of all points in a set: a larger one saves less than it costs.
 const WORTH: f64 = 0.7;
 
-/// A working set, and the position of the points outside of it.
+/// A working set, and the jumps of the points outside it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WorkingSet {
-    /// The points that are solved for, by their places in the catalog, ascending.
+    /// The points of the set, by their indices in the catalog, ascending.
     pub points: Vec<usize>,
-    /// The jump ⟦u⟧ of every point outside after the last load step (m), 0 at first.
+    /// The jump ⟦u⟧ of every point outside the set after the last load step (m), initially 0.
     pub outside: BTreeMap<usize, [f64; 3]>,
 }
 
 /// The closest approaches of contact points in several load steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClosestApproaches {
-    /// Points that were closed.
+    /// Flags of points that were closed in any step.
     pub closed: Vec<bool>,
-    /// The least gap of every point (m).
+    /// The smallest gap of every point (m).
     pub gaps: Vec<f64>,
 }
 
 impl ClosestApproaches {
-    /// The closest approaches of so many points before the first load step.
+    /// The closest approaches of `count` points before the first load step.
     pub fn new(count: usize) -> Self {
         Self {
             closed: vec![false; count],
@@ -53,15 +53,15 @@ impl ClosestApproaches {
     }
 }
 
-/// The statuses of points outside of a working set at the end of a load step.
+/// Result of the check of the points outside a working set at the end of a load step.
 pub enum Outside {
-    /// All open, with these rows.
+    /// All are open; these are their rows.
     Open(Vec<ContactRow>),
-    /// Some overlap: the larger set with which the step is to be solved again.
+    /// Some overlap; this is the larger set for which the step is to be solved again.
     Overlaps(WorkingSet),
 }
 
-/// True if a problem may have a working set: friction at many points, most of which are apart at first.
+/// True if a working set may pay for a problem: friction at many points, most of them with an initial gap.
 pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
     let wishes = settings.wishes();
     let of_point = |point: &ContactPoint<SubdomainNode>| 1 + point.tangents(catalog.dim).len();
@@ -74,7 +74,7 @@ pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
     catalog.has_friction()
         && conditions > FEW
         && apart as f64 >= APART * catalog.points.len() as f64
-        // Quantities may name any point, and bodies that are added or removed have a state of their own.
+        // Quantities may refer to any point, and added or removed bodies have a state of their own.
         && catalog.quantities.is_empty()
         && !catalog.has_stages()
         && wishes.method == Method::Newton
@@ -83,7 +83,7 @@ pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
         && settings.max_sweeps.is_none()
 }
 
-/// True if a point is apart at first, and free as long as it is open.
+/// True if a point has an initial gap, and no force while it is open.
 fn can_wait(point: &ContactPoint<SubdomainNode>) -> bool {
     let is_free = match point.law {
         Law::Frictionless => true,
@@ -95,8 +95,8 @@ fn can_wait(point: &ContactPoint<SubdomainNode>) -> bool {
 }
 
 impl WorkingSet {
-    /// The set with which to begin: of all points that closed in some load step without friction, and as many more of the
-    /// least gaps; `None` where those are most.
+    /// The initial set: all points that closed in any load step without friction, and as many more with the smallest
+    /// gaps; `None` if these are most points.
     pub fn predicted(catalog: &Catalog, approaches: &ClosestApproaches) -> Option<Self> {
         let ClosestApproaches { closed, gaps } = approaches;
         let always = |j: &usize| closed[*j] || !can_wait(&catalog.points[*j]);
@@ -104,7 +104,7 @@ impl WorkingSet {
         set.is_worth(catalog).then_some(set)
     }
 
-    /// True if it is small enough.
+    /// True if the set is small enough to pay.
     fn is_worth(&self, catalog: &Catalog) -> bool {
         self.points.len() as f64 <= WORTH * catalog.points.len() as f64
     }
@@ -117,8 +117,8 @@ impl WorkingSet {
         }
     }
 
-    /// The set after points `join`, and as many more of the least of all `gaps`, which may close as these do; all of them
-    /// where it isn't worth to leave out the rest.
+    /// The set enlarged by the points `join` and as many more with the smallest `gaps`, which may close as well; all
+    /// points if the enlarged set doesn't pay.
     #[must_use]
     fn grown(&self, catalog: &Catalog, join: &[usize], gaps: &[f64]) -> Self {
         let grown = self.with(catalog, join.iter().copied(), gaps);
@@ -150,8 +150,8 @@ impl WorkingSet {
         }
     }
 
-    /// Checks the points outside under the displacement at the end of a load step, and keeps their jumps where all are open.
-    /// Collective.
+    /// Checks the points outside the set for the displacement at the end of a load step, and keeps their jumps if all
+    /// are open. Collective.
     pub fn after_step(
         &mut self,
         context: &Context<'_>,
@@ -169,7 +169,7 @@ impl WorkingSet {
         Outside::Open(rows)
     }
 
-    /// The jumps ⟦u⟧ of the points outside under a displacement (m), on all ranks. Collective.
+    /// The jumps ⟦u⟧ of the points outside the set for a displacement (m), on all ranks. Collective.
     fn jumps_outside(
         &self,
         context: &Context<'_>,
@@ -184,7 +184,7 @@ impl WorkingSet {
     }
 }
 
-/// The gaps that jumps leave at points outside of a working set, of other points none (m).
+/// The remaining gaps of points outside a working set from their jumps, infinite for other points (m).
 fn gaps_left(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<f64> {
     let mut gaps = vec![f64::INFINITY; catalog.points.len()];
     for (&j, jump) in jumps {
@@ -194,7 +194,7 @@ fn gaps_left(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<f64> {
     gaps
 }
 
-/// The rows of the points outside of a working set, open, with these jumps.
+/// The rows of the points outside a working set, which are open, with these jumps.
 fn open_rows(catalog: &Catalog, jumps: &BTreeMap<usize, [f64; 3]>) -> Vec<ContactRow> {
     let row = |(&j, jump): (&usize, &[f64; 3])| {
         let point = &catalog.points[j];

@@ -9,19 +9,19 @@ use crate::error::Failure;
 use crate::interface::coupled::CoupledContact;
 use crate::vector::axpy;
 
-/// Steps that are remembered.
+/// Number of stored steps.
 const DEPTH: usize = 5;
-/// Sweeps before it gives up, those of a method that it took over from among them.
+/// Most sweeps, including those of a method that it took over from.
 const MAX_SWEEPS: usize = 500;
-/// The same where points slip in planes: what sweeps of a hundred don't find ten times as many don't.
+/// Most sweeps if points slip in two directions: problems not solved by a hundred aren't solved by ten times as many.
 const MAX_SWEEPS_OF_DISCS: usize = 100;
-/// The same where all that is left is a pair whose small problem doesn't converge.
+/// Most successive sweeps in which only the contact problem of a pair doesn't converge.
 const MAX_FAILURES: usize = 10;
 
-/// The steps that are remembered.
+/// The stored steps.
 #[derive(Default)]
 struct Chords {
-    /// U and the chord's step there, last time.
+    /// The previous U and chord step.
     last: Option<(Vec<f64>, Vec<f64>)>,
     /// Changes of both.
     history: VecDeque<(Vec<f64>, Vec<f64>)>,
@@ -98,7 +98,7 @@ fn mixing_weights(history: &VecDeque<(Vec<f64>, Vec<f64>)>, chord: &[f64]) -> Ve
         history[j].1[i] / norms[j]
     });
     let rhs = DVector::from_column_slice(chord);
-    // Nearly dependent directions say nothing: the cut-off drops them.
+    // Nearly dependent directions carry no information: the cut-off drops them.
     columns
         .svd(true, true)
         .solve(&rhs, 1e-10)

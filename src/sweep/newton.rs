@@ -1,9 +1,9 @@
 //! Newton's method for generalized equations, S_0 δ + S_CON(U + δ) − S_CON(U) = r: every sweep solves the
 //! contact problem of all pairs, coupled through the interface.
 //!
-//! S_CON is piecewise linear. Freezing every pair's active set at U^(k−1) gives semismooth Newton,
-//! whose sets may peel off one condition a sweep; keeping the law as it stands, λ ≥ 0, t ≤ g, gives
-//! a [`CoupledContact`] whose solution is U: one sweep gets there, the next ones take off round-off.
+//! S_CON is piecewise linear. With every pair's active set fixed at U^(k−1), this is semismooth Newton, whose active
+//! set may change by one constraint per sweep; with the contact laws λ ≥ 0, t ≤ g kept, it is a [`CoupledContact`]
+//! problem whose solution is U: one sweep solves it, further ones remove round-off.
 
 use super::{ROUND_OFF, Residual, SweepStatus, Sweeps};
 use crate::error::Failure;
@@ -12,8 +12,8 @@ use crate::vector::axpy;
 
 /// Sweeps before another method takes over.
 const MAX_SWEEPS: usize = 20;
-/// Sweeps in a row that change no contact and leave half of the residual before that is what round-off
-/// of stiff bodies leaves it.
+/// Successive sweeps that change no contact and reduce the residual to no less than half, after which the remaining
+/// residual counts as round-off of stiff bodies.
 const PATIENCE: usize = 3;
 
 /// Most refinements after the sweeps.
@@ -22,7 +22,7 @@ const MAX_REFINEMENTS: usize = 3;
 impl Sweeps<'_, '_> {
     pub(super) fn newton(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        // Sweeps in a row that got no further.
+        // Successive sweeps without progress.
         let mut stalls = 0;
         while self.goes_on(&residual)? {
             let Some(coupled) = CoupledContact::new(self.problem) else {
@@ -57,11 +57,11 @@ impl Sweeps<'_, '_> {
             let stalled = residual.totals.changed == 0 && residual.relative >= 0.5 * before;
             stalls = if stalled { stalls + 1 } else { 0 };
             if stalls == PATIENCE && !self.is_converged(&residual) {
-                // The remaining residual is round-off, or a pair's: the certificate decides.
+                // The remaining residual is round-off, or that of a pair: the certificate decides.
                 self.outcome.is_settled = true;
                 return Ok(self.gave_up(&residual, "newton got no further"));
             }
-            // A contact without force and gap may come out open at the root and closed in its pair.
+            // A contact with zero force and gap may be open at the root and closed in its pair.
             let settled = before.max(residual.relative) <= self.tolerance();
             if settled && residual.totals.failed_pairs == 0 {
                 break;
@@ -70,14 +70,14 @@ impl Sweeps<'_, '_> {
         Ok(SweepStatus::Converged)
     }
 
-    /// Leaves the rest to anderson.
+    /// Continues with anderson.
     fn fall_back(&mut self, residual: Residual, why: &str) -> Result<SweepStatus, Failure> {
         (self.outcome).fell_back(&format!("{why}; switched to Anderson acceleration"));
         self.has_fallen_back = true;
         self.anderson(residual)
     }
 
-    /// Looks whether friction allows for another solution.
+    /// Searches for another solution with friction.
     pub(super) fn look_for_another(&mut self) {
         let residual = self.residual(None);
         let coupled = CoupledContact::new(self.problem);
@@ -93,7 +93,7 @@ impl Sweeps<'_, '_> {
         }
     }
 
-    /// Newton's steps beyond the tolerance of the sweeps, which isn't what limits the solution.
+    /// Refinement by Newton steps beyond the tolerance of the sweeps, so that this doesn't limit the accuracy.
     pub(super) fn refine(&mut self) {
         let mut residual = self.residual(None);
         for _ in 0..MAX_REFINEMENTS {

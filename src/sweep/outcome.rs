@@ -1,29 +1,29 @@
-//! The outcome of the sweeps: U, the reason for stopping, and the history of convergence.
+//! Outcome of the sweeps: U, the reason for stopping, and the convergence history.
 
 use crate::certificate::Certificate;
 use crate::contact::friction::Status;
 use crate::interface::s_con::ConTotals;
 use serde::{Deserialize, Serialize};
 
-/// Target of the equilibrium and the penetration in a certificate.
+/// Largest relative residual of equilibrium, and penetration, of an accepted solution.
 const NOT_BALANCED: f64 = 1e-14;
-/// Equilibrium that may be round-off of a scene without load.
+/// Relative residual of equilibrium that may be round-off in a scene without load.
 const ROUND_OFF_OF_TERMS: f64 = 1e-12;
-/// Share of loads in the forces on nodes from which these aren't round-off of a scene without load.
+/// Ratio of loads to the forces on nodes above which these aren't round-off of a scene without load.
 const LOADED: f64 = 1e-2;
-/// Displacement over what may move a scene without load from which forces are no round-off of that.
+/// Ratio of displacements to the causes of motion above which forces aren't round-off of a scene without load.
 const TOO_FAR: f64 = 1e3;
-/// Violation of the law of friction of an answer that isn't one.
+/// Violation of the friction law above which there is no solution.
 pub const AGAINST_FRICTION: f64 = 1e-9;
-/// Slip of sticking points over the largest displacement of an answer that isn't one: like penetration a fault of
-/// displacements, which no round-off of forces excuses.
+/// Slip of sticking points, over the largest displacement, above which there is no solution; like penetration it is an
+/// error of displacements, which round-off of forces doesn't explain.
 const DRIFT: f64 = 1e-13;
-/// Tension, or product of force and gap, of an answer that isn't one.
+/// Tension, or product of force and gap, above which there is no solution.
 const AGAINST_CONTACT: f64 = 1e-11;
-/// Equilibrium relative to the load of an answer that says nothing.
+/// Residual of equilibrium relative to the load above which the result is meaningless.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 
-/// The same where what isn't balanced may be a body that nothing holds.
+/// The same limit if the unbalanced part may be a body with a free motion.
 const MOVES: f64 = 1e-2;
 
 /// Most contact points that are named.
@@ -44,12 +44,12 @@ pub struct SweepRecord {
     pub seconds: f64,
 }
 
-/// Reason for which sweeps ended.
+/// Reason why sweeps ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SweepStatus {
-    /// The residual is below the tolerance and no contact changes any more.
+    /// The residual is below the tolerance, and the active set doesn't change any more.
     Converged,
-    /// Sweeps that ended before convergence, for this reason.
+    /// The sweeps ended before convergence, for this reason.
     NotConverged(String),
 }
 
@@ -58,7 +58,7 @@ pub enum SweepStatus {
 pub struct IterativeSolves {
     /// Iterations of the start and of every sweep.
     pub iterations: Vec<usize>,
-    /// Unknowns of its coarse problem, in the end.
+    /// Number of coarse unknowns at the end.
     pub coarse_dofs: usize,
 }
 
@@ -67,38 +67,38 @@ pub struct IterativeSolves {
 pub struct SweepOutcome {
     /// U.
     pub u: Vec<f64>,
-    /// Reason for which they ended.
+    /// Reason why they ended.
     pub status: SweepStatus,
-    /// True if refinement may find the rest: no status changed any more, or those of friction cycle.
+    /// True if refinement may remove the residual: no status changes any more, or only those of friction cycle.
     pub is_settled: bool,
     /// History.
     pub records: Vec<SweepRecord>,
     /// Warnings.
     pub notes: Vec<String>,
-    /// Linear systems solved in contact problems, those of single pairs and the coupled one.
+    /// Linear systems solved in contact problems, of single pairs and of the coupled problem.
     pub active_set_iterations: usize,
-    /// Evaluations of pairs, and how many more weren't made because nothing had changed.
+    /// Number of evaluations of pairs, and of those skipped because nothing had changed.
     pub evaluations: [usize; 2],
-    /// Fallback methods that were used, in words.
+    /// Fallback methods that were used, as text.
     pub fallbacks: Vec<String>,
-    /// The residual that is left in the end.
+    /// The final residual.
     pub residual: f64,
     /// Totals of the last evaluation of S_CON.
     pub totals: ConTotals,
-    /// The statuses of every pair then.
+    /// The statuses of every pair at the end.
     pub statuses: Vec<Vec<Status>>,
-    /// Iterations of the iterative interface solver, where there was one.
+    /// Iterations of the iterative interface solver, if it was used.
     pub iterative: Option<IterativeSolves>,
-    /// Increments that the load step was solved in.
+    /// Number of increments of the load step.
     pub increments: usize,
-    /// True if another solution with friction was found; `None` where none was looked for.
+    /// True if another solution with friction was found; `None` if none was sought.
     pub other_solution: Option<bool>,
-    /// True if something slides on and on: there are forces of all contacts by their laws, and a motion that nothing
-    /// resists, along which loads do more work than these forces take.
+    /// True if a body slides without end: contact forces satisfy their laws, and along an unrestrained motion loads do
+    /// more work than these forces absorb.
     pub slides: bool,
-    /// Solver that didn't converge before this one took over, and the reason, in words.
+    /// Solver that didn't converge before this one took over, and the reason, as text.
     pub took_over: Option<String>,
-    /// The conditions of every pair whose status cycles, where friction keeps sweeps from converging.
+    /// The constraints of every pair with cycling status, if friction prevents convergence.
     pub unsettled: Vec<Vec<usize>>,
 }
 
@@ -139,14 +139,14 @@ impl SweepOutcome {
         }
     }
 
-    /// Remembers that another method had to help.
+    /// Records that a fallback method was used.
     pub(super) fn fell_back(&mut self, what: &str) {
         if !self.fallbacks.iter().any(|known| known == what) {
             self.fallbacks.push(what.into());
         }
     }
 
-    /// Names contact points that keep the sweeps from converging, the worst first.
+    /// Adds the names of contact points that prevent convergence, the worst first.
     pub fn name_points(&mut self, names: &[String]) {
         if let (SweepStatus::NotConverged(why), false) = (&mut self.status, names.is_empty()) {
             let (shown, more) = names.split_at(names.len().min(MOST_NAMES));
@@ -158,14 +158,14 @@ impl SweepOutcome {
         }
     }
 
-    /// Remembers that another solver didn't converge in the same load step, for this reason.
+    /// Records that another solver didn't converge in the same load step, for this reason.
     pub fn take_over(&mut self, why: String) {
         self.notes.push(why.clone());
         self.fell_back(&why);
         self.took_over = Some(why);
     }
 
-    /// Notes that a load step took several increments.
+    /// Records that a load step took several increments.
     pub fn count_increments(&mut self, increments: usize) {
         self.increments = increments;
         self.notes.push(format!(
@@ -174,9 +174,9 @@ impl SweepOutcome {
         ));
     }
 
-    /// The verdict of the full discrete problem, which alone knows the solution as it was refined, on what the sweeps say:
-    /// their residual is relative to terms that may be far larger than the load, and where they got no further, that may be
-    /// round-off, which refinement has taken off. Results that aren't all `finite` are none.
+    /// Corrects the status of the sweeps by the certificate of the full discrete problem, which alone includes the
+    /// refined solution. The sweeps' residual is relative to terms that may be far larger than the load, and without
+    /// progress it may be round-off, which refinement has removed. Results that aren't all `finite` are rejected.
     pub fn accept(&mut self, certificate: &Certificate, finite: bool) {
         let fault = fault_of(certificate, finite);
         let keeps_signs = certificate.tension.max(certificate.complementarity) <= AGAINST_CONTACT;
@@ -191,7 +191,7 @@ impl SweepOutcome {
     }
 }
 
-/// The reason why the solution with a `certificate` is none; `None` where it is one, to round-off.
+/// The reason why the result with a `certificate` isn't a solution; `None` if it is one, to round-off.
 fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
     let Certificate {
         equilibrium,
@@ -282,7 +282,7 @@ mod tests {
             [4e-11, 0.8, 0.0, 0.0],
             [1e-16, 0.08, 0.3, 0.0],
             [1e-16, 1e-13, 0.9, 1e-9],
-            // What a random scene had whose displacements were far from right.
+            // The certificate of a random scene with grossly wrong displacements.
             [7.9e-14, 1e-9, 0.9, 0.0],
             [6e-12, 9e-5, 0.5, 0.0],
             [f64::NAN, 0.0, 0.9, 0.0],

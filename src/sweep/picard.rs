@@ -1,20 +1,20 @@
 //! The paper's successive approximations: S_0 U^k = F − S_CON U^(k−1), (18), with relaxation.
 //!
-//! They converge where ρ(S_0⁻¹ S_CON') < 1, which the paper leaves open and which equal
-//! stiffness on both sides of Γ doesn't give; relaxed, U ← U + θ S_0⁻¹ r converges for
-//! θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹ S_CON'. Where S_0 is singular, a share of the pairs' bilateral
-//! Schur complements is moved from S_CON to it: U^k stays what it solves for.
+//! They converge if ρ(S_0⁻¹ S_CON') < 1, which the paper doesn't discuss and which doesn't hold for equal stiffness on
+//! both sides of Γ. With relaxation, U ← U + θ S_0⁻¹ r converges for θ < 2 / (1 + λ), λ the largest eigenvalue of S_0⁻¹
+//! S_CON'. If S_0 is singular, a fraction of the pairs' bilateral Schur complements is moved from S_CON to S_0, which
+//! leaves the solution unchanged.
 
 use super::{Residual, SweepStatus, Sweeps};
 use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::vector::{axpy, dot, largest};
 
-/// Sweeps before it gives up.
+/// Most sweeps.
 const MAX_SWEEPS: usize = 2000;
-/// Steps of the power iteration.
+/// Number of power iterations.
 const POWER_STEPS: usize = 60;
-/// Growth of U over the bilateral start at which it diverges.
+/// Growth of U over the bilateral start above which the method counts as diverged.
 const DIVERGED: f64 = 1e8;
 
 impl Sweeps<'_, '_> {
@@ -64,7 +64,7 @@ impl Sweeps<'_, '_> {
         Ok(SweepStatus::Converged)
     }
 
-    /// θ that is set or converges, and a note about it.
+    /// The relaxation θ, set by the user or convergent by the estimate of ρ, with a note about it.
     fn relaxation(&mut self, rho: f64) -> f64 {
         let theta = self.settings.relaxation.unwrap_or(2.0 / (2.0 + rho));
         let verdict = if rho < 1.0 {
@@ -79,8 +79,8 @@ impl Sweeps<'_, '_> {
         theta
     }
 
-    /// ρ(S_0⁻¹ S_CON'), with the `share` of S_CON' that counts to S_0 on the other side, at the active sets of the last evaluation, by power iteration from a vector
-    /// that no symmetry of a scene can be orthogonal to.
+    /// ρ(S_0⁻¹ S_CON') at the active sets of the last evaluation, where a `share` of S_CON' is moved to S_0; by power
+    /// iteration from a vector that isn't orthogonal to any mode by symmetry.
     fn spectral_radius(&mut self, s_0: &BoundaryLastCholesky, share: f64) -> f64 {
         let n = self.problem.interface.len;
         let mut x: Vec<f64> = (0..n)

@@ -1,4 +1,4 @@
-//! Consecutive subdomains of one owner: what travels to the root in one message.
+//! Parcels: consecutive subdomains of one owner, sent to the root in one message.
 
 use std::iter::repeat_n;
 use std::ops::Range;
@@ -20,14 +20,14 @@ use crate::recover::stresses::Stress;
 pub(super) struct Parcel {
     /// Subdomains.
     pub subdomains: Range<usize>,
-    /// The rank that owns them all.
+    /// The rank that owns all of them.
     pub owner: usize,
-    /// True if its slab is complete with it.
+    /// True if it is the last parcel of its slab.
     pub ends_slab: bool,
 }
 
 impl Parcel {
-    /// Cuts the root's `slabs` where the owner changes. Collective.
+    /// Splits the root's `slabs` where the owner changes. Collective.
     pub(super) fn cut(comm: &Comm, slabs: &[Range<usize>], plan: &Plan) -> Vec<Self> {
         let mut ends: Vec<usize> = slabs.iter().map(|slab| slab.end).collect();
         comm.broadcast(&mut ends);
@@ -35,7 +35,7 @@ impl Parcel {
         cut(ends.into_iter(), |s| owners[BlockId::new(s)])
     }
 
-    /// Appends what was found on its subdomains; called on their owner.
+    /// Appends the results of its subdomains; called on their owner.
     pub(super) fn append_to(
         &self,
         results: &mut SubdomainResults,
@@ -64,7 +64,7 @@ impl Parcel {
                         }
                     }
                 }
-                // It takes its place without any content, so that the file names it.
+                // An absent subdomain has an empty partition, so that the file lists it.
                 None => results.sizes.push(PartitionSize::default()),
             }
         }
@@ -116,7 +116,7 @@ fn append_block(results: &mut SubdomainResults, block: &Block, displacement: &[f
     results.materials.extend(materials.map(|&m| m as i32));
 }
 
-/// Appends the stresses of a block whose cells have so many `nodes`.
+/// Appends the stresses of a block whose cells have this number of `nodes`.
 fn append_stress(results: &mut SubdomainResults, stress: &Stress, nodes: usize) {
     let cells = &stress.cells;
     let nodes = &stress.nodes[..nodes];

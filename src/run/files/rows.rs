@@ -1,4 +1,4 @@
-//! The results on their way to the root and into the file.
+//! Results: from the ranks to the root and into the file.
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::dot;
@@ -19,13 +19,14 @@ use crate::output::vtkhdf::beside::FileBeside;
 use crate::recover::solution::Solution;
 use crate::recover::{GroupSolution, Slips};
 
-/// Writes all subdomains, every rank its own where all can do so `beside` each other; otherwise they are streamed to
-/// the root, which writes a slab of them as soon as it is complete. Contact rows go to the root. Collective; `file` is
-/// the root's.
+/// Writes all subdomains: every rank its own if all can write in parallel to `beside`; otherwise they are sent to the
+/// root, which writes a slab as soon as it is complete. Rows of contact points are sent to the root. Collective; `file`
+/// is the root's.
 ///
-/// On the root the conditions are added up to `contacts` on their way; those that are `absent` are written behind the others.
+/// The root also adds the constraints to the resultants in `contacts`; rows of `absent` contact points are written
+/// after the others.
 ///
-/// The slabs don't depend on who owns what: the same numbers are written on any ranks.
+/// The slabs don't depend on the owners: the numbers written are the same for any number of ranks.
 ///
 /// # Errors
 /// The file can't be written.
@@ -78,7 +79,7 @@ pub fn write_solution(
     comm.agree(failed.map_err(Failure::from))
 }
 
-/// The parcels of all ranks on their way to the root, which writes a slab of them as soon as it is complete. Collective.
+/// Sends the parcels of all ranks to the root, which writes a slab as soon as it is complete. Collective.
 fn stream(
     context: &Context<'_>,
     solution: &Solution,
@@ -89,7 +90,7 @@ fn stream(
     let (mut sent, mut slab) = (SubdomainResults::default(), SubdomainResults::default());
     for parcel in parcels {
         match (parcel.owner, comm.is_root()) {
-            // Rows of the root need no message.
+            // The root's own rows need no message.
             (ROOT, true) => parcel.append_to(&mut slab, context, solution),
             (owner, true) => slab.append(comm.receive(owner)),
             (owner, false) if owner == comm.rank() => {
@@ -106,7 +107,7 @@ fn stream(
     }
 }
 
-/// Writes the parcels of this rank beside those of others; returns the digests of what it wrote.
+/// Writes the parcels of this rank, in parallel to other ranks; returns the digests of the data written.
 ///
 /// # Errors
 /// The file can't be written.
@@ -128,7 +129,7 @@ fn write_own(
     beside.finish_step(context.comm.hosts())
 }
 
-/// The rows of the contact points of a problem that aren't there in a `stage`: without forces, and without a gap.
+/// The rows of contact points of the problem that are absent in a `stage`: without forces and gaps.
 pub fn absent_rows(whole: &Catalog, stage: &Stage<'_>) -> Vec<ContactRow> {
     let all = whole.points.iter().enumerate();
     let absent = all.filter(|(j, _)| stage.points.binary_search(j).is_err());
@@ -142,8 +143,7 @@ pub fn absent_rows(whole: &Catalog, stage: &Stage<'_>) -> Vec<ContactRow> {
     absent.map(row).collect()
 }
 
-/// The points of a contact group, and the solution there, with slip and work of friction of its tangential
-/// conditions.
+/// The points of a contact group and their solution, including slip and frictional work of its tangential constraints.
 fn contact_rows(
     group: &ContactGroup,
     solution: &GroupSolution,
