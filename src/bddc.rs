@@ -318,7 +318,7 @@ impl Bddc {
         self.groups.get(&g).map(|group| &group.open)
     }
 
-    /// The ties of closed conditions, on all ranks. Collective.
+    /// The ties of closed constraints, on all ranks. Collective.
     fn ties(&self, comm: &Comm) -> Ties {
         let of_group = |i: usize| self.groups[&self.between[i].number].ties();
         let mut ties = Ties::join(comm.gathered(&self.group_owners(), of_group));

@@ -44,7 +44,7 @@ pub struct BlockSolution {
     pub pushes: Vec<(u32, [f64; 3])>,
 }
 
-/// Slips and frictional work at the tangential conditions of the contact groups of this rank, by their number.
+/// Slips and frictional work at the tangential constraints of the contact groups of this rank, by their number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Slips {
     /// Tangential jumps since the bodies were unloaded (m).

@@ -4,8 +4,8 @@
 //! bending. Their gradients use the Jacobian at the center, (det J_0/det J) J_0⁻ᵀ ∂/∂ξ, so that the mean strain of each
 //! mode is zero and cells of any shape pass the patch test.
 //!
-//! R. L. Taylor, P. J. Beresford, E. L. Wilson, *A non-conforming element for stress analysis*, Int. J. Numer. Meth. Eng.
-//! 10 (1976).
+//! R. L. Taylor, P. J. Beresford, E. L. Wilson, *A non-conforming element for stress analysis*, Int. J. Numer. Meth.
+//! Eng. 10 (1976).
 
 use std::array::from_fn;
 use std::f64::consts::PI;

@@ -10,8 +10,8 @@
 //! = q a,₁, and on the faces, where a,₁ is singular, its mean weighted by the node's shape function.
 //!
 //! J. F. Yau, S. S. Wang, H. T. Corten, *A mixed-mode crack analysis of isotropic solids using conservation laws of
-//! elasticity*, J. Appl. Mech. 47 (1980); J. R. Walters, G. H. Paulino, R. H. Dodds, *Interaction integral procedures for
-//! 3-D curved cracks including surface tractions*, Eng. Fract. Mech. 72 (2005).
+//! elasticity*, J. Appl. Mech. 47 (1980); J. R. Walters, G. H. Paulino, R. H. Dodds, *Interaction integral procedures
+//! for 3-D curved cracks including surface tractions*, Eng. Fract. Mech. 72 (2005).
 
 mod cell;
 mod faces;

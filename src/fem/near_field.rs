@@ -2,8 +2,8 @@
 //!
 //! The displacement is u_i = √r f_i(θ) in the frame of the tip, x₁ along the crack. For isotropic materials after
 //! M. L. Williams, *On the stress distribution at the base of a stationary crack*, J. Appl. Mech. 24 (1957); for others
-//! after G. C. Sih, P. C. Paris, G. R. Irwin, *On cracks in rectilinearly anisotropic bodies*, Int. J. Fract. Mech. 1 (1965),
-//! with the roots μ₁, μ₂ of
+//! after G. C. Sih, P. C. Paris, G. R. Irwin, *On cracks in rectilinearly anisotropic bodies*, Int. J. Fract. Mech. 1
+//! (1965), with the roots μ₁, μ₂ of
 //!
 //! > S₁₁ μ⁴ − 2 S₁₆ μ³ + (2 S₁₂ + S₆₆) μ² − 2 S₂₆ μ + S₂₂ = 0.
 
@@ -286,7 +286,8 @@ mod tests {
             let expected = 1.0 / PI.sqrt();
             assert!((ahead[1 + mode] - expected).abs() < 1e-12);
             assert!(ahead[2 - mode].abs() < 1e-12);
-            // Irwin's integral over the length d: ½ ∫ σ(r) Δu(d − r) dr / d = K Δf √(π/2) / 8 · 2, with ∫ √((d − r)/r) = π d/2.
+            // Irwin's integral over the length d: ½ ∫ σ(r) Δu(d − r) dr / d = K Δf √(π/2) / 8 · 2, with
+            // ∫ √((d − r)/r) = π d/2.
             let [above, below] = [PI, -PI].map(|angle| field.shapes(angle)[mode]);
             let opening = |i: usize| above[i][0] - below[i][0];
             let released = 0.5 * (PI / 2.0) * opening(1 - mode) / (2.0 * PI).sqrt();

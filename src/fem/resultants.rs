@@ -63,7 +63,7 @@ pub struct ContactResultant {
     pub largest_overclosure: f64,
     /// State and work of its friction; `null` where it has none.
     pub friction: Option<Friction>,
-    /// Number of conditions about to open, which slip under a part of their cohesion.
+    /// Number of constraints about to open, which slip under a part of their cohesion.
     #[serde(skip)]
     pub parting: usize,
     /// Largest penetration at the nodes of the side that has no conditions, where nodes don't match (m).
@@ -71,10 +71,10 @@ pub struct ContactResultant {
     /// The penetration at those nodes.
     #[serde(skip)]
     pub probed: Option<Probed>,
-    /// True if the nodes of side b have the conditions.
+    /// True if side b is the slave side, whose nodes carry the constraints.
     #[serde(skip)]
     pub on_b: bool,
-    /// The multiplier λ of what holds a pretension (N).
+    /// Multiplier λ of the constraint that holds a pretension (N).
     #[serde(skip)]
     pub held: f64,
 }

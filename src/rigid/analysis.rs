@@ -46,7 +46,7 @@ impl Scene {
     /// Fixes absent bodies where they are, so that their motions don't count as free motions of the scene.
     ///
     /// # Errors
-    /// An absent body under load or contact.
+    /// An absent body under load.
     pub fn hold(&mut self, is_absent: impl Fn(usize) -> bool) -> Result<Vec<FixingDof>, Failure> {
         let mut pins = Vec::new();
         let bodies = self.bodies.iter_mut().zip(&self.names).enumerate();

@@ -30,7 +30,7 @@ pub struct RigidBodyAnalysis {
     pub cluster_modes: OnPairs<RigidModes>,
     /// True if supports leave any body a rigid motion.
     pub movable: bool,
-    /// The scene of bodies and conditions, on the root.
+    /// The scene of bodies and constraints, on the root.
     pub scene: Option<Scene>,
 }
 

@@ -14,7 +14,7 @@ const RANK: f64 = 1e-9;
 
 /// A point whose friction is at its bound.
 struct AtBound {
-    /// Tangential conditions.
+    /// Tangential constraints.
     tangents: Vec<usize>,
     bound: f64,
 }

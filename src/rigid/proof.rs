@@ -116,7 +116,7 @@ fn work(load: &[f64], motion: &[f64], scale: f64) -> [f64; 3] {
 
 /// A load on the motions of bodies, and the constraints `rows` with their jumps B z.
 pub(super) struct Loaded<'a> {
-    /// The conditions.
+    /// The constraints.
     pub rows: &'a [RigidRow],
     /// B.
     pub b: &'a DMatrix<f64>,

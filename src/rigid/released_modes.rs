@@ -37,7 +37,7 @@ pub struct ReleasedModes {
     pub motions: Vec<FreeMotion>,
     /// B of the constraints without force, in these modes.
     rows: DMatrix<f64>,
-    /// g − B u of these conditions (m).
+    /// g − B u of these constraints (m).
     gaps: Vec<f64>,
     /// Normal constraints whose forces are round-off of the equilibrium of nodes or of rigid bodies, and restrain
     /// nothing.

@@ -49,7 +49,7 @@ pub struct RigidRow {
     pub is_tied: bool,
 }
 
-/// The bodies and conditions from which rigid motions follow. On the root.
+/// The bodies and constraints from which rigid motions follow. On the root.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Dimension of space.
@@ -58,7 +58,7 @@ pub struct Scene {
     pub bodies: Vec<BodyState>,
     /// Names.
     pub names: Vec<String>,
-    /// Conditions, group by group.
+    /// Constraints, group by group.
     pub rows: Vec<RigidRow>,
     /// Number of constraints of every group.
     pub conditions: Vec<usize>,

@@ -78,7 +78,8 @@ impl Increments<'_> {
     /// Collective.
     ///
     /// # Errors
-    /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that stopped the run.
+    /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that
+    /// stopped the run.
     pub fn step(
         &self,
         k: usize,
@@ -166,7 +167,8 @@ impl Increments<'_> {
     /// `before`. Collective.
     ///
     /// # Errors
-    /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that stopped the run.
+    /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that
+    /// stopped the run.
     fn solve(
         &self,
         moment: LoadPoint,

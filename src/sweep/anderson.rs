@@ -15,7 +15,7 @@ const DEPTH: usize = 5;
 const MAX_SWEEPS: usize = 500;
 /// Most sweeps if points slip in two directions: problems not solved by a hundred aren't solved by ten times as many.
 const MAX_SWEEPS_OF_DISCS: usize = 100;
-/// Most successive sweeps in which only the contact problem of a pair doesn't converge.
+/// Most sweeps in which only the contact problem of a pair keeps the residual from convergence.
 const MAX_FAILURES: usize = 10;
 
 /// The stored steps.

@@ -36,9 +36,9 @@ pub struct SweepRecord {
     pub sweep: usize,
     /// ‖r‖∞ relative to the terms that r is a sum of.
     pub residual: f64,
-    /// Number of closed contact conditions.
+    /// Number of closed contact constraints.
     pub active: usize,
-    /// Number of conditions that opened or closed in this sweep; the start has none.
+    /// Number of constraints that opened or closed in this sweep; the start has none.
     pub changed: Option<usize>,
     /// Time since the sweeps began (s).
     pub seconds: f64,

@@ -227,8 +227,8 @@ impl Touched<'_> {
         if !forces.has_friction {
             return Some(Balance::Fails(unbalanced, false));
         }
-        // If only a few bodies slip: tangential forces are subtracted from the load, and normal forces balance as much
-        // of the rest as they can.
+        // The drive is that of few bodies: tangential forces are subtracted from the load, and normal forces balance as
+        // much of the rest as they can.
         let held = forces.tangential_of_cones(&left.forces, self.rows.len());
         let mut rest = self.load.clone();
         for (row, held) in self.sparse.iter().zip(held.iter()) {
