@@ -162,8 +162,8 @@ impl ContactGroup {
         unknown.chain(tied).map(replaced).collect()
     }
 
-    /// The frames of the nodes, with the prescribed displacements of the first load step; their axes are the same in all
-    /// steps.
+    /// The frames of the nodes, with the prescribed displacements of the first load step; their axes are the same in
+    /// all steps.
     pub(super) fn frames(&self) -> Vec<Frame> {
         let of_node = |node: &ContactNode| {
             let support = |(direction, values): &([f64; 3], Vec<f64>)| Support {
