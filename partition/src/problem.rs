@@ -195,7 +195,8 @@ pub struct PointNode {
 }
 
 impl PointNode {
-    /// A node that `supports` hold in these directions, of a point with constraints in the other ones.
+    /// A node of a point that has constraints along these directions, where `supports` are the directions in which it
+    /// is held.
     pub fn new(
         interface: Option<u32>,
         conditions: impl IntoIterator<Item = [f64; 3]>,

@@ -10,7 +10,7 @@ use crate::error::InputError;
 use crate::problem::schema::{Counts, Field};
 use crate::problem::strings::read_strings;
 
-/// The largest compression ratio of HDF5's deflate; a dataset with a larger declared size has no data.
+/// The largest compression ratio of HDF5's deflate; a dataset that declares more data than that isn't fully stored.
 const LARGEST_RATIO: u64 = 1100;
 
 /// An open dataset.
