@@ -2,11 +2,11 @@
 //!
 //! Data flow in one direction:
 //!
-//! `` `text
+//! ```text
 //! scene.toml ─ scene ─┐
 //!                     ├─ model ─ decompose ─ problem ─▶ problem.h5
-//! mesh.msh ── mesh ──┘
-//! `` `
+//! mesh.msh  ── mesh ──┘
+//! ```
 //!
 //! **The scene** is the user's input ([`scene`]), the **mesh** that of a mesher ([`mesh`]), with cells over which u(ξ)
 //! = Σ N_i(ξ) u_i ([`element`]). [`example`] has some of both.
@@ -14,7 +14,7 @@
 //! **The model** is the scene on its mesh ([`model`]): bodies and their materials σ = C ε, the supports of Γ_u and Γ_o,
 //! the nodal forces of Γ_τ, and for every contact of Γ_c
 //!
-//! > n·(u_a − u_b) ≤ g, together B u ≤ g,
+//! > n·(u_a − u_b) ≤ g,   together   B u ≤ g,
 //!
 //! the set K over which (1) minimizes.
 //!
@@ -23,7 +23,7 @@
 //!
 //! **The partition** ([`decompose`]) cuts bodies into subdomains Ω^i that meet on
 //!
-//! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j, Γ ∩ Γ_c = ∅ except for the tips of cracks,
+//! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j,   Γ ∩ Γ_c = ∅ except for the tips of cracks,
 //!
 //! by METIS on a graph whose vertices are the indivisible parts. Subdomains in contact are the pairs ϑ, the others T.
 //! It also builds the [`hierarchy`] along which Schur complements are merged, rated by estimated [`flops`]. Only this

@@ -3,9 +3,9 @@
 //! The motion of a point R is that of the corners of a frame, R, R + L e₁ and in space R + L e₂. These are nodes
 //! without cells. With their displacements p₀, p₁, p₂
 //!
-//! `` `text
-//! u(x) = p₀ + θ × (x − R), θ = ((p₂ − p₀)·e₃, −(p₁ − p₀)·e₃, (p₁ − p₀)·e₂) / L
-//! `` `
+//! ```text
+//! u(x) = p₀ + θ × (x − R),   θ = ((p₂ − p₀)·e₃, −(p₁ − p₀)·e₃, (p₁ − p₀)·e₂) / L
+//! ```
 //!
 //! They belong to the body of the coupled side, so that they take part in its rigid-body motions.
 

@@ -5,9 +5,9 @@
 //! interpolated along its facets, project each of its points onto side b. With the dual basis φ on the covered part, ∫
 //! φ_j N_k = δ_jk ∫ N_k, the constraint of node j is
 //!
-//! `` `text
-//! n_j·(u_a(j) − Σ_k M_jk/D_jj u_b(k)) ≤ g_j, D_jj = ∫ φ_j, M_jk = ∫ φ_j N_k^b, g_j = ∫ φ_j g / D_jj
-//! `` `
+//! ```text
+//! n_j·(u_a(j) − Σ_k M_jk/D_jj u_b(k)) ≤ g_j,   D_jj = ∫ φ_j,   M_jk = ∫ φ_j N_k^b,   g_j = ∫ φ_j g / D_jj
+//! ```
 //!
 //! so that its multiplier is the normal force on node j. All integrals extend over the part of side a that side b
 //! covers (Cichosz and Bischoff 2011), so that a uniform pressure is transferred exactly for any meshes and ends of

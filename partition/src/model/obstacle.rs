@@ -73,7 +73,7 @@ pub(super) fn points(
 /// functions, in which corners take a part of those of the nodes on their edges, N_e = (Ñ_e + …)/(1 − Σ taken), the
 /// constraint of a node e on an edge is
 ///
-/// > (u_e − Σ taken·u_c)·n/(1 − Σ taken) ≤ (g_e − Σ taken·g_c)/(1 − Σ taken), c the ends of its edge
+/// > (u_e − Σ taken·u_c)·n/(1 − Σ taken) ≤ (g_e − Σ taken·g_c)/(1 − Σ taken),   c the ends of its edge
 fn blend_corners(side: &Surface, points: &mut [ContactPoint<u32>], place: &HashMap<u32, usize>) {
     let plain = points.to_vec();
     for facet in &side.facets {

@@ -4,9 +4,9 @@
 //! With n the outward normal of side a, or the direction given by the scene, and a pair (a₀, b₀) of these nodes near
 //! the centre
 //!
-//! `` `text
-//! n·(u_a − u_b) − n·(u_a₀ − u_b₀) = 0, t·(u_a − u_b) = 0, δ = n·(u_a₀ − u_b₀)
-//! `` `
+//! ```text
+//! n·(u_a − u_b) − n·(u_a₀ − u_b₀) = 0,   t·(u_a − u_b) = 0,   δ = n·(u_a₀ − u_b₀)
+//! ```
 //!
 //! for all pairs: the sides overlap by the shortening δ of the bolt. A force F is applied to a₀ along n and to b₀ in
 //! the opposite direction, with the work F δ. A shortening that is given, or locked at the current value, is one more
