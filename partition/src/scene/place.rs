@@ -91,7 +91,7 @@ fn first_table(text: &str) -> Option<(usize, &str)> {
     None
 }
 
-/// The line before which a top-level key has to be inserted; empty for a key of a table, given by `path`.
+/// Where a missing top-level key belongs, for the end of a message; empty for a key of a table, given by `path`.
 fn above(text: &str, key: &str, path: &[Step]) -> String {
     if path.is_empty() && ["materials", "bodies"].contains(&key) {
         return format!("; expected a table [{key}.NAME] for each");
