@@ -9,18 +9,18 @@ pub fn two_blocks_in_steps() -> Model {
     posed_in_steps(&two_block_scene())
 }
 
-/// Those load steps with friction in the joint.
+/// The two blocks with friction in their joint, in these load steps.
 pub fn two_blocks_with_friction() -> Model {
     posed_in_steps(&rubbing())
 }
 
-/// The same with quadratic cells: the lower block has 1122 dofs.
+/// The two blocks with friction in quadratic cells: the lower block has 1122 dofs.
 pub fn two_fine_blocks_with_friction() -> Model {
     let mesh = sort("quad9").of(&two_blocks().mesh);
     model(&format!("{}{STEPS}", rubbing()), mesh)
 }
 
-/// Those with friction, unloaded in the middle step.
+/// The two blocks with friction, unloaded in the middle step.
 pub fn two_blocks_unloaded() -> Model {
     let steps = "[[step]]\n[[step]]\nscale = 0\n[[step]]\n";
     model(&format!("{}{steps}", rubbing()), two_blocks().mesh)
@@ -33,8 +33,8 @@ fn rubbing() -> String {
     scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1)
 }
 
-/// Those with friction, and another block that is placed on the upper one after the first step, and removed after the
-/// second.
+/// The two blocks with friction, and another block that is placed on the upper one after the first step, and removed
+/// after the second.
 pub fn two_blocks_in_stages() -> Model {
     let scene = two_block_scene().replacen("[[contact]]\n", "[[contact]]\nfriction = 0.1\n", 1);
     let other = "
