@@ -103,8 +103,8 @@ fn uniform(shear: f64) -> [f64; 3] {
     [shear / g, across * PRESSURE / modulus, -PRESSURE / modulus]
 }
 
-/// Two blocks, the upper one under pressure, with its top displaced by `by` more than without slip; the solution is the
-/// uniform stress with the shear that `law` allows.
+/// Two blocks, the upper one under pressure, with its top displaced by an additional `by`; the solution is the uniform
+/// stress with the shear that `law` allows, and uniform slip by `by`.
 fn slipping(mesh: Mesh, law: &str, shear: f64, by: f64, sides: &str) -> Model {
     let [c, e, d] = uniform(shear);
     let text = format!(

@@ -78,7 +78,7 @@ fn quantities_are_those_of_the_fields() {
         report["reactions"][0]["force"][1].as_f64().unwrap(),
     );
     let norm = report["error_estimate"]["energy_norm"].as_f64().unwrap();
-    // The energy of a refined solution includes the estimated error of the displacement.
+    // The energy norm of the estimate includes the estimated error.
     let error = report["error_estimate"]["error"].as_f64().unwrap();
     let stored = all["stored"]["value"].as_f64().unwrap();
     assert!((stored - 0.5 * norm * norm).abs() <= 0.5 * error * error + 1e-9 * stored);
