@@ -58,6 +58,7 @@ fn name_of_dim(name: &str, dim: usize) -> String {
 pub struct Group {
     /// Dimension of its members.
     pub dim: usize,
-    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, and 1 in space: those of curves), ascending.
+    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, and 1 in space: those of curves),
+    /// ascending.
     pub members: Vec<u32>,
 }

@@ -64,8 +64,8 @@ pub fn uneven() -> Model {
     model(&text, blocks.mesh)
 }
 
-/// Three blocks in a row, the last one with a traction on its right; optionally with a wall on the left of the first
-/// one, which is otherwise held by supports.
+/// Three blocks in a row, the last one with a traction on its right, and the first one held on its left by a rigid wall
+/// or by supports.
 pub fn row(traction: [f64; 2], wall: bool) -> Model {
     let mut blocks = Blocks::new();
     let mut text = ROCK.to_owned();

@@ -125,7 +125,7 @@ fn the_energy_that_is_released_is_that_by_which_the_potential_falls() {
     }
 }
 
-/// Shear of this size relative to a direction, all around the plate.
+/// Shear of this size on all sides of the plate, which is rotated so that x points in the direction (c, s).
 fn shear(size: f64, [c, s]: [f64; 2]) -> String {
     let sides = [
         ("'crack above top', 'rest above top'", [c, s]),

@@ -116,8 +116,8 @@ impl Changes {
         })
     }
 
-    /// Activation in each step of the part that changes for which `concerns` is true refer to: it is active at first
-    /// unless its first change adds it.
+    /// Activation in each step according to the changes for which `concerns` is true: active at first unless the first
+    /// change is an addition.
     fn course(&self, steps: usize, concerns: impl Fn(&Changed) -> bool) -> Vec<bool> {
         let own: Vec<&Change> = self
             .0

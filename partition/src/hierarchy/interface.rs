@@ -43,8 +43,8 @@ const LEADING: f64 = 0.5;
 pub(super) struct System {
     /// The contact points, ascending.
     pub points: Vec<u32>,
-    /// Other points at the eliminated displacements, which belong to earlier systems: their tree nodes must not lie
-    /// above that of this system.
+    /// Other points at the displacements that are replaced, all in earlier systems: this system belongs to a tree node
+    /// at or above theirs.
     pub above: Vec<u32>,
 }
 

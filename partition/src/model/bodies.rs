@@ -314,8 +314,8 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
         .collect()
 }
 
-/// The mesh of the cells that are `kept`, with the nodes and facets in which they are contained. A used group has to
-/// keep all its members.
+/// The mesh of the cells that are `kept`, with their nodes and the facets all of whose nodes are among these. A used
+/// group has to keep all its members.
 ///
 /// # Errors
 /// The member that would be lost.

@@ -207,7 +207,7 @@ impl<'a> Contacts<'a> {
     /// The points of contact `number` between side a, whose facets are `on_a`, and the side of these `names`.
     ///
     /// # Errors
-    /// A facet that is on both sides, or sides that don't match.
+    /// A facet on both sides, or sides that don't match.
     fn sides(
         &self,
         number: u32,

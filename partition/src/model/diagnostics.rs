@@ -88,10 +88,10 @@ impl<'a> Diagnostics<'a> {
         far.collect()
     }
 
-    /// Warns of two contacts between the same facets, or with the same obstacle, whose constraints repeat each other.
+    /// Refuses two contacts between the same facets, or with the same obstacle, whose constraints repeat each other.
     ///
     /// # Errors
-    /// Two of them in the same load step: the forces of each would depend on their order.
+    /// Two such contacts in the same load step: the forces of each would depend on their order.
     fn check_repeated_contacts(&self, absent: &[Vec<u32>]) -> Result<(), InputError> {
         let contacts: Vec<_> = self.declared.iter().map(|of| &of.contact).collect();
         let mesh = &self.bodies.mesh;

@@ -3,8 +3,8 @@
 use crate::contact_point::{ContactPoint, Probe};
 use crate::stiffness::Stiffness;
 
-/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, xy around an axis; xx, yy, zz,
-/// yz, xz, xy in space).
+/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, xy around an axis; xx, yy,
+/// zz, yz, xz, xy in space).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name in the scene.

@@ -7,7 +7,7 @@ use crate::contact_point::ContactPoint;
 pub struct ContactSummary {
     /// Name.
     pub name: String,
-    /// Number of its conditions.
+    /// Number of its constraints.
     pub conditions: usize,
     /// True if one of its points has friction.
     pub has_friction: bool,

@@ -69,7 +69,7 @@ fn a_side_that_follows_along_its_normal_contracts_freely() {
     }
 }
 
-/// Fails unless the skew block is under uniform uniaxial strain along its third axis.
+/// Fails unless the skew block is under uniform uniaxial stress along its third axis.
 #[track_caller]
 fn uniform(model: &Model, strain: f64) {
     let nodes = model.mesh.points.len() - 3;
