@@ -22,8 +22,8 @@ const WITH_FRICTION: f64 = 4.0;
 /// Number of contact constraints up to which the dense matrix is used whatever its cost: it is more robust where bodies
 /// are hardly held.
 const FEW_CONDITIONS: usize = 600;
-/// Number of contact constraints with friction up to which the dense matrix is used: only there active sets that recur
-/// are left again.
+/// Number of contact constraints with friction up to which the dense matrix is used: only this operator escapes from
+/// active sets that recur.
 const FEW_WITH_FRICTION: usize = 3000;
 /// Approximate number of iterations for an active set in total.
 const ITERATIONS: f64 = 60.0;
