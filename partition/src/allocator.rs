@@ -1,4 +1,5 @@
-//! Memory of both programs: where the system has no more, a message and exit code 1 instead of an abort.
+//! Memory allocator of both programs: when the system is out of memory, they print a message and end with exit code 1
+//! instead of aborting.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::ffi::c_int;
@@ -8,7 +9,8 @@ use std::io::{Cursor, Write, stderr};
 #[derive(Clone, Copy, Debug)]
 pub struct Allocator;
 
-// SAFETY: all is handed on to the system's allocator, under the same contract; what that refuses ends the program.
+// SAFETY: every call is forwarded to the system's allocator under the same contract; a failed allocation ends the
+// program.
 unsafe impl GlobalAlloc for Allocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: the caller keeps the contract.
@@ -31,7 +33,7 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
-/// The memory that was asked for, if it was had.
+/// The allocated memory; ends the program if the allocation failed.
 #[inline]
 fn had(memory: *mut u8, bytes: usize) -> *mut u8 {
     if memory.is_null() {
@@ -40,7 +42,7 @@ fn had(memory: *mut u8, bytes: usize) -> *mut u8 {
     memory
 }
 
-/// Ends the program, without memory for the message or for an ordered exit; a launcher ends the other
+/// Ends the program without allocating memory for the message and without an orderly exit; a launcher ends the other
 /// ranks.
 #[cold]
 fn end(bytes: usize) -> ! {
@@ -56,6 +58,6 @@ fn end(bytes: usize) -> ! {
     );
     let length = line.position() as usize;
     let _ = stderr().write_all(&text[..length]);
-    // SAFETY: it takes a number and doesn't return.
+    // SAFETY: `_exit` takes a number and doesn't return.
     unsafe { _exit(1) }
 }

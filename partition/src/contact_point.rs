@@ -1,36 +1,36 @@
-//! Contact points: what every contact is made of, from the model through the problem file to the results.
+//! Contact points: the common representation of every contact, from the model through the problem file to the results.
 //!
-//! Node pairs, mortar and rigid obstacles are three ways to make them; nothing behind the model knows which
-//! of them did.
+//! Node pairs, mortar and rigid obstacles all produce contact points; the stages after the model don't distinguish
+//! them. Side a is the slave side, side b the master side.
 
 use serde::{Deserialize, Serialize};
 
 use crate::element::geometry::{advance, cross, dot, length};
 
-/// A point of a contact: a node of side a with the nodes that lie opposite, a local frame, a gap and a law.
+/// A point of a contact: a node of side a with the opposite nodes, a local frame, a gap and a law.
 ///
-/// The jump of the displacements at the point is ⟦u⟧ = Σ weight·u(node), its part along the normal
-/// t = n·⟦u⟧, and the bodies don't penetrate as long as t ≤ gap: a row of B u ≤ g. `N` tells a node: that of
-/// the mesh, of a subdomain, or of a block.
+/// The jump of the displacements at the point is ⟦u⟧ = Σ weight·u(node), its normal component t = n·⟦u⟧, and there is
+/// no penetration as long as t ≤ gap: a row of B u ≤ g. `N` identifies a node: of the mesh, of a subdomain, or of a
+/// block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint<N> {
     /// Index of its contact among those of the scene.
     pub contact: u32,
-    /// Place within that contact, along the side that has its node.
+    /// Index within that contact, along the side that carries the constraints.
     pub place: u32,
-    /// Nodes and their weights. Those of side a sum to 1, those of side b to −1; an obstacle has none.
+    /// Nodes and their weights, which sum to 1 on side a, and to −1 on side b; an obstacle has no nodes.
     pub entries: Vec<(N, f64)>,
-    /// Directions of the entries of an equation, along which displacements have the weights as their factors; none
-    /// where all have those of the frame.
+    /// Directions of the entries of an equation, along which displacements have the weights as coefficients; empty
+    /// where all have the directions of the frame.
     pub axes: Vec<[f64; 3]>,
-    /// The directions in which jumps and forces are told apart.
+    /// The normal and tangential directions of jumps and forces.
     pub frame: LocalFrame,
-    /// The gap g (m), negative for an interference: of the undeformed bodies, or of what came later in the position in which it
-    /// came.
+    /// The gap g (m), negative for an interference: of the undeformed bodies, or, for a contact activated later,
+    /// relative to the position at its activation.
     pub gap: f64,
-    /// The jump ⟦u⟧ when it came (m), from which its slip counts.
+    /// The jump ⟦u⟧ at its activation (m), from which slip is measured.
     pub since: [f64; 3],
-    /// True if its gap is that of the undeformed bodies although it came later.
+    /// True if its gap is that of the undeformed bodies although it is activated later.
     pub is_absolute: bool,
     /// Tributary area, the integral of its shape function (m, in space m²): pressure is force over
     /// area.
@@ -39,37 +39,37 @@ pub struct ContactPoint<N> {
     pub position: [f64; 3],
     /// Point at which its force on side a acts, Σ weight·position over the nodes of side a (m).
     pub force_point: [f64; 3],
-    /// Tag of its node on side a; −1 where there are several, as the nodes of side b have the conditions (mortar).
+    /// Tag of its node on side a; −1 if there are several, as the nodes of side b carry the constraints (mortar).
     pub tag_a: i64,
-    /// Tag of its node on side b; −1 for an obstacle and where there are several, as the nodes of side a have the
-    /// conditions (mortar).
+    /// Tag of its node on side b; −1 for an obstacle, and if there are several, as the nodes of side a carry the
+    /// constraints (mortar).
     pub tag_b: i64,
     /// The law that bounds its force.
     pub law: Law,
-    /// Stiffness of what lies between the sides, along the normal and along the tangents (N/m, per metre of thickness in the
-    /// plane); 0 where it is rigid.
+    /// Contact stiffness along the normal and along the tangents (N/m, per metre of thickness in the plane); 0 for a
+    /// rigid contact.
     pub stiffness: [f64; 2],
-    /// Displacement of the obstacle that it faces in every load step (m); of an equation, along the axis of its first entry,
-    /// what its value is beyond `gap`. None where nothing moves.
+    /// Displacement of its obstacle in every load step (m); of an equation the change of its value beyond `gap`, along
+    /// the axis of its first entry. Empty if nothing moves.
     pub motion: Vec<[f64; 3]>,
-    /// Force of the loads on the first point of a pretension in every load step (N, per metre of thickness in the
-    /// plane); none elsewhere.
+    /// Given force on the first point of a pretension in every load step (N, per metre of thickness in the plane);
+    /// otherwise empty.
     pub preload: Vec<f64>,
 }
 
-/// The bound of the tangential force λ_t at a point, beside λ ≥ 0 for the normal one. Below the bound the sides
-/// stick; at it they slip, and λ_t opposes the increment of the tangential jump.
+/// The bound on the tangential force λ_t at a point, in addition to λ ≥ 0 for the normal force. Below the bound the
+/// sides stick; at it they slip, and λ_t opposes the increment of the tangential jump.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Law {
     /// No tangential force.
     #[default]
     Frictionless,
-    /// Tresca friction: |λ_t| ≤ bound·area, whether the contact is closed or not.
+    /// Tresca friction: |λ_t| ≤ bound·area, whether the contact is closed or open.
     Given {
         /// The bound (Pa).
         bound: f64,
     },
-    /// Coulomb's friction, with cohesion Mohr and Coulomb's: |λ_t| ≤ coefficient·λ + cohesion·area where the contact
+    /// Coulomb friction, with cohesion Mohr-Coulomb friction: |λ_t| ≤ coefficient·λ + cohesion·area where the contact
     /// is closed, 0 where it is open.
     Coulomb {
         /// Coefficient of friction.
@@ -77,12 +77,12 @@ pub enum Law {
         /// Cohesion (Pa).
         cohesion: f64,
     },
-    /// A tie: the jump has no component but what is prescribed, whatever the force is.
+    /// A tie: all components of the jump are prescribed, and the force is unbounded.
     Tied,
 }
 
 impl Law {
-    /// Tresca friction with a `bound` (Pa) of at least 0, which at 0 is none.
+    /// Tresca friction with a nonnegative `bound` (Pa); frictionless if it is 0.
     pub fn given(bound: f64) -> Self {
         match bound > 0.0 {
             true => Self::Given { bound },
@@ -90,7 +90,7 @@ impl Law {
         }
     }
 
-    /// Coulomb's friction with a `coefficient` and a `cohesion` (Pa) of at least 0, which without both is none.
+    /// Coulomb friction with a nonnegative `coefficient` and `cohesion` (Pa); frictionless if both are 0.
     pub fn coulomb(coefficient: f64, cohesion: f64) -> Self {
         match coefficient > 0.0 || cohesion > 0.0 {
             true => Self::Coulomb {
@@ -101,12 +101,12 @@ impl Law {
         }
     }
 
-    /// True if there are tangential forces with a bound.
+    /// True if there are bounded tangential forces.
     pub fn has_friction(&self) -> bool {
         !matches!(self, Self::Frictionless | Self::Tied)
     }
 
-    /// True if forces of either sign hold the sides together.
+    /// True for a tie, whose forces may have either sign.
     pub fn is_tied(&self) -> bool {
         *self == Self::Tied
     }
@@ -117,14 +117,14 @@ impl Law {
 pub struct LocalFrame {
     /// n, outward of side a.
     pub normal: [f64; 3],
-    /// t₁ and t₂; in the plane t₁ is n turned by 90° counter-clockwise, and t₂ points out of the plane.
+    /// t₁ and t₂; in the plane t₁ is n rotated by 90° counter-clockwise, and t₂ points out of the plane.
     pub tangents: [[f64; 3]; 2],
 }
 
 impl LocalFrame {
     /// The frame of a unit `normal`.
     pub fn new(normal: [f64; 3]) -> Self {
-        // Of the axes that lie along the normal the least, z first: the plane is z = 0.
+        // The axis with the smallest component along the normal, z first: the plane is z = 0.
         let z = [0.0, 0.0, 1.0];
         let axis = match normal[2].abs() {
             along if along < 0.9 => z,
@@ -142,8 +142,8 @@ impl LocalFrame {
 }
 
 impl<N: Copy> ContactPoint<N> {
-    /// A frictionless point at `position` on side a whose force acts there, in front of an obstacle or of
-    /// nothing yet: the contact that it belongs to numbers it.
+    /// A frictionless point at `position` on side a, where its force acts, opposite an obstacle or nothing yet; its
+    /// contact sets its number.
     pub fn new(entries: Vec<(N, f64)>, normal: [f64; 3], position: [f64; 3], tag_a: i64) -> Self {
         Self {
             contact: 0,
@@ -166,12 +166,12 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
-    /// True if its sides overlap where they press, by their force over its stiffness.
+    /// True if its sides overlap under pressure, by their force over the contact stiffness.
     pub fn is_compliant(&self) -> bool {
         self.stiffness[0] > 0.0
     }
 
-    /// The overlap of its sides under a normal force (m): 0 where nothing gives way.
+    /// The overlap of its sides under a normal force (m); 0 for a rigid contact.
     pub fn overclosure(&self, force: f64) -> f64 {
         match self.is_compliant() {
             true => force / self.stiffness[0],
@@ -179,7 +179,7 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
-    /// The tag of the node that has the condition.
+    /// The tag of the node that carries the constraint.
     pub fn tag(&self) -> i64 {
         match self.tag_a {
             -1 => self.tag_b,
@@ -192,12 +192,12 @@ impl<N: Copy> ContactPoint<N> {
         self.frame.normal
     }
 
-    /// True if it is a linear equation between displacements, which has one condition.
+    /// True if it is a linear equation between displacements, with a single constraint.
     pub fn is_equation(&self) -> bool {
         !self.axes.is_empty()
     }
 
-    /// The tangents along which it has conditions, where space has `dim` dimensions; none without friction or tie.
+    /// The tangents with constraints, in `dim` dimensions; none without friction or tie.
     pub fn tangents(&self, dim: usize) -> &[[f64; 3]] {
         match self.law == Law::Frictionless || self.is_equation() {
             false => &self.frame.tangents[..dim - 1],
@@ -205,8 +205,7 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
-    /// Number of its jumps that are unknowns of the contact problem, where space has `dim` dimensions: those of a tie are
-    /// known.
+    /// Number of its jumps that are unknowns of the contact problem, in `dim` dimensions: those of a tie are known.
     pub fn unknown_jumps(&self, dim: usize) -> usize {
         match self.law.is_tied() {
             true => 0,
@@ -214,12 +213,12 @@ impl<N: Copy> ContactPoint<N> {
         }
     }
 
-    /// The directions in which it has conditions: its normal, and its tangents where it has friction or is tied.
+    /// The directions of its constraints: its normal, and its tangents with friction or for a tie.
     pub fn directions(&self, dim: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
         std::iter::once(self.normal()).chain(self.tangents(dim).iter().copied())
     }
 
-    /// The directions in which it has conditions on the displacement of entry i.
+    /// The directions of its constraints on the displacement of entry i.
     pub fn directions_at(&self, i: usize, dim: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
         let normal = self.axes.get(i).copied().unwrap_or(self.normal());
         std::iter::once(normal).chain(self.tangents(dim).iter().copied())
@@ -230,7 +229,8 @@ impl<N: Copy> ContactPoint<N> {
         self.row_along(self.frame.normal)
     }
 
-    /// The row of its jump along a `direction`: every node with weight·direction, or along the axes of an equation.
+    /// The row of its jump along a `direction`: every node with weight·direction, or for an equation along the axes of
+    /// its entries.
     pub fn row_along(&self, direction: [f64; 3]) -> impl Iterator<Item = (N, [f64; 3])> + Clone {
         let entries = self.entries.iter().enumerate();
         entries.map(move |(i, &(node, weight))| {
@@ -239,7 +239,7 @@ impl<N: Copy> ContactPoint<N> {
         })
     }
 
-    /// The same point with its nodes named otherwise; those that have no other name drop out.
+    /// The same point with renamed nodes; entries without a new name are removed.
     pub fn rename<M>(&self, mut name: impl FnMut(N) -> Option<M>) -> ContactPoint<M> {
         let entries = self.entries.iter();
         ContactPoint {
@@ -266,26 +266,26 @@ impl<N: Copy> ContactPoint<N> {
     }
 }
 
-/// A node of the side of a contact whose nodes have no conditions: where a solution is looked at for penetration.
+/// A node of the side without constraints, at which a solution is checked for penetration.
 ///
-/// The jump along its normal, n·Σ weight·u(node), is at most the gap where nothing penetrates.
+/// Without penetration the jump along its normal, n·Σ weight·u(node), is at most the gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe<N> {
     /// Index of its contact among those of the scene.
     pub contact: u32,
-    /// Tag of the node.
+    /// Tag of its node.
     pub tag: i64,
-    /// The node with weight 1, and the nodes of the facet opposite, whose weights sum to −1.
+    /// The node with weight 1, and the nodes of the opposite facet, whose weights sum to −1.
     pub entries: Vec<(N, f64)>,
-    /// Outward of its side.
+    /// Outward normal of its side.
     pub normal: [f64; 3],
-    /// The gap of the undeformed bodies along it (m).
+    /// The gap of the undeformed bodies along the normal (m).
     pub gap: f64,
 }
 
 impl ContactPoint<u32> {
-    /// The same point as the other side has it: what its weights, its normal and its nodes are called is exchanged. `on_a`
-    /// tells the nodes of what is side a then, of which `at` says the places (m).
+    /// The same point with sides a and b exchanged: weights, normal and tags. `on_a` is true for the nodes of the new
+    /// side a, `at` returns their positions (m).
     pub fn turned(self, on_a: impl Fn(u32) -> bool, at: impl Fn(u32) -> [f64; 3]) -> Self {
         let entries: Vec<_> = self
             .entries
@@ -306,7 +306,7 @@ impl ContactPoint<u32> {
         }
     }
 
-    /// The jump along a `direction`, of ⟦u⟧ of displacements `u`, node by node (m).
+    /// The component along a `direction` of the jump ⟦u⟧ of displacements `u`, given node by node (m).
     pub fn jump_along(&self, direction: [f64; 3], dim: usize, u: &[f64]) -> f64 {
         self.row_along(direction)
             .flat_map(|(node, n)| (0..dim).map(move |k| n[k] * u[node as usize * dim + k]))

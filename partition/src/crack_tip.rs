@@ -1,9 +1,9 @@
-//! Crack tips of a plane mesh: what stress intensity factors are evaluated from.
+//! Crack tips of a plane mesh: data for the evaluation of stress intensity factors.
 
 use serde::{Deserialize, Serialize};
 
-/// A node at which both faces of a crack end, and the disc around it in which the crack is straight and nothing else
-/// disturbs the near field of the tip.
+/// A node at which both faces of a crack end, and the disc around it in which the crack is straight and the near field
+/// of the tip is undisturbed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrackTip {
     /// Name.
@@ -16,7 +16,7 @@ pub struct CrackTip {
     pub material: u32,
     /// Position (m).
     pub position: [f64; 3],
-    /// The unit vector along which the crack would grow straight on.
+    /// The unit vector of straight crack growth.
     pub direction: [f64; 3],
     /// Radius of the disc (m).
     pub radius: f64,
@@ -24,12 +24,12 @@ pub struct CrackTip {
     pub facets: Vec<FaceFacet>,
 }
 
-/// A facet of a crack face, with its nodes: the end nearer to the tip, the other end, and the one between them.
+/// A facet of a crack face, with its nodes: the end nearer to the tip, the other end, and the middle node.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FaceFacet {
-    /// True if the body lies to the left of the crack's direction.
+    /// True if the body lies on the left of the crack's direction.
     pub is_upper: bool,
-    /// Tags of the nodes; −1 where there is none between the ends.
+    /// Tags of the nodes; −1 without a middle node.
     pub nodes: [i64; 3],
     /// Distances of the nodes from the tip (m).
     pub distances: [f64; 3],

@@ -1,7 +1,7 @@
-//! Decks of Abaqus and CalculiX as whole models: each is translated into the text of a scene and its mesh, behind which
-//! nothing knows of decks.
+//! Decks of Abaqus and CalculiX as whole models: each is translated into the text of a scene and its mesh, so that the
+//! later stages don't depend on decks.
 //!
-//! Decks that aren't linear, static and of small strains, and unknown keywords, are refused by keyword and line.
+//! Decks that aren't linear, static and of small strains, and unknown keywords, are refused with keyword and line.
 
 mod activation;
 mod amplitude;
@@ -58,18 +58,18 @@ pub struct Translation {
     pub scene: String,
     /// The mesh.
     pub mesh: Mesh,
-    /// The deck and the files that it includes.
+    /// The deck and its included files.
     pub files: Vec<PathBuf>,
-    /// The tables that the deck asks for.
+    /// The tables requested by the deck.
     pub prints: Prints,
 }
 
 impl Translation {
-    /// Writes `scene.toml` and `mesh.msh` into `directory`, which is made where it isn't there, and returns the path of the
-    /// scene. Other files of these names stay.
+    /// Writes `scene.toml` and `mesh.msh` into `directory`, which is created if missing, and returns the path of the
+    /// scene. Existing files of these names aren't overwritten.
     ///
     /// # Errors
-    /// The files can't be written, or there are others of their names.
+    /// Files that can't be written, or that exist already.
     pub fn write(&self, directory: &Path) -> Result<PathBuf, OutputError> {
         fs::create_dir_all(directory).map_err(|error| destination::failure(directory, error))?;
         let scene = directory.join("scene.toml");
@@ -103,7 +103,7 @@ pub fn is_one(path: &Path) -> bool {
 /// Reads a deck.
 ///
 /// # Errors
-/// The part of the deck that is wrong or can't be computed, with file and line.
+/// The part of the deck that is invalid or unsupported, with file and line.
 pub fn read(path: &Path) -> Result<Translation, InputError> {
     translate(path).map_err(|error| error.in_file(path))
 }
@@ -111,7 +111,7 @@ pub fn read(path: &Path) -> Result<Translation, InputError> {
 fn translate(path: &Path) -> Result<Translation, InputError> {
     let mut source = Source::read(path)?;
     keyword::spell(&mut source.blocks);
-    // Unsupported keywords are refused before faults of the mesh.
+    // Unsupported keywords are reported before errors in the mesh.
     let mut not_needed = BTreeSet::new();
     for block in &source.blocks {
         if keyword::meaning(&source, block)? == Meaning::NotNeeded {

@@ -1,4 +1,4 @@
-//! The cut into subdomains: recursive bisection of the mesh, contact surfaces like everything else.
+//! Decomposition into subdomains: recursive bisection of the mesh, in which contact surfaces are cut like facets.
 
 mod aggregates;
 mod bisect;
@@ -16,11 +16,11 @@ use crate::error::InputError;
 use crate::model::Model;
 use crate::problem::Hierarchy;
 
-/// Dofs of a subdomain, in the mean over its kind of meshes, where the user doesn't say how many subdomains
-/// there should be: many small ones, merged along the hierarchy, take less time than few large ones.
+/// Average number of dofs of a subdomain where the user gives no number of subdomains: many small subdomains, merged
+/// along the hierarchy, take less time than few large ones.
 const DOFS: f64 = 2_000.0;
 
-/// A partition of the cells into subdomains, and the tree of the cuts that made it.
+/// A partition of the cells into subdomains, and the tree of cuts that produced it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Decomposition {
     /// Number of subdomains.
@@ -32,14 +32,14 @@ pub struct Decomposition {
 }
 
 impl Decomposition {
-    /// Splits `model` into exactly `count` subdomains, or into a number that suits its size.
+    /// Splits `model` into exactly `count` subdomains, or by default into a number that suits its size.
     ///
     /// Every subdomain is connected across facets; contact surfaces are cut like everything else. Subdomains are
-    /// numbered depth first along the tree. Equal models give equal partitions. A partition that the scene
-    /// prescribes is taken as it is, and only gets a tree.
+    /// numbered depth first along the tree. Equal models give equal partitions. A partition prescribed by the scene is
+    /// kept, and only gets a tree.
     ///
     /// # Errors
-    /// A count that can't be, with the range that can; a mesh without cells.
+    /// An impossible count, with the range of possible ones; a mesh without cells.
     pub fn new(model: &Model, count: Option<usize>) -> Result<Self, InputError> {
         if model.mesh.cells.is_empty() {
             return Err(InputError::new("the mesh has no cells"));
@@ -55,7 +55,7 @@ impl Decomposition {
         }
         let graph = Graph::new(model);
         let wanted = match count {
-            // Halves of halves of a mesh come out between this and half of it.
+            // Recursive bisection ends with sets between half of this size and this size.
             None => Wanted::Dofs(std::f64::consts::SQRT_2 * DOFS),
             Some(count) => {
                 let (least, most) = (graph.pieces().1, graph.len());
@@ -84,7 +84,7 @@ impl Decomposition {
         })
     }
 
-    /// The partition in which every cell is in the given one of `count` subdomains.
+    /// The partition given by the subdomain, one of `count`, of every cell.
     pub fn of_cells(model: &Model, subdomain: Vec<u32>, count: usize) -> Self {
         let cells = Graph::new(model);
         let graph = cells.contracted(&subdomain, count);

@@ -1,4 +1,4 @@
-//! A file that appears under its name only when it is complete.
+//! Output files that appear under their name only when they are complete.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, Permissions};
@@ -10,30 +10,28 @@ use tempfile::{Builder, TempPath};
 
 use crate::error::OutputError;
 
-/// A name for a file and, in the same folder, the temporary file that will take it.
+/// A name for a file and, in the same folder, the temporary file that will be renamed to it.
 ///
-/// Dropped without [`commit`](Self::commit), the temporary file is removed and what stood under the
-/// name stays. A run that is killed leaves its temporary file behind, `.NAME.….part`, until the next one with the
-/// same name removes it.
+/// Dropped without [`commit`](Self::commit), the temporary file is removed and an existing file stays. A run that is
+/// killed leaves its temporary file behind, `.NAME.….part`, until the next run with the same name removes it.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
     target: PathBuf,
     temporary: TempPath,
     is_kept: bool,
-    /// Lock by which others see that the temporary file is in use, as long as it is open.
+    /// Lock that marks the temporary file as in use for other programs, as long as it is open.
     owned: Option<File>,
 }
 
-/// Most tries to make a temporary file that another program takes for a left one before it is locked.
+/// Most attempts to create a temporary file, as another program may remove it as abandoned before it is locked.
 const TRIES: usize = 10;
 
 impl Destination {
-    /// Makes the temporary file for `path`.
+    /// Creates the temporary file for `path`.
     ///
     /// # Errors
-    /// A folder that doesn't exist or can't be written, a name that something other than a
-    /// writable file has.
+    /// A folder that doesn't exist or isn't writable, a name of something other than a writable file.
     pub fn new(path: &Path) -> Result<Self, OutputError> {
         let target = target_of(path)?;
         let prefix = hidden(&target);
@@ -42,11 +40,11 @@ impl Destination {
             let made = Builder::new()
                 .prefix(&prefix)
                 .suffix(PART)
-                // The umask applies: the same permissions as any file that the user makes.
+                // The umask applies: the same permissions as any file of the user.
                 .permissions(Permissions::from_mode(0o666))
                 .tempfile_in(folder_of(&target));
             let (file, temporary) = made.map_err(|error| failure(path, error))?.into_parts();
-            // Where files can't be locked, none is taken for a left one.
+            // Where files can't be locked, none is treated as abandoned.
             if file.lock().is_err() || temporary.exists() {
                 return Ok(Self {
                     path: path.to_path_buf(),
@@ -66,7 +64,7 @@ impl Destination {
     /// The file that an earlier run [kept](Self::keep) for `path`, to be completed.
     ///
     /// # Errors
-    /// As of [`new`](Self::new).
+    /// Those of [`new`](Self::new).
     pub fn kept(path: &Path) -> Result<Self, OutputError> {
         let target = target_of(path)?;
         let kept = TempPath::try_from_path(unfinished(&target));
@@ -81,11 +79,10 @@ impl Destination {
         })
     }
 
-    /// From now on the temporary file stays where it isn't committed, under the name
-    /// [`unfinished`] of the file.
+    /// Makes the temporary file persist without a commit, under the name [`unfinished`] of the file.
     ///
     /// # Errors
-    /// The reason that the system gave.
+    /// The reason given by the system.
     pub fn keep(&mut self) -> Result<(), OutputError> {
         if self.is_kept() {
             return Ok(());
@@ -95,20 +92,20 @@ impl Destination {
         fs::rename(&self.temporary, &kept).map_err(fails)?;
         let mut temporary = TempPath::try_from_path(kept).map_err(fails)?;
         temporary.disable_cleanup(true);
-        // What had the temporary name has none any more.
+        // The temporary name no longer exists.
         std::mem::replace(&mut self.temporary, temporary).disable_cleanup(true);
-        // The name isn't mistaken for that of a left file; who wants to look into it may lock it.
+        // The new name isn't that of an abandoned file, so that other programs may lock the file to read it.
         self.owned = None;
         self.is_kept = true;
         Ok(())
     }
 
-    /// True if the temporary file stays where it isn't committed.
+    /// True if the temporary file persists without a commit.
     pub fn is_kept(&self) -> bool {
         self.is_kept
     }
 
-    /// The file that is to be.
+    /// The path of the final file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -118,7 +115,7 @@ impl Destination {
         &self.temporary
     }
 
-    /// An error that names the file, with the system's words where HDF5 quotes them among addresses.
+    /// An error that names the file, with the system's message where HDF5 quotes it among addresses.
     pub fn failure(&self, reason: impl ToString) -> OutputError {
         let said = reason.to_string();
         let quoted = said.split_once("error message = '");
@@ -126,39 +123,39 @@ impl Destination {
         failure(&self.path, quoted.map_or(&*said, |(words, _)| words))
     }
 
-    /// Flushes the temporary file to the disk and gives it its name.
+    /// Flushes the temporary file to the disk and renames it.
     ///
     /// # Errors
-    /// The reason that the system gave.
+    /// The reason given by the system.
     pub fn commit(self) -> Result<(), OutputError> {
         let sync = |file: &Path| File::open(file).and_then(|file| file.sync_all());
         sync(&self.temporary).map_err(|error| failure(&self.path, error))?;
         let renamed = self.temporary.persist(&self.target);
         renamed.map_err(|error| failure(&self.path, error.error))?;
-        // The file has its name; a file system that can't sync folders doesn't make that untrue.
+        // The file has its name, even on a file system that can't sync folders.
         let _ = sync(folder_of(&self.target));
         Ok(())
     }
 }
 
-/// The name of what a run that was stopped kept of the file `path`, once links are followed: `NAME.unfinished`.
+/// The name under which an interrupted run keeps the file `path`, after following links: `NAME.unfinished`.
 pub fn unfinished(path: &Path) -> PathBuf {
     let mut name = OsString::from(follow(path));
     name.push(".unfinished");
     PathBuf::from(name)
 }
 
-/// The end of the names of temporary files.
+/// The ending of the names of temporary files.
 const PART: &str = ".part";
 
-/// Removes temporary files of killed programs: those that no process locks.
+/// Removes temporary files of killed programs: those that no process has locked.
 fn remove_left(folder: &Path, prefix: &OsStr) {
     let prefix = prefix.as_encoded_bytes();
     let is_part = |name: &OsStr| {
         let name = name.as_encoded_bytes();
         name.starts_with(prefix) && name.ends_with(PART.as_bytes())
     };
-    // Where the folder can't be read, or a file not be removed, such files stay.
+    // Errors of reading the folder or removing a file are ignored.
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if is_part(&entry.file_name()) {
             let file = File::options().read(true).write(true).open(entry.path());
@@ -169,10 +166,10 @@ fn remove_left(folder: &Path, prefix: &OsStr) {
     }
 }
 
-/// The file `.NAME.ending` beside the file that `path` names, once links are followed.
+/// The file `.NAME.ending` next to the file `path`, after following links.
 ///
 /// # Errors
-/// As of [`Destination::new`].
+/// Those of [`Destination::new`].
 pub fn beside(path: &Path, ending: &str) -> Result<PathBuf, OutputError> {
     let target = target_of(path)?;
     let mut name = hidden(&target);
@@ -180,7 +177,7 @@ pub fn beside(path: &Path, ending: &str) -> Result<PathBuf, OutputError> {
     Ok(folder_of(&target).join(name))
 }
 
-/// The beginning of the names of what stands beside `target` for a while: `.NAME.`.
+/// The prefix of the names of temporary files for `target`: `.NAME.`.
 fn hidden(target: &Path) -> OsString {
     let mut name = OsString::from(".");
     name.push(target.file_name().unwrap_or_default());
@@ -188,12 +185,12 @@ fn hidden(target: &Path) -> OsString {
     name
 }
 
-/// The path without links: what a link points to is replaced, not the link.
+/// The path without links: the target of a link is replaced, not the link.
 fn follow(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
 }
 
-/// The file that `path` names, once links are followed.
+/// The file that `path` names, after following links.
 fn target_of(path: &Path) -> Result<PathBuf, OutputError> {
     let fails = |reason: &str| Err(failure(path, reason));
     let target = follow(path);
@@ -217,7 +214,7 @@ fn target_of(path: &Path) -> Result<PathBuf, OutputError> {
 /// Writes `path` as a stream of bytes; it gets its name when it is complete.
 ///
 /// # Errors
-/// The file can't be written.
+/// A file that can't be written.
 pub fn write_bytes(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -274,7 +271,7 @@ mod tests {
 
     #[test]
     fn what_is_kept_is_kept_once_by_whichever_path() {
-        // A path is relative to where a program is started.
+        // A relative path is relative to the working directory.
         let folder = tempfile::tempdir_in(".").unwrap();
         let relative = Path::new(folder.path().file_name().unwrap()).join("result");
         for path in [folder.path().join("result"), relative] {

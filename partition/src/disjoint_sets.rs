@@ -1,6 +1,6 @@
-//! Disjoint sets that grow together.
+//! Disjoint sets with union (union-find).
 
-/// A partition of `0..n` into sets, each known by its smallest member.
+/// A partition of `0..n` into sets, each represented by its smallest member.
 #[derive(Clone, Debug)]
 pub struct DisjointSets {
     parent: Vec<u32>,

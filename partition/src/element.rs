@@ -1,8 +1,7 @@
 //! Elements: x(ξ) = Σ N_i(ξ) x_i, u(ξ) = Σ N_i(ξ) u_i over a reference element.
 //!
-//! An [`ElementKind`] is what lists and files hold, a byte; it stands for a [`ReferenceElement`], which
-//! has nodes, shape functions, facets and rules. To add one is to write its
-//! [`Definition`](definition::Definition) and to name it here.
+//! An [`ElementKind`] is a byte, stored in lists and files; it stands for a [`ReferenceElement`] with nodes, shape
+//! functions, facets and quadrature rules. A new kind needs a [`Definition`](definition::Definition) and an entry here.
 
 pub mod definition;
 pub mod geometry;
@@ -40,7 +39,7 @@ impl ElementKind {
         Self::Hexahedron27,
     ];
 
-    /// The reference element: nodes, shape functions, facets, rules.
+    /// The reference element: nodes, shape functions, facets, quadrature rules.
     pub fn reference(self) -> &'static ReferenceElement {
         match self {
             Self::Point1 => &lines::POINT1,
@@ -64,10 +63,10 @@ impl ElementKind {
         Self::ALL.into_iter().filter(move |kind| kind.dim() == dim)
     }
 
-    /// The kind of a cell of dimension `dim` that VTK numbers `code`.
+    /// The kind of a cell of dimension `dim` with VTK's number `code`.
     ///
     /// # Errors
-    /// In words: a cell type that isn't supported, and those that are.
+    /// An unsupported cell type, with the supported ones, in words.
     pub fn cell_from_vtk(code: i64, dim: usize) -> Result<Self, String> {
         let cells = Self::of_dim(dim);
         let found = cells.clone().find(|kind| i64::from(kind.vtk()) == code);
@@ -87,7 +86,7 @@ impl Deref for ElementKind {
     }
 }
 
-/// Elements of any kinds in one list; element `e` has the nodes `nodes_of(e)`.
+/// Elements of mixed kinds; element `e` has the nodes `nodes_of(e)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Elements {
     kinds: Vec<ElementKind>,
@@ -134,7 +133,7 @@ impl Elements {
         &self.nodes[self.offsets[e]..self.offsets[e + 1]]
     }
 
-    /// The nodes of element `e`, to be renumbered or reordered.
+    /// The nodes of element `e`, mutable.
     pub fn nodes_of_mut(&mut self, e: usize) -> &mut [u32] {
         &mut self.nodes[self.offsets[e]..self.offsets[e + 1]]
     }
@@ -149,7 +148,7 @@ impl Elements {
         &self.nodes
     }
 
-    /// Start of every element in [`connectivity`](Self::connectivity), and its end: `len() + 1`.
+    /// Start of every element in [`connectivity`](Self::connectivity), and the end: `len() + 1` entries.
     pub fn offsets(&self) -> &[usize] {
         &self.offsets
     }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-/// Bad input: the message says where (file, key, dataset, group, element, node) and what was
-/// expected. Both programs end with exit code 2.
+/// Invalid input: the message says where (file, key, dataset, group, element, node) and what was expected. Both
+/// programs end with exit code 2.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub struct InputError {
     place: Option<PathBuf>,
@@ -19,12 +19,12 @@ impl InputError {
         }
     }
 
-    /// The function that makes an error of a reason: it begins with `what` is wrong.
+    /// The function that makes an error from a reason: its message begins with `what` is wrong.
     pub fn about(what: &str) -> impl Fn(String) -> Self {
         move |reason| Self::new(format!("{what}: {reason}"))
     }
 
-    /// The same error with the file it was found in, unless it names one already.
+    /// The same error with the file it was found in, unless it already names one.
     #[must_use]
     pub fn in_file(mut self, path: &Path) -> Self {
         self.place.get_or_insert_with(|| path.to_path_buf());
@@ -42,13 +42,13 @@ impl std::fmt::Display for InputError {
     }
 }
 
-/// Characters of a word of a message that are shown: a value of a file may have any number of them.
+/// Number of shown characters of a word in a message: a value in a file may have any length.
 const LONGEST_WORD: usize = 1000;
 
-/// Characters of a message that are shown.
+/// Number of shown characters of a message.
 const LONGEST: usize = 5000;
 
-/// A message, cut to a length that can be read, as are its words.
+/// A message truncated to a readable length, like its words.
 fn shortened(message: &str) -> String {
     if message.len() <= LONGEST_WORD {
         return message.to_owned();
@@ -70,7 +70,7 @@ fn shortened(message: &str) -> String {
     short
 }
 
-/// Writes text of a file, or the name of one, without control characters but for those `kept`.
+/// Writes text from a file, or the name of a file, without control characters except those `kept`.
 fn escape(f: &mut std::fmt::Formatter<'_>, text: &str, kept: &str) -> std::fmt::Result {
     for c in text.chars() {
         match c.is_control() && !kept.contains(c) {
@@ -81,13 +81,13 @@ fn escape(f: &mut std::fmt::Formatter<'_>, text: &str, kept: &str) -> std::fmt::
     Ok(())
 }
 
-/// The program's result file can't be written. Exit code 5.
+/// An output file that can't be written. Exit code 5.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{path}: can't be written: {reason}")]
 pub struct OutputError {
     /// The file.
     pub path: PathBuf,
-    /// The message of the system.
+    /// The system's message.
     pub reason: String,
 }
 

@@ -1,8 +1,8 @@
 //! The built-in scenes.
 //!
-//! Each has a folder `example/NAME` with its `scene.toml`, its page of the gallery with the numbers that the
-//! tests look for (`README.md`), that page's picture, and `mesh.rs`: `SHAPE` is what its mesh is made from,
-//! `ABOUT` and `SUBDOMAINS` are as in [`Example`]. `build.rs` lists the folders.
+//! Each has a folder `example/NAME` with its `scene.toml`, its page of the gallery with the numbers that the tests
+//! check (`README.md`), that page's picture, and `mesh.rs`: `SHAPE` are the parameters of its mesh, `ABOUT` and
+//! `SUBDOMAINS` as in [`Example`]. `build.rs` lists the folders.
 
 mod cubes;
 mod pattern;
@@ -22,16 +22,16 @@ use crate::scene::suggest::nearest;
 
 include!(concat!(env!("OUT_DIR"), "/scenes.rs"));
 
-/// A built-in scene: name and what it shows.
+/// A built-in scene: name and purpose.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
     /// Name for `--example`.
     pub name: &'static str,
-    /// One line on what it shows.
+    /// One line on its purpose.
     pub about: &'static str,
-    /// Number of subdomains where the user doesn't say.
+    /// Default number of subdomains.
     pub subdomains: usize,
-    /// The scene as a user would write it, with its mesh in `mesh.msh`.
+    /// The scene in the user's format, with its mesh in `mesh.msh`.
     pub scene: &'static str,
     shape: Shape,
 }
@@ -41,12 +41,12 @@ pub struct Example {
 enum Shape {
     /// Mapped squares, to be filled with cells of any kind and size.
     Squares(fn() -> Vec<Square>),
-    /// Mapped cubes, to be filled with cells of any kind and size, and the kind where the user doesn't say.
+    /// Mapped cubes, to be filled with cells of any kind and size, and the default kind.
     Cubes {
         cubes: fn() -> Vec<Cube>,
         kind: ElementKind,
     },
-    /// A geometry of Gmsh, and the mesh that Gmsh made of it.
+    /// A geometry of Gmsh, and the mesh that Gmsh generated from it.
     Gmsh {
         geometry: &'static str,
         mesh: &'static [u8],
@@ -59,7 +59,7 @@ pub const MESH: &str = "mesh.msh";
 /// The built-in scene `name`.
 ///
 /// # Errors
-/// A name that isn't known, with the nearest one that is.
+/// An unknown name, with the most similar known one.
 pub fn find(name: &str) -> Result<&'static Example, InputError> {
     EXAMPLES
         .iter()
@@ -78,15 +78,15 @@ impl Example {
     /// Makes the scene and its mesh with the mesh size halved `refine` times.
     ///
     /// # Errors
-    /// A refinement too large to be made.
+    /// A refinement that is too large.
     pub fn make(&self, refine: u32) -> Result<(Scene, Mesh), InputError> {
         Ok((Scene::parse(self.scene)?, self.mesh(refine)?))
     }
 
-    /// Makes its mesh with the mesh size halved `refine` times: linear triangles, or what Gmsh made.
+    /// Makes its mesh with the mesh size halved `refine` times: linear triangles, or Gmsh's mesh.
     ///
     /// # Errors
-    /// A refinement too large to be made, or any at all of a mesh by Gmsh.
+    /// A refinement that is too large, or any refinement of a mesh by Gmsh.
     pub fn mesh(&self, refine: u32) -> Result<Mesh, InputError> {
         match self.shape {
             Shape::Squares(_) => self.mesh_of(ElementKind::Triangle3, refine),
@@ -96,11 +96,11 @@ impl Example {
         }
     }
 
-    /// Makes its mesh of cells of `kind` with the mesh size halved `refine` times; where the mesh
-    /// size changes, there are triangles between quadrilaterals.
+    /// Makes its mesh of cells of `kind` with the mesh size halved `refine` times; where the mesh size changes, there
+    /// are triangles between quadrilaterals.
     ///
     /// # Errors
-    /// A refinement too large to be made; a mesh by Gmsh.
+    /// A refinement that is too large; a mesh by Gmsh.
     pub fn mesh_of(&self, kind: ElementKind, refine: u32) -> Result<Mesh, InputError> {
         match self.shape {
             Shape::Squares(of_scene) => squares::mesh(&of_scene(), refine, kind),
@@ -118,12 +118,12 @@ impl Example {
         ))
     }
 
-    /// Writes `scene.toml`, `mesh.msh` and the geometry, where it is one of Gmsh, into `directory`,
-    /// which is made where it isn't there, and returns the path of the scene. What is there stays, unless this
-    /// program wrote it and nobody edited it.
+    /// Writes `scene.toml`, `mesh.msh` and the geometry of a mesh by Gmsh into `directory`, which is created if
+    /// missing, and returns the path of the scene. Existing files are replaced only if this program wrote them and they
+    /// are unchanged.
     ///
     /// # Errors
-    /// The files can't be written, or there are others of their names.
+    /// Files that can't be written, or other files of their names.
     pub fn write(&self, mesh: &Mesh, directory: &Path) -> Result<PathBuf, OutputError> {
         fs::create_dir_all(directory).map_err(|e| OutputError {
             path: directory.to_path_buf(),
@@ -140,7 +140,7 @@ impl Example {
             let path = directory.join(self.name).with_extension("geo");
             files.push((path, geometry.into()));
         }
-        // None is written where one can't be.
+        // Nothing is written if one of the files can't be replaced.
         files.retain(|(path, text)| fs::read(path).ok().as_ref() != Some(text));
         let others = files.iter().filter(|(path, _)| path.exists());
         let mut others = others.filter(|(path, _)| !is_ours(path));
@@ -156,8 +156,8 @@ impl Example {
     }
 }
 
-/// True if a file is as this program writes one: a built-in scene or geometry, or a mesh in the very form of this
-/// program, whichever its size and cells. Neither Gmsh writes it so, nor does an editor leave it so.
+/// True if a file has the form in which this program writes it: a built-in scene or geometry, or a mesh of any size and
+/// cells in the exact format of this program, which neither Gmsh nor an editor produces.
 fn is_ours(path: &Path) -> bool {
     let Ok(bytes) = fs::read(path) else {
         return false;

@@ -1,10 +1,10 @@
-//! Explanations of messages: the rows of docs/troubleshooting.md, which both programs hold.
+//! Explanations of messages: the rows of docs/troubleshooting.md, which are built into both programs.
 
 use std::sync::LazyLock;
 
 use crate::error::InputError;
 
-/// The page, each row of whose tables of messages begins with its name as an anchor and with the message in backticks.
+/// The page; each row of its tables of messages begins with its name as an anchor and with the message in backticks.
 const PAGE: &str = include_str!("../../docs/troubleshooting.md");
 
 /// Beginning of a row that explains a message.
@@ -16,9 +16,9 @@ pub struct Explanation {
     /// Name: the anchor of the page.
     pub name: &'static str,
     heading: &'static str,
-    /// Columns of the row: the message, what it means, in most tables what to do.
+    /// Columns of the row: the message, its meaning, in most tables the remedy.
     columns: Vec<&'static str>,
-    /// Forms of the message, each with the parts that it has in this order.
+    /// Forms of the message, each split into its fixed parts in their order.
     forms: Vec<Vec<&'static str>>,
 }
 
@@ -35,7 +35,7 @@ static ALL: LazyLock<Vec<Explanation>> = LazyLock::new(|| {
 });
 
 impl Explanation {
-    /// The explanation of a message, the one that has most of its words.
+    /// The explanation of a message: the one with the longest matching form.
     pub fn of(message: &str) -> Option<&'static Self> {
         let all = ALL
             .iter()
@@ -43,10 +43,10 @@ impl Explanation {
         all.max_by_key(|(words, _)| *words).map(|(_, one)| one)
     }
 
-    /// The explanation of a name.
+    /// The explanation with a name.
     ///
     /// # Errors
-    /// There is none of this name.
+    /// An unknown name.
     pub fn named(name: &str) -> Result<&'static Self, InputError> {
         let found = ALL.iter().find(|one| one.name == name);
         found.ok_or_else(|| {
@@ -56,7 +56,7 @@ impl Explanation {
         })
     }
 
-    /// The explanation on lines of a terminal.
+    /// The explanation as lines for a terminal.
     pub fn text(&self) -> String {
         let mut text = format!("{} ({})\n", self.name, self.heading);
         for (title, column) in ["message", "means", "do"].iter().zip(&self.columns) {
@@ -80,7 +80,7 @@ impl Explanation {
         })
     }
 
-    /// The number of characters that a message has of the form of which it has most; none where it has no form as a whole.
+    /// The number of fixed characters of the best matching form of a message; `None` if no form matches.
     fn words_in(&self, message: &str) -> Option<usize> {
         let of_form = |form: &Vec<&str>| {
             let mut rest = message;
@@ -95,7 +95,7 @@ impl Explanation {
     }
 }
 
-/// The message with the name of its explanation, where it has one.
+/// The message with the name of its explanation, if there is one.
 pub fn with_name(message: &str) -> String {
     match Explanation::of(message) {
         Some(explanation) => format!("{message} [--explain {}]", explanation.name),
@@ -103,7 +103,7 @@ pub fn with_name(message: &str) -> String {
     }
 }
 
-/// The forms of a message in a cell: what stands in backticks, after dots the same form goes on.
+/// The forms of a message in a cell: the texts in backticks; after dots the same form continues.
 fn forms(cell: &'static str) -> Vec<Vec<&'static str>> {
     let mut forms: Vec<Vec<&str>> = Vec::new();
     let mut goes_on = false;
@@ -124,7 +124,7 @@ fn forms(cell: &'static str) -> Vec<Vec<&'static str>> {
     forms
 }
 
-/// Text without backticks, its links followed by where they lead.
+/// Text without backticks, its links followed by their targets.
 fn without_links(text: &str) -> String {
     let mut plain = String::new();
     let mut rest = text;

@@ -1,19 +1,19 @@
-//! Flops: what factorizations cost, estimated before they are made.
+//! Flops: estimated costs of factorizations.
 
-/// Cost of an unknown of a subdomain beside its elimination, in flops.
+/// Overhead per unknown of a subdomain beyond its elimination, in flops.
 const PER_UNKNOWN: f64 = 3e4;
-/// Cost of an entry of a subdomain's S beside its elimination, in flops: its fronts are small, and what is kept
-/// goes through many of them.
+/// Overhead per entry of a subdomain's S beyond its elimination, in flops: its fronts are small, and kept unknowns pass
+/// through many of them.
 const PER_ENTRY_OF_SUBDOMAIN: f64 = 900.0;
-/// Cost of an entry of a front beside its elimination, in flops.
+/// Overhead per entry of a front beyond its elimination, in flops.
 const PER_ENTRY_OF_FRONT: f64 = 40.0;
 
 /// The dense matrix of an inner node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Front {
-    /// Dofs of the nodes of Γ all of whose blocks are under this node, but not under one child.
+    /// Dofs of the nodes of Γ whose blocks are all under this node, but not all under one child.
     pub eliminated: usize,
-    /// Dofs of the other nodes of Γ that the children have left, and contact conditions.
+    /// Dofs of the other nodes of Γ that the children keep, and contact constraints.
     pub kept: usize,
 }
 
@@ -24,12 +24,12 @@ impl Front {
         e * e * e / 3.0 + e * e * b + e * b * b
     }
 
-    /// Estimated time of its factorization, in flops: its arithmetic, and what goes with it.
+    /// Estimated time of its factorization, in flops: its arithmetic and overhead.
     pub fn time(&self) -> f64 {
         PER_ENTRY_OF_FRONT * ((self.eliminated + self.kept) as f64).powi(2) + self.flops()
     }
 
-    /// Estimated time of a front that stands for a subdomain that is condensed.
+    /// Estimated time of condensing a subdomain, represented by this front.
     pub fn time_to_condense(&self, dim: usize) -> f64 {
         let (eliminated, kept) = (self.eliminated as f64, self.kept as f64);
         let beside = PER_UNKNOWN * eliminated + PER_ENTRY_OF_SUBDOMAIN * kept * kept;
@@ -38,10 +38,10 @@ impl Front {
 }
 
 /// Estimated flops to condense a mesh by nested dissection, with `interior` dofs to be eliminated and `kept` on its
-/// boundary: the interior by itself, and the boundary carried through fronts as large as the separators.
+/// boundary: eliminating the interior, and carrying the boundary through fronts as large as the separators.
 ///
 /// In the plane 829/84 n^1.5 multiplications, and as many additions, for n nodes of one dof (George 1973), eight times
-/// as many with two. In space eight times what the first separator takes, of 3 (n/3)^(2/3) dofs in a cube.
+/// as many for two dofs. In space eight times the cost of the first separator, with 3 (n/3)^(2/3) dofs in a cube.
 pub fn condensation(interior: f64, kept: f64, dim: usize) -> f64 {
     let (alone, separator) = match dim {
         2 => (56.0 * interior.powf(1.5), (2.0 * interior).sqrt()),

@@ -1,5 +1,5 @@
-//! Planning: the tree along which Schur complements are merged, what its nodes cost, the clusters between which an
-//! iterative interface solver works, and which interface solver takes less time.
+//! Planning: the tree along which Schur complements are merged, the cost of its nodes, the clusters of an iterative
+//! interface solver, and the choice of the fastest interface solver.
 //!
 //! All of it follows from the problem file, so that merges are the same on any number of ranks.
 

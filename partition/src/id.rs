@@ -1,7 +1,7 @@
-//! Numbers of what a problem consists of, a type for each sort of it, so that none is taken for another.
+//! Indices of a problem's parts, with a separate type for each kind, so that they can't be confused.
 //!
-//! All count from 0 over the whole problem, on all ranks the same. Numbers become places in files, messages and lists by
-//! `index`, and places become numbers by `From`.
+//! All count from 0 over the whole problem, equally on all ranks. `index` converts them to positions in files, messages
+//! and lists, and `From` converts positions to indices.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,12 +18,12 @@ macro_rules! ids {
         pub struct $id(usize);
 
         impl $id {
-            /// That of a place among all of its sort.
+            /// The index of a position.
             pub const fn new(index: usize) -> Self {
                 Self(index)
             }
 
-            /// The place among all of its sort.
+            /// The position.
             pub const fn index(self) -> usize {
                 self.0
             }
@@ -53,25 +53,26 @@ macro_rules! ids {
 }
 
 ids! {
-    /// A block: a subdomain, by its place in the problem file.
+    /// A block: a subdomain, by its position in the problem file.
     BlockId, OnBlocks;
-    /// A node of the [hierarchy](crate::hierarchy::tree::Tree): the blocks by their number, then the inner nodes, children
-    /// before parents.
+    /// A node of the [hierarchy](crate::hierarchy::tree::Tree): first the blocks, then the inner nodes, children before
+    /// parents.
     TreeNodeId, OnTreeNodes;
-    /// A contact group: the contact points of one node of the hierarchy. By ascending nodes, of those that have some.
+    /// A contact group: the contact points of one node of the hierarchy, in ascending order of the nodes with contact
+    /// points.
     GroupId, OnGroups;
-    /// A cluster: the blocks under one node of the hierarchy, condensed, of which the interface problem is assembled. In the
-    /// order of the hierarchy.
+    /// A cluster: the blocks under one node of the hierarchy, condensed; the interface problem is assembled from the
+    /// clusters. In the order of the hierarchy.
     ClusterId, OnClusters;
-    /// A pair: a cluster in contact, by its place among those alone.
+    /// A pair: a cluster in contact, by its position among these clusters.
     PairId, OnPairs;
-    /// A node of the hierarchy above which nothing is merged where active sets are fixed, by its place among those alone,
-    /// ascending: the clusters of the iterative interface solver.
+    /// A root of merging: a node of the hierarchy above which nothing is merged with fixed active sets, by its position
+    /// among these nodes, ascending. These are the clusters of the iterative interface solver.
     MergeRootId, OnMergeRoots;
 }
 
 impl From<BlockId> for TreeNodeId {
-    /// The leaf of the hierarchy that the block is.
+    /// The leaf of the hierarchy for a block.
     fn from(block: BlockId) -> Self {
         Self(block.0)
     }

@@ -1,4 +1,4 @@
-//! The content of a problem file, for people.
+//! Summary of a problem file for the user.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -11,7 +11,7 @@ use crate::model::{Material, PlaneState};
 use crate::problem::read::ProblemFile;
 use crate::problem::{Catalog, Problem, VERSION};
 
-/// Most lines about things of one kind.
+/// Most lines about items of one kind.
 const MOST: usize = 20;
 
 /// The content of a problem file; its `Display` is what `contact-dd-partition --info` prints.
@@ -28,7 +28,7 @@ impl Info {
     /// Reads and checks all of a problem file.
     ///
     /// # Errors
-    /// It isn't one, or the dataset and the row that isn't what it should be.
+    /// Another kind of file, or the dataset and the invalid row.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let problem = ProblemFile::open(path)?.problem()?;
         Ok(Self {
@@ -38,8 +38,8 @@ impl Info {
         })
     }
 
-    /// Sum of all loads in a load step (N, in the plane per metre of thickness), and their moment about the origin; in
-    /// a problem without steps those that are there at once.
+    /// Resultant force of a load step (N, in the plane per metre of thickness), and moment about the origin; in a
+    /// problem without steps those of all loads.
     pub fn load(&self, step: usize) -> ([f64; 3], [f64; 3]) {
         let (mut sum, mut moment) = ([0.0; 3], [0.0; 3]);
         for subdomain in &self.problem.subdomains {
@@ -51,7 +51,7 @@ impl Info {
         (sum, moment)
     }
 
-    /// Number of nodes that each condition of the scene supports, by name.
+    /// Number of nodes that each boundary condition of the scene supports, by name.
     pub fn supported_nodes(&self) -> Vec<(&str, usize)> {
         let names = &self.problem.catalog.supports;
         let mut nodes = vec![BTreeSet::new(); names.len()];
@@ -80,7 +80,7 @@ impl Info {
         bodies.collect()
     }
 
-    /// The resultant of every load step, of all loads where there are no steps.
+    /// The resultant of every load step, or of all loads without steps.
     fn loads(&self) -> Vec<String> {
         let resultant = |step: usize| {
             let Catalog { dim, units, .. } = self.problem.catalog;
@@ -187,7 +187,7 @@ impl fmt::Display for Info {
     }
 }
 
-/// A material in words: by modulus and ratio where it is isotropic, else by its stiffness.
+/// A material in plain words: by modulus and ratio if it is isotropic, otherwise by its stiffness.
 fn elastic(material: &Material, unit: &str) -> String {
     let (name, c) = (&material.name, &material.stiffness);
     match material.poisson {
@@ -207,7 +207,7 @@ fn elastic(material: &Material, unit: &str) -> String {
     }
 }
 
-/// A number to six digits, without the zeros that end it.
+/// A number with six digits, without trailing zeros.
 fn rounded(value: f64) -> String {
     let digits = format!("{value:.5e}");
     let (digits, exponent) = digits.split_once('e').unwrap_or((&digits, "0"));

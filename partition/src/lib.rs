@@ -1,6 +1,6 @@
 //! From a scene to a problem file: everything that happens before the first MPI rank starts.
 //!
-//! Data flows one way:
+//! Data flow in one direction:
 //!
 //! ```text
 //! scene.toml ─ scene ─┐
@@ -8,29 +8,29 @@
 //! mesh.msh  ── mesh ──┘
 //! ```
 //!
-//! **The scene** is what a user writes ([`scene`]), the **mesh** what a mesher writes ([`mesh`]), of cells
-//! over which u(ξ) = Σ N_i(ξ) u_i ([`element`]). [`example`] has some of both.
+//! **The scene** is the user's input ([`scene`]), the **mesh** that of a mesher ([`mesh`]), with cells over which u(ξ)
+//! = Σ N_i(ξ) u_i ([`element`]). [`example`] has some of both.
 //!
-//! **The model** is what the scene means on its mesh ([`model`]): bodies and their materials σ = C ε, the
-//! supports of Γ_u and Γ_o, the nodal forces of Γ_τ, and for every contact of Γ_c
+//! **The model** is the scene on its mesh ([`model`]): bodies and their materials σ = C ε, the supports of Γ_u and Γ_o,
+//! the nodal forces of Γ_τ, and for every contact of Γ_c
 //!
 //! > n·(u_a − u_b) ≤ g,   together   B u ≤ g,
 //!
 //! the set K over which (1) minimizes.
 //!
-//! Node pairs, dual mortar weights and rigid obstacles each make such rows, and nothing behind them knows
-//! which did.
+//! Node pairs, dual mortar weights and rigid obstacles each produce such rows, and the later stages don't distinguish
+//! them.
 //!
 //! **The partition** ([`decompose`]) cuts bodies into subdomains Ω^i that meet on
 //!
-//! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j,   Γ ∩ Γ_c = ∅ but for the tips of cracks,
+//! > Γ = ∪ ∂Ω^i ∩ ∂Ω^j,   Γ ∩ Γ_c = ∅ except for the tips of cracks,
 //!
-//! by METIS on a graph whose vertices are what must not be divided. Subdomains in contact are the pairs ϑ,
-//! the others T. It also makes the [`hierarchy`] up which Schur complements are
-//! merged, judged by estimated [`flops`]. Only this part, behind the feature `metis`, needs METIS.
+//! by METIS on a graph whose vertices are the indivisible parts. Subdomains in contact are the pairs ϑ, the others T.
+//! It also builds the [`hierarchy`] along which Schur complements are merged, rated by estimated [`flops`]. Only this
+//! part, behind the feature `metis`, needs METIS.
 //!
-//! **The problem file** ([`problem`]) is defined once, for its writer here and for its reader in
-//! `contact-dd-mpi`. It gets its name when it is whole ([`destination`]).
+//! **The problem file** ([`problem`]) is defined once, for its writer here and for its reader in `contact-dd-mpi`. It
+//! gets its name when it is complete ([`destination`]).
 
 pub mod allocator;
 pub mod command_line;

@@ -1,4 +1,4 @@
-//! Many short lists in two allocations.
+//! Many short lists in two allocations (compressed rows).
 
 /// Lists of items, one for each of `0..len`.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,8 +28,7 @@ impl<T, L: IntoIterator<Item = T>> FromIterator<L> for Lists<T> {
 }
 
 impl<T: Copy> Lists<T> {
-    /// Puts each item into the list that stands before it; those of one list keep their order.
-    /// O(items + lists).
+    /// Sorts items into the lists given by their first components, in a stable order. O(items + lists).
     pub fn new(len: usize, items: impl Iterator<Item = (u32, T)> + Clone) -> Self {
         let mut offsets = vec![0; len + 1];
         let mut first = None;
@@ -52,7 +51,7 @@ impl<T: Copy> Lists<T> {
         }
     }
 
-    /// No lists yet, with room for so many of them and for so many items.
+    /// An empty sequence with room for `lists` lists and `items` items.
     pub fn with_capacity(lists: usize, items: usize) -> Self {
         let mut offsets = Vec::with_capacity(lists + 1);
         offsets.push(0);
@@ -83,12 +82,12 @@ impl<T: Copy> Lists<T> {
         &self.items[self.offsets[list]..self.offsets[list + 1]]
     }
 
-    /// The items of a list, to be changed.
+    /// The items of a list, mutable.
     pub fn of_mut(&mut self, list: usize) -> &mut [T] {
         &mut self.items[self.offsets[list]..self.offsets[list + 1]]
     }
 
-    /// The items of all lists in order.
+    /// The items of all lists in order, mutable.
     pub fn items_mut(&mut self) -> &mut [T] {
         &mut self.items
     }
@@ -107,7 +106,7 @@ impl<T: Copy + Ord> Lists<T> {
         }
     }
 
-    /// Takes out what equals the item before it.
+    /// Removes consecutive repetitions in every list.
     pub fn dedup(&mut self) {
         let mut kept = 0;
         for list in 0..self.len() {

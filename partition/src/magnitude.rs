@@ -1,18 +1,18 @@
-//! Magnitudes of numbers with which results stay numbers, and numbers in words.
+//! Admissible magnitudes of numbers, and numbers as text.
 
-/// The largest number, by its absolute value: its square is still far from overflow.
+/// The largest absolute value: its square is still far from overflow.
 pub const LARGEST: f64 = 1e120;
 
 /// The smallest stiffness (Pa).
 pub const SMALLEST_STIFFNESS: f64 = 1e-120;
 
-/// The smallest area of a cell (m²), below which its edges' squares lose digits.
+/// The smallest area of a cell (m²), below which squares of its edges lose digits.
 pub const SMALLEST_AREA: f64 = 1e-250;
 
-/// Checks that a number is finite and not beyond all measure.
+/// Checks that a number is finite and at most [`LARGEST`].
 ///
 /// # Errors
-/// The expectation that a number misses.
+/// The expectation.
 pub fn check(value: f64) -> Result<f64, String> {
     if !value.is_finite() {
         Err("a finite number".into())
@@ -23,9 +23,9 @@ pub fn check(value: f64) -> Result<f64, String> {
     }
 }
 
-/// A number in four digits at most.
+/// A number with at most four digits.
 pub fn short(number: f64) -> String {
-    // What was written as a number can be read as one.
+    // A formatted number can be parsed.
     let rounded = format!("{number:.3e}").parse().unwrap_or(number);
     match rounded.abs() {
         size if size != 0.0 && !(1e-3..1e5).contains(&size) => format!("{rounded:e}"),

@@ -26,7 +26,7 @@ use contact_dd_partition::problem::{Problem, trial};
 use contact_dd_partition::scene::Scene;
 use rustix::stdio::dup2_stdout;
 
-/// Reason for which no problem file was written.
+/// Reason why no problem file was written.
 #[derive(Debug, thiserror::Error)]
 enum Failure {
     #[error(transparent)]
@@ -109,7 +109,7 @@ fn split(model: &Model, subdomains: Option<usize>) -> Result<Problem, InputError
     Problem::new(model, &decomposition)
 }
 
-/// Does `work` while what C libraries print goes nowhere: METIS writes its remarks to stdout.
+/// Runs `work` with the output of C libraries discarded: METIS writes remarks to stdout.
 fn without_stdout<T>(work: impl FnOnce() -> T) -> T {
     unsafe extern "C" {
         fn fflush(stream: *mut c_void) -> c_int;
@@ -119,10 +119,10 @@ fn without_stdout<T>(work: impl FnOnce() -> T) -> T {
     let (Ok(kept), Ok(nowhere)) = (kept, nowhere) else {
         return work();
     };
-    // Where stdout can't be redirected, remarks are the lesser evil.
+    // If stdout can't be redirected, the remarks are printed.
     let _ = dup2_stdout(nowhere);
     let done = work();
-    // SAFETY: with a null pointer fflush writes out what every stream of the C library has buffered.
+    // SAFETY: with a null pointer fflush flushes the buffers of all streams of the C library.
     unsafe { fflush(null_mut()) };
     let _ = dup2_stdout(kept);
     done
@@ -136,7 +136,7 @@ struct Source {
     output: PathBuf,
 }
 
-/// Reads or makes scene and mesh; `None` where nothing but these was asked for.
+/// Reads or makes scene and mesh; `None` if nothing else was requested.
 fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
     if let Some(path) = args.scene.as_ref().filter(|path| deck::is_one(path)) {
         return read_deck(args, path);
@@ -183,7 +183,7 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
     }))
 }
 
-/// Reads a deck, whose scene and mesh are written where that was asked for.
+/// Reads a deck, and writes its scene and mesh if requested.
 fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure> {
     let translation = deck::read(path)?;
     if let Some(file) = &args.write_prints {
@@ -221,8 +221,8 @@ fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure>
     }))
 }
 
-/// Prints where a scene was written and, where no problem file was asked for beside it, what to do with it; true if one
-/// was.
+/// Prints where a scene was written and, without a requested problem file, the next command; true if a problem file was
+/// requested.
 fn goes_on(args: &CommandLine, scene: &Path) -> Result<bool, Failure> {
     if let Some(output) = &args.output {
         keep(scene, output)?;
@@ -236,7 +236,7 @@ fn goes_on(args: &CommandLine, scene: &Path) -> Result<bool, Failure> {
     Ok(args.output.is_some())
 }
 
-/// Refuses to write over what the problem file is made from.
+/// Refuses to overwrite an input of the problem file.
 fn keep(input: &Path, output: &Path) -> Result<(), InputError> {
     match (input.canonicalize(), output.canonicalize()) {
         (Ok(one), Ok(other)) if one == other => Err(InputError::new(
@@ -257,7 +257,7 @@ fn output(args: &CommandLine, stem: &Path) -> PathBuf {
     })
 }
 
-/// Prints what the problem file holds, which contacts were `found`, and what to do with it.
+/// Prints the content of the problem file, the contacts that were `found`, and the next command.
 fn report(problem: &Problem, found: &[String], output: &Path) -> Result<(), OutputError> {
     if !problem.catalog.title.is_empty() {
         say(&format!("title         {}", problem.catalog.title))?;

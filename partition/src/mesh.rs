@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 pub use self::file::{files, read};
 use crate::element::Elements;
 
-/// A mesh as a mesher made it, without orphan nodes and with every cell positively oriented.
+/// A mesh of a mesher, without orphan nodes and with every cell positively oriented.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Dimension of the cells.
@@ -28,7 +28,7 @@ pub struct Mesh {
     pub cells: Elements,
     /// The mesh file's tag of each cell.
     pub cell_tags: Vec<i64>,
-    /// Cells with incompatible modes; empty where none has.
+    /// For every cell whether it has incompatible modes; empty if none has.
     pub has_modes: Vec<bool>,
     /// Facets that the mesh file lists (dimension `dim − 1`), by node index.
     pub facets: Elements,
@@ -39,7 +39,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The tags of nodes in words.
+    /// The tags of nodes, as text.
     pub(crate) fn tags_of(&self, nodes: &[u32]) -> String {
         let tags = nodes
             .iter()
@@ -48,7 +48,7 @@ impl Mesh {
     }
 }
 
-/// The name of a group where groups of several dimensions have it.
+/// The name of a group whose name occurs in several dimensions.
 fn name_of_dim(name: &str, dim: usize) -> String {
     format!("{name} ({})", ["point", "curve", "surface", "volume"][dim])
 }
@@ -58,6 +58,7 @@ fn name_of_dim(name: &str, dim: usize) -> String {
 pub struct Group {
     /// Dimension of its members.
     pub dim: usize,
-    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, and 1 in space: those of curves), ascending.
+    /// Indices of cells (`dim` that of the mesh), facets (one less) or nodes (0, and 1 in space: those of curves),
+    /// ascending.
     pub members: Vec<u32>,
 }

@@ -1,4 +1,4 @@
-//! Messages of both programs: results on stdout, errors and warnings on stderr, in colour where a terminal shows them.
+//! Messages of both programs: results on stdout, errors and warnings on stderr, in colour on a terminal.
 
 use std::io::{self, ErrorKind, Write, stderr};
 
@@ -14,19 +14,19 @@ pub const ERROR: Style = AnsiColor::Red.on_default().bold();
 /// Style of the word "warning:".
 pub const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 
-/// Prints on stdout. A closed pipe, as behind `| head`, is no error.
+/// Prints on stdout. A closed pipe, as with `| head`, isn't an error.
 ///
 /// # Errors
-/// It can't be written otherwise, as on a full disk.
+/// Other write errors, as on a full disk.
 pub fn say(text: &str) -> Result<(), OutputError> {
     let mut stdout = anstream::stdout();
     heard((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
 }
 
-/// The result of a write to stdout, `said`; a closed pipe is no error, see [`say`].
+/// The result of a write to stdout; a closed pipe isn't an error, see [`say`].
 ///
 /// # Errors
-/// It can't be written.
+/// Other write errors.
 pub fn heard(said: io::Result<()>) -> Result<(), OutputError> {
     match said {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -53,6 +53,6 @@ fn print(style: Style, word: &str, text: &str) {
         ColorChoice::Never => format!("{word} {text}\n"),
         _ => format!("{style}{word}{style:#} {text}\n"),
     };
-    // In one piece, as a launcher may print, too. An error of stderr can't be reported.
+    // In a single write, as a launcher may print at the same time. An error on stderr can't be reported.
     let _ = stderr().write_all(line.as_bytes());
 }

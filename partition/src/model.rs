@@ -1,7 +1,7 @@
-//! The model: a scene on its mesh, with no names to look up any more, no expression to evaluate.
+//! The model: a scene on its mesh, with all names resolved and all expressions evaluated.
 //!
-//! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; nothing
-//! behind this point knows how they came about.
+//! Loads are consistent nodal forces, supports are rows `u·d = v`, contact is `B u ≤ g`; the later stages don't depend
+//! on how the scene states them.
 
 mod activation;
 mod adjust;
@@ -65,13 +65,13 @@ pub struct Model {
     pub title: String,
     /// Settings of the solver.
     pub solver: SolverSettings,
-    /// The units that messages and pictures name.
+    /// The units in messages and pictures.
     pub units: Units,
     /// Plane state; `None` in space.
     pub plane: Option<PlaneState>,
     /// Mesh.
     pub mesh: Mesh,
-    /// Cells that meet at facets.
+    /// Adjacency of cells across facets.
     pub topology: Topology,
     /// Materials.
     pub materials: Vec<Material>,
@@ -81,45 +81,46 @@ pub struct Model {
     pub cell_material: Vec<u32>,
     /// Index of its body for every cell.
     pub cell_body: Vec<u32>,
-    /// Names of the conditions that prescribe displacements, and of springs after them.
+    /// Names of the boundary conditions that prescribe displacements, followed by those of springs.
     pub support_names: Vec<String>,
     /// Supports in ascending order of nodes, with the values of the first step.
     pub supports: Vec<Support>,
-    /// Springs to the ground: blocks of their stiffness, each with a cell that has its nodes.
+    /// Springs to the ground: stiffness blocks, each with a cell that contains its nodes.
     pub springs: Vec<(u32, SpringBlock)>,
-    /// Consistent nodal forces of the first step in ascending order of nodes, one entry for every node
-    /// that is loaded in any step (N per metre of thickness).
+    /// Consistent nodal forces of the first step in ascending order of nodes, one entry for every node loaded in any
+    /// step (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
-    /// Stress without strain in the first step.
+    /// Initial stress in the first step.
     pub initial_stress: InitialStress,
-    /// Load steps; none where all loads are there at once.
+    /// Load steps; none if all loads are applied at once.
     pub steps: Vec<ModelStep>,
     /// Contacts in the order of the scene.
     pub contacts: Vec<Contact>,
-    /// Crack tips of the plane, each with a cell that has it.
+    /// Crack tips of a plane mesh, each with a cell that contains it.
     pub tips: Vec<(u32, CrackTip)>,
-    /// Quantities that are asked for, and the parameters of their derivatives.
+    /// Requested quantities, and the parameters of their derivatives.
     pub goals: Goals,
-    /// Description of contacts that were found, each with its name, and of crack tips that are passed by.
+    /// Descriptions of contacts found automatically, each with its name, and of crack tips left out.
     pub found: Vec<String>,
-    /// The last nodes of the mesh, which no cell has, each by a cell of the body that it belongs to.
+    /// A cell for each of the last nodes of the mesh, the reference nodes, which belong to no cell: it tells the node's
+    /// body.
     pub reference_nodes: Vec<u32>,
-    /// The partition that the scene asks for, a subdomain for every cell.
+    /// The partition prescribed by the scene: the subdomain of every cell.
     pub prescribed_subdomains: Option<Vec<u32>>,
     /// Warnings.
     pub warnings: Vec<String>,
 }
 
 impl Model {
-    /// True if a node of the mesh is one that no cell has.
+    /// True for a reference node, which belongs to no cell.
     pub fn is_reference(&self, node: usize) -> bool {
         node >= self.mesh.points.len() - self.reference_nodes.len()
     }
 
-    /// Finds out what `scene` means on `mesh`.
+    /// Builds the model of `scene` on `mesh`.
     ///
     /// # Errors
-    /// Groups that don't exist, conditions that contradict each other, sides that don't match.
+    /// Groups that don't exist, boundary conditions that contradict each other, sides that don't match.
     pub fn new(scene: &Scene, mesh: Mesh) -> Result<Self, InputError> {
         let plane = plane_state(scene, &mesh)?;
         let mut warnings = mesh.warnings.clone();
@@ -172,16 +173,16 @@ impl Model {
             found: constraints.found,
             reference_nodes,
             prescribed_subdomains,
-            // Words of a mesh or a deck may hold anything, and each warning is a line of the problem file.
+            // Names from a mesh or a deck may hold line breaks, and each warning is a line of the problem file.
             warnings: (warnings.iter().map(|text| name::in_a_line(text))).collect(),
         })
     }
 }
 
-/// The quantities of a scene, and with them its parameters.
+/// The quantities of a scene and their parameters.
 ///
 /// # Errors
-/// A name that isn't there, with those that are.
+/// An unknown name, with the existing ones.
 fn goals(scene: &Scene, on: &LoadedBodies, constraints: &Constraints) -> Result<Goals, InputError> {
     if scene.quantity.is_empty() {
         return Ok(Goals::default());
@@ -230,7 +231,7 @@ fn goals(scene: &Scene, on: &LoadedBodies, constraints: &Constraints) -> Result<
 /// The plane state of a scene whose mesh lies in the plane.
 ///
 /// # Errors
-/// None where one is expected, or one in space; a value that isn't of the mesh's dimension.
+/// A missing plane state, or one in space; a value that isn't of the mesh's dimension.
 fn plane_state(scene: &Scene, mesh: &Mesh) -> Result<Option<PlaneState>, InputError> {
     let fault = match (mesh.dim, scene.plane) {
         (2, None) => {

@@ -1,9 +1,9 @@
-//! Rules for names, which are printed in messages and name groups of the result file.
+//! Rules for names, which appear in messages and as groups of the result file.
 
 /// Longest name (bytes).
 const LONGEST: usize = 255;
 
-/// Checks a name of a body, a material or a contact.
+/// Checks the name of a body, a material or a contact.
 ///
 /// # Errors
 /// The fault of a name, as the end of a sentence that starts with the name.
@@ -18,7 +18,7 @@ pub fn check(name: &str) -> Result<(), &'static str> {
     }
 }
 
-/// Checks the name of a contact, which is that of a group in the result file as well.
+/// Checks the name of a contact, which is also that of a group in the result file.
 ///
 /// # Errors
 /// The fault of a name, as the end of a sentence that starts with the name.
@@ -32,10 +32,10 @@ pub fn check_contact(name: &str) -> Result<(), &'static str> {
     }
 }
 
-/// Checks a title or a remark, which is printed in a line of its own.
+/// Checks a title or a remark, which is printed on a separate line.
 ///
 /// # Errors
-/// The fault of a name, as the end of a sentence that starts with the text.
+/// The fault of a text, as the end of a sentence that starts with the text.
 pub fn check_text(text: &str) -> Result<(), &'static str> {
     match text.chars().any(char::is_control) {
         true => Err("holds a control character; expected one line of text"),
@@ -43,7 +43,7 @@ pub fn check_text(text: &str) -> Result<(), &'static str> {
     }
 }
 
-/// The start of a name as a message shows it, in one line.
+/// The beginning of a name for a message, on one line.
 pub fn shown(name: &str) -> String {
     const SHOWN: usize = 60;
     match name.char_indices().nth(SHOWN) {
@@ -52,7 +52,7 @@ pub fn shown(name: &str) -> String {
     }
 }
 
-/// A text in one line, without control characters.
+/// A text on one line, without control characters.
 pub fn in_a_line(text: &str) -> String {
     let mut line = String::new();
     for letter in text.chars() {

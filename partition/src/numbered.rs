@@ -1,11 +1,11 @@
-//! Lists whose places are numbers of one sort.
+//! Lists indexed by one type of index.
 
 use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
 
-/// A value for each of the numbers 0, 1, … of a sort `I`.
+/// A value for each of the indices 0, 1, … of type `I`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Numbered<I, T> {
@@ -35,7 +35,7 @@ impl<I, T> FromIterator<T> for Numbered<I, T> {
 }
 
 impl<I: Into<usize>, T> Numbered<I, T> {
-    /// The value of a number, if it is one of these.
+    /// The value of an index, if it is in range.
     pub fn get(&self, id: I) -> Option<&T> {
         self.values.get(id.into())
     }
@@ -79,42 +79,42 @@ impl<I, T> Numbered<I, T> {
         self.values.len()
     }
 
-    /// The same value for each of these numbers.
+    /// A list of the same length with equal values.
     pub fn like<U: Clone>(&self, value: U) -> Numbered<I, U> {
         vec![value; self.len()].into()
     }
 
-    /// The values alone, in the order of the numbers.
+    /// The values, in the order of the indices.
     pub fn values(&self) -> &[T] {
         &self.values
     }
 
-    /// The values alone, in the order of the numbers, to be changed.
+    /// The values, in the order of the indices, mutable.
     pub fn iter_mut(&mut self) -> std::slice::IterMut<'_, T> {
         self.values.iter_mut()
     }
 
-    /// The values alone, in the order of the numbers.
+    /// The values, in the order of the indices.
     pub fn iter(&self) -> std::slice::Iter<'_, T> {
         self.values.iter()
     }
 }
 
 impl<I: From<usize>, T> Numbered<I, T> {
-    /// Gives the next number a value, and returns it.
+    /// Appends a value and returns its index.
     pub fn push(&mut self, value: T) -> I {
         self.values.push(value);
         I::from(self.values.len() - 1)
     }
 
-    /// All numbers, ascending.
+    /// All indices, ascending.
     pub fn ids(
         &self,
     ) -> impl DoubleEndedIterator<Item = I> + ExactSizeIterator + Clone + use<I, T> {
         (0..self.values.len()).map(I::from)
     }
 
-    /// All numbers, ascending, each with its value.
+    /// All indices, ascending, with their values.
     pub fn each(&self) -> impl DoubleEndedIterator<Item = (I, &T)> + ExactSizeIterator {
         self.ids().zip(&self.values)
     }

@@ -1,7 +1,7 @@
-//! The problem file: what one subdomain, one group in contact and the catalog of both hold.
+//! The problem file: the content of a subdomain, of a contact group and of the catalog of both.
 //!
-//! The writer and the reader of `problem.h5` share these types; docs/problem-file.md says the
-//! same for somebody who writes one with h5py.
+//! The writer and the reader of `problem.h5` share these types; docs/problem-file.md describes the format for users who
+//! write one with h5py.
 
 pub mod auxiliary;
 pub mod consistency;
@@ -38,10 +38,11 @@ pub const VERSION: i64 = 2;
 /// Attribute `format` of the file.
 pub const FORMAT: &str = "contact-dd-mpi problem";
 
-/// The square of a unit normal's part that supports leave free above which a node can move along it.
+/// Squared norm, at a node, of the part of a unit normal that supports leave free, above which the node counts as free
+/// along it.
 const LEAST_FREE: f64 = 0.01;
 
-/// Largest difference of a unit vector's length from 1, and of two orthogonal ones' product from 0.
+/// Largest deviation of a unit vector's length from 1, and of the product of orthogonal ones from 0.
 const UNIT_TOLERANCE: f64 = 1e-10;
 
 /// A node on Γ.
@@ -64,27 +65,27 @@ pub struct Subdomain {
     pub points: Vec<[f64; 3]>,
     /// The mesh file's tag of each node.
     pub node_tags: Vec<i64>,
-    /// Cells, by node of the subdomain.
+    /// Cells, by local nodes.
     pub cells: Elements,
     /// Index of its material for every cell.
     pub cell_material: Vec<u32>,
-    /// Supports, by node of the subdomain.
+    /// Supports, by local nodes.
     pub supports: Vec<Support>,
-    /// Springs to the ground, by node of the subdomain.
+    /// Springs to the ground, by local nodes.
     pub springs: Vec<SpringBlock>,
-    /// Nodal forces, by node of the subdomain (N per metre of thickness).
+    /// Nodal forces, by local nodes (N per metre of thickness).
     pub forces: Vec<(u32, [f64; 3])>,
-    /// Stress without strain.
+    /// Initial stress.
     pub initial_stress: InitialStress,
     /// Nodes on Γ, in ascending order of their number on Γ.
     pub interface: Vec<InterfaceNode>,
-    /// The parts of its nodes in quantities and loads that are parameters.
+    /// Nodal weights of its nodes in quantities, and nodal forces of loads that are parameters.
     pub shares: NodalShares,
     /// Values of its supports and forces in every load step; none where the problem has none.
     pub steps: Vec<StepLoads>,
-    /// Number of its nodes behind those of its cells that move with its body: those of the reference points of couplings.
+    /// Number of reference nodes of couplings, which follow the nodes of its cells and move with its body.
     pub reference_nodes: usize,
-    /// Number of the nodes behind these, which no file lists: those [between](auxiliary) the sides of contact points.
+    /// Number of [auxiliary](auxiliary) nodes of contact points, which are the last ones and aren't stored in files.
     pub auxiliary_nodes: usize,
 }
 
@@ -95,31 +96,31 @@ pub struct StepLoads {
     pub supports: Vec<f64>,
     /// Force on every loaded node (N per metre of thickness).
     pub forces: Vec<[f64; 3]>,
-    /// Stress without strain.
+    /// Initial stress.
     pub initial_stress: InitialStress,
 }
 
-/// Stress that a subdomain has without strain, XX YY ZZ XY YZ XZ (Pa); empty where the problem has none.
+/// Initial stress of a subdomain, XX YY ZZ XY YZ XZ (Pa); empty where the problem has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialStress {
-    /// The mean over every cell.
+    /// The average over every cell.
     pub cells: Vec<[f64; 6]>,
-    /// Stress at every node, in the first of the materials around it.
+    /// Stress at every node, in the first of the adjacent materials.
     pub nodes: Vec<[f64; 6]>,
 }
 
 impl Subdomain {
-    /// Number of the nodes of its cells, which come first.
+    /// Number of nodes of its cells, which come first.
     pub fn cell_nodes(&self) -> usize {
         self.body_nodes() - self.reference_nodes
     }
 
-    /// Number of the nodes that move with its body, which come first.
+    /// Number of nodes that move with its body, which come first.
     pub fn body_nodes(&self) -> usize {
         self.points.len() - self.auxiliary_nodes
     }
 
-    /// Supports with the values that they have in a load step.
+    /// Supports with their values in a load step.
     pub fn supports_in(&self, step: usize) -> impl Iterator<Item = Support> + '_ {
         let loads = self.steps.get(step);
         let supports = self.supports.iter().enumerate();
@@ -136,13 +137,13 @@ impl Subdomain {
         forces.map(move |(i, &(node, force))| (node, loads.map_or(force, |loads| loads.forces[i])))
     }
 
-    /// Stress without strain in a load step.
+    /// Initial stress in a load step.
     pub fn initial_stress_in(&self, step: usize) -> &InitialStress {
         let loads = self.steps.get(step);
         loads.map_or(&self.initial_stress, |loads| &loads.initial_stress)
     }
 
-    /// The initial stresses of every load step, or the one that it has.
+    /// The initial stress of every load step, or the single one without load steps.
     fn initial_stresses(&self) -> Vec<&InitialStress> {
         match self.steps.is_empty() {
             true => vec![&self.initial_stress],
@@ -150,7 +151,7 @@ impl Subdomain {
         }
     }
 
-    /// The values of a support: in every load step, or the one that it has.
+    /// The values of a support in every load step, or the single one without load steps.
     fn support(&self, i: usize) -> Vec<f64> {
         match self.steps.is_empty() {
             true => vec![self.supports[i].value],
@@ -158,7 +159,7 @@ impl Subdomain {
         }
     }
 
-    /// The values of a nodal force: in every load step, or the one that it has.
+    /// The values of a nodal force in every load step, or the single one without load steps.
     fn force(&self, i: usize) -> Vec<&[f64; 3]> {
         match self.steps.is_empty() {
             true => vec![&self.forces[i].1],
@@ -188,13 +189,14 @@ impl SubdomainNode {
 pub struct PointNode {
     /// Number on Γ, if several subdomains have it.
     pub interface: Option<u32>,
-    /// True if supports leave it free along the normal of the point, or nearly so, and where the point has friction
-    /// along its tangents, too: one free direction is not enough for two.
+    /// True if supports leave it free, at least approximately, along the normal of the point and, with friction, along
+    /// its tangents: one free direction isn't enough for two.
     pub is_free: bool,
 }
 
 impl PointNode {
-    /// A node that `supports` hold along these directions, in a point that has conditions along those.
+    /// A node of a point that has constraints along these directions, where `supports` are the directions in which it
+    /// is held.
     pub fn new(
         interface: Option<u32>,
         conditions: impl IntoIterator<Item = [f64; 3]>,
@@ -221,7 +223,7 @@ impl PointNode {
 pub struct SubdomainSummary {
     /// Index of its body.
     pub body: usize,
-    /// Group in contact; `None` for a linear subdomain.
+    /// Contact group; `None` for a linear subdomain.
     pub group: Option<usize>,
     /// Number of nodes.
     pub nodes: usize,
@@ -229,7 +231,7 @@ pub struct SubdomainSummary {
     pub cells: usize,
 }
 
-/// A load step: quasi-static and without friction its solution depends on its own loads alone.
+/// A load step: quasi-static, and without friction its solution depends only on its own loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadStep {
     /// Name.
@@ -240,8 +242,8 @@ pub struct LoadStep {
     pub absent: Absent,
 }
 
-/// The bodies and contacts that aren't there in a load step, by their numbers, ascending; contacts of absent bodies
-/// needn't be among these.
+/// The bodies and contacts that are absent in a load step, by their numbers, ascending; contacts of absent bodies
+/// needn't be listed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Absent {
     /// Bodies.
@@ -250,36 +252,36 @@ pub struct Absent {
     pub contacts: Vec<u32>,
 }
 
-/// A body: one piece of the mesh that hangs together.
+/// A body: one connected piece of the mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Body {
-    /// Name of the scene's body, numbered where that one has several pieces.
+    /// Name of the scene's body, numbered if that one has several pieces.
     pub name: String,
-    /// True if it isn't there in the [stage](stage::Stage) that the catalog is of.
+    /// True if it is absent in the [stage](stage::Stage) of the catalog.
     pub is_absent: bool,
 }
 
-/// A tree over the subdomains, up which their Schur complements are merged.
+/// A tree over the subdomains, along which their Schur complements are merged.
 ///
-/// Nodes 0 to N − 1 are the N subdomains, those from N on are inner nodes. Subdomains that share a
-/// node of Γ are under one root.
+/// Nodes 0 to N − 1 are the N subdomains, those from N on are inner nodes. Subdomains that share a node of Γ have a
+/// common root.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hierarchy {
     /// The parent of every node, greater than its own number; `None` for a root.
     pub parent: Vec<Option<u32>>,
-    /// The clusters: the nodes between which an iterative interface solver works, ascending, one above every
-    /// subdomain or the subdomain itself. None where the file doesn't say.
+    /// The clusters of the iterative interface solver: nodes, ascending, such that every subdomain is one of them or
+    /// under exactly one. Empty if the file doesn't define them.
     pub clusters: Vec<u32>,
 }
 
-/// The catalog of the whole problem, which every rank has.
+/// The catalog of the whole problem, stored on every rank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Catalog {
     /// Title of the scene.
     pub title: String,
     /// Dimension of space, and the number of dofs of a node.
     pub dim: usize,
-    /// The units that messages and pictures name.
+    /// The units in messages and pictures.
     pub units: Units,
     /// Plane state; `None` in space.
     pub plane: Option<PlaneState>,
@@ -287,11 +289,11 @@ pub struct Catalog {
     pub materials: Vec<Material>,
     /// Bodies.
     pub bodies: Vec<Body>,
-    /// Names of the conditions that prescribe displacements.
+    /// Names of the boundary conditions that prescribe displacements.
     pub supports: Vec<String>,
     /// Contacts.
     pub contacts: Vec<ContactSummary>,
-    /// Load steps; none where all loads are there at once.
+    /// Load steps; none if all loads are applied at once.
     pub steps: Vec<LoadStep>,
     /// Subdomains.
     pub subdomains: Vec<SubdomainSummary>,
@@ -299,15 +301,15 @@ pub struct Catalog {
     pub interface: Vec<Vec<u32>>,
     /// Number of nodes on Γ.
     pub interface_nodes: usize,
-    /// Number of contact points of each group in contact.
+    /// Number of contact points of each contact group.
     pub groups: Vec<usize>,
     /// The contact points, group by group.
     pub points: Vec<ContactPoint<SubdomainNode>>,
-    /// Places at which solutions are checked for penetration.
+    /// Points at which solutions are checked for penetration.
     pub probes: Vec<Probe<SubdomainNode>>,
-    /// Crack tips of the plane.
+    /// Crack tips of a plane mesh.
     pub tips: Vec<CrackTip>,
-    /// Quantities that are asked for.
+    /// Requested quantities.
     pub quantities: Vec<Quantity>,
     /// Parameters of their derivatives.
     pub parameters: Vec<Parameter>,
@@ -322,7 +324,7 @@ pub struct Catalog {
 }
 
 impl Body {
-    /// A body that is there.
+    /// A body that is present.
     pub fn new(name: String) -> Self {
         Self {
             name,
@@ -332,7 +334,7 @@ impl Body {
 }
 
 impl Catalog {
-    /// The number of the body that a block is of.
+    /// The body of a block.
     pub fn body_of(&self, block: BlockId) -> usize {
         self.subdomains[block.index()].body
     }
@@ -354,19 +356,19 @@ impl Catalog {
         self.points.iter().any(|point| point.law.has_friction())
     }
 
-    /// Number of contact conditions.
+    /// Number of contact constraints.
     pub fn conditions(&self) -> usize {
         self.conditions_of(ContactKind::Unilateral)
     }
 
-    /// Number of points of the contacts of a kind.
+    /// Number of constraints of the contacts of a kind.
     pub fn conditions_of(&self, kind: ContactKind) -> usize {
         let contacts = self.contacts.iter().filter(|contact| contact.kind == kind);
         contacts.map(|contact| contact.conditions).sum()
     }
 }
 
-/// A whole problem, as the partition tool holds it before it is written.
+/// A whole problem, as produced by the partition tool.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// Catalog.

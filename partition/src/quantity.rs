@@ -1,24 +1,25 @@
-//! Quantities of the solution that a user wants to know, and the parameters with respect to which their derivatives are given.
+//! Quantities of interest, and the parameters of their derivatives.
 
-/// A quantity of the solution.
+/// A quantity of interest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     /// Name.
     pub name: String,
     /// Kind.
     pub kind: QuantityKind,
-    /// The direction of a force, in space the axis of a moment, a unit vector; zeros for the sum of the normal forces, and where
-    /// there is none.
+    /// The unit vector of a force, or in space the axis of a moment; zero for the sum of the normal forces, and for
+    /// other kinds.
     pub direction: [f64; 3],
-    /// The point about which a moment is one (m); zeros for other kinds.
+    /// The reference point of a moment (m); zero for other kinds.
     pub point: [f64; 3],
-    /// The length over which a largest pressure is smoothed (m); 0 where it is that of a point.
+    /// The smoothing length of a largest pressure (m); 0 for the pressure of a point.
     pub length: f64,
-    /// The constant part in every load step, the only one where there are none: what initial stress adds to a mean stress.
+    /// The constant part in every load step, a single one without steps: the contribution of initial stress to an
+    /// average stress.
     pub constants: Vec<f64>,
-    /// The numbers of what it is a quantity of, as its kind says.
+    /// The indices of its objects, by its kind.
     pub of: Vec<u32>,
-    /// Tag of the node at which it is taken; −1 where it isn't one of a node.
+    /// Tag of its node; −1 for quantities without a node.
     pub node: i64,
 }
 
@@ -27,17 +28,18 @@ pub struct Quantity {
 pub enum QuantityKind {
     /// Displacement of a node along a direction: its weights times displacements.
     Displacement,
-    /// Mean of a component of the stress over a body, of these materials: its weights times displacements, and the constant.
+    /// Average of a component of the stress over a body, of these materials: its weights times displacements, and the
+    /// constant.
     MeanStress,
-    /// Force that these conditions, supports or springs, exert on the bodies.
+    /// Force of these supports or springs on the bodies.
     Reaction,
-    /// Force on side a of a contact, or with direction zero the sum of its normal forces.
+    /// Force on side a of a contact, or with zero direction the sum of its normal forces.
     ContactForce,
     /// The sum of the normal forces of a contact over the area of all its points.
     MeanPressure,
     /// The largest pressure of a contact, of a point or smoothed.
     LargestPressure,
-    /// The gap that is left at a point of a contact: the numbers of both.
+    /// The remaining gap at a point of a contact: the indices of both.
     Opening,
     /// The elastic energy ½ uᵀ K u of all bodies.
     Energy,
@@ -94,22 +96,22 @@ pub struct Parameter {
     pub name: String,
     /// Kind.
     pub kind: ParameterKind,
-    /// The value; NaN where it isn't the same everywhere.
+    /// The value; NaN if it varies in space.
     pub value: f64,
-    /// The numbers of what it is a parameter of, as its kind says.
+    /// The indices of its objects, by its kind.
     pub of: Vec<u32>,
 }
 
 /// Kind of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterKind {
-    /// The factor of a load, 1 as the load is.
+    /// The factor of a load, with the value 1.
     Load,
-    /// Measure of the stiffness of these materials: Young's modulus, or a factor.
+    /// The stiffness of these materials: Young's modulus, or a factor.
     Stiffness,
-    /// Addition to the gap of a contact (m).
+    /// Increment of the gap of a contact (m).
     Gap,
-    /// Addition to the displacements that a condition prescribes along an axis: the numbers of both (m).
+    /// Increment of the displacements prescribed by a boundary condition along an axis: the indices of both (m).
     Displacement,
     /// Coefficient of friction of a contact.
     Friction,
@@ -137,7 +139,7 @@ impl ParameterKind {
     }
 }
 
-/// The parts that nodes have in quantities and loads: nodes of the mesh, or of a subdomain, whose parts add up.
+/// Contributions of nodes to quantities and loads: nodes of the mesh, or of a subdomain, whose contributions add up.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NodalShares {
     /// Weights of displacements in quantities.
@@ -153,7 +155,7 @@ pub struct NodeWeight {
     pub quantity: u32,
     /// Node.
     pub node: u32,
-    /// A factor for each component.
+    /// A coefficient for each component.
     pub value: [f64; 3],
 }
 
@@ -164,17 +166,17 @@ pub struct LoadForce {
     pub parameter: u32,
     /// Node.
     pub node: u32,
-    /// The force in every load step, the only one where there are none (N per metre of thickness).
+    /// The force in every load step, a single one without steps (N per metre of thickness).
     pub forces: Vec<[f64; 3]>,
 }
 
-/// Quantities, parameters, and the parts that nodes of the mesh have in them.
+/// Quantities, parameters, and the contributions of nodes of the mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Goals {
     /// Quantities.
     pub quantities: Vec<Quantity>,
     /// Parameters; none without quantities.
     pub parameters: Vec<Parameter>,
-    /// The parts of nodes.
+    /// The contributions of nodes.
     pub shares: NodalShares,
 }

@@ -1,4 +1,4 @@
-//! The scene as a user writes it: `scene.toml`.
+//! The scene: the user's file `scene.toml`.
 
 mod activation;
 pub mod compliance;
@@ -48,20 +48,19 @@ use step::LoadStep;
 use tie::Tie;
 use units::Units;
 
-/// A scene as it was written, with every value checked that can be without the mesh.
+/// A parsed scene, with all checks that don't need the mesh.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// Title.
     #[serde(default)]
     pub title: String,
-    /// The mesh file: as written after [`Scene::parse`], beside the scene's file after
-    /// [`Scene::read`].
+    /// The mesh file: as written after [`Scene::parse`], relative to the scene's file after [`Scene::read`].
     pub mesh: PathBuf,
-    /// The units that messages and pictures name.
+    /// The units in messages and pictures.
     #[serde(default)]
     pub units: Units,
-    /// True if loads far beyond the stiffness are meant.
+    /// True if loads far beyond the stiffness are intended.
     #[serde(default)]
     pub large_strains: bool,
     /// Plane state; `None` for three dimensions.
@@ -88,10 +87,10 @@ pub struct Scene {
     /// Springs to the ground and between points.
     #[serde(default, deserialize_with = "place::list")]
     pub spring: Vec<AnySpring>,
-    /// Γ_c: contacts, and bodies between which they are to be found.
+    /// Γ_c: contacts, and bodies between which contacts are detected.
     #[serde(default, deserialize_with = "place::list")]
     pub contact: Vec<Declaration>,
-    /// Sides that are tied to each other.
+    /// Ties of sides.
     #[serde(default, deserialize_with = "place::list")]
     pub tie: Vec<Tie>,
     /// Linear equations between displacements.
@@ -100,27 +99,27 @@ pub struct Scene {
     /// Quantities of the solution.
     #[serde(default, deserialize_with = "place::list")]
     pub quantity: Vec<Quantity>,
-    /// Nodes that follow reference points.
+    /// Couplings of nodes to reference points.
     #[serde(default, deserialize_with = "place::list")]
     pub coupling: Vec<Coupling>,
-    /// Sectors of rings.
+    /// Cyclic symmetries.
     #[serde(default, deserialize_with = "place::list")]
     pub cyclic: Vec<Cyclic>,
-    /// Bolts that are tightened.
+    /// Pretensions of bolts.
     #[serde(default, deserialize_with = "place::list")]
     pub pretension: Vec<Pretension>,
-    /// Load steps, one after the other; without any the loads of the scene are there at once.
+    /// Load steps in their order; without steps all loads of the scene are applied at once.
     #[serde(default, deserialize_with = "place::list")]
     pub step: Vec<LoadStep>,
-    /// Groups of cells that are the subdomains; `None` to leave the partition to METIS.
+    /// Groups of cells that are the subdomains; `None` for an automatic partition.
     pub subdomains: Option<Names>,
-    /// Settings of the solver, where the command line doesn't say otherwise.
+    /// Settings of the solver, which the command line overrides.
     #[serde(default)]
     pub solver: SolverSettings,
 }
 
 impl Scene {
-    /// The springs to the ground, each with its place in the scene's list.
+    /// The springs to the ground, each with its index in the scene's list.
     pub fn springs_to_ground(&self) -> impl Iterator<Item = (usize, &Spring)> + Clone {
         let all = self.spring.iter().enumerate();
         all.filter_map(|(index, spring)| match spring {
@@ -129,7 +128,7 @@ impl Scene {
         })
     }
 
-    /// The springs between points, each with its place in the scene's list.
+    /// The springs between points, each with its index in the scene's list.
     pub fn springs_between(&self) -> impl Iterator<Item = (usize, &SpringBetween)> {
         let all = self.spring.iter().enumerate();
         all.filter_map(|(index, spring)| match spring {
@@ -138,10 +137,10 @@ impl Scene {
         })
     }
 
-    /// Reads a scene. Its mesh is looked for beside it.
+    /// Reads a scene. The path of its mesh is relative to it.
     ///
     /// # Errors
-    /// A fault of the scene, with line and key.
+    /// An error in the scene, with line and key.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let parsed = source::text(path, "a scene in TOML").and_then(|text| Self::parse(&text));
         let parsed =
@@ -163,7 +162,7 @@ impl Scene {
     /// Parses a scene.
     ///
     /// # Errors
-    /// A fault of the scene, with line and key.
+    /// An error in the scene, with line and key.
     pub fn parse(text: &str) -> Result<Self, InputError> {
         let scene: Self = toml::from_str(text).map_err(|error| place::located(text, &error))?;
         match scene.fault() {

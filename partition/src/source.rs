@@ -1,4 +1,4 @@
-//! Files that are read.
+//! Input files.
 
 use std::fs::{self, File};
 use std::io::Read as _;
@@ -6,14 +6,14 @@ use std::path::Path;
 
 use crate::error::InputError;
 
-/// Largest size of a file that is written by hand (bytes).
+/// Largest size of a handwritten file (bytes).
 const LARGEST: u64 = 16 << 20;
 
-/// Opens a file to read it. `what` is what it should hold, as in "a scene in TOML".
+/// Opens a file for reading. `what` is its expected content, as in "a scene in TOML".
 ///
 /// # Errors
-/// It isn't there, can't be read, or is something else than a file: a pipe would keep the reader
-/// waiting, and a device may have no end.
+/// A file that doesn't exist or can't be read, or something else than a file: reading a pipe would block, and a device
+/// may be endless.
 pub fn open(path: &Path, what: &str) -> Result<File, InputError> {
     let unreadable = |reason: std::io::Error| {
         InputError::new(format!("can't be read: {reason}; expected {what}"))
@@ -26,21 +26,21 @@ pub fn open(path: &Path, what: &str) -> Result<File, InputError> {
     }
 }
 
-/// The first bytes of a file, none where it can't be read, by which its format is told.
+/// The first bytes of a file, by which its format is recognized; empty if it can't be read.
 pub fn head(path: &Path) -> Vec<u8> {
     const LENGTH: u64 = 64;
     let mut bytes = Vec::new();
     if let Ok(file) = open(path, "") {
-        // The reader of the file reports errors.
+        // Errors are left to the reader of the file.
         let _ = file.take(LENGTH).read_to_end(&mut bytes);
     }
     bytes
 }
 
-/// Reads a file that is written by hand. `what` is its expected content.
+/// Reads a handwritten file. `what` is its expected content.
 ///
 /// # Errors
-/// It can't be opened or read, is too large for that, or isn't UTF-8; then with the line.
+/// A file that can't be opened or read, is too large, or isn't UTF-8; the last one with its line.
 pub fn text(path: &Path, what: &str) -> Result<String, InputError> {
     let file = open(path, what)?;
     let mut bytes = Vec::new();

@@ -17,7 +17,7 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// The matrix of `values`, row by row, with so many rows.
+    /// The matrix of `values`, row by row, with `size` rows.
     pub fn new(size: usize, values: &[f64]) -> Self {
         Self {
             size,
@@ -35,7 +35,7 @@ impl Stiffness {
         &self.values
     }
 
-    /// Rows as they are needed where the number of components is known.
+    /// Rows as arrays of a fixed length.
     pub fn rows<const V: usize>(&self) -> [[f64; V]; V] {
         std::array::from_fn(|i| std::array::from_fn(|j| self[i][j]))
     }
@@ -45,7 +45,7 @@ impl Stiffness {
         (0..self.size).map(|i| self[i][i]).fold(0.0, f64::max)
     }
 
-    /// Smallest eigenvalue: what resists the strain that costs least.
+    /// Smallest eigenvalue: the stiffness against the least resisted strain.
     pub fn smallest(&self) -> f64 {
         let c = DMatrix::from_row_slice(self.size, self.size, &self.values);
         c.symmetric_eigenvalues().min()
@@ -56,7 +56,7 @@ impl Stiffness {
         let c = DMatrix::from_row_slice(self.size, self.size, &self.values);
         let largest = c.amax();
         let symmetric = (&c - c.transpose()).amax() <= SYMMETRY_TOLERANCE * largest;
-        // Scaled first, so that no product under- or overflows.
+        // Scaled first, so that no product overflows or underflows.
         symmetric && largest >= SMALLEST_STIFFNESS && Cholesky::new(c / largest).is_some()
     }
 }

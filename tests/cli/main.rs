@@ -1,4 +1,4 @@
-//! The command line and the report, with the scripts that read reports.
+//! The command line, the report, and the scripts that read reports.
 
 #![expect(
     clippy::unwrap_used,

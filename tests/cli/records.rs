@@ -1,4 +1,4 @@
-//! Records of scenes: what a comparison of two of them says.
+//! Records of random scenes, and comparisons of two records.
 
 use std::collections::BTreeSet;
 
@@ -25,14 +25,14 @@ fn record(text: &str) -> Record {
     text.parse().unwrap()
 }
 
-/// The old record with some text in the place of another, and how that compares.
+/// The old record with a replacement, compared with the original.
 #[track_caller]
 fn changed(from: &str, to: &str) -> Comparison {
     assert!(OLD.contains(from), "{from}");
     Comparison::new(&record(OLD), &record(&OLD.replacen(from, to, 1)))
 }
 
-/// Scenes that are worse and scenes that are better, in words.
+/// Descriptions of scenes that got worse and of those that improved.
 fn words(comparison: &Comparison) -> [Vec<String>; 2] {
     [&comparison.worse, &comparison.better].map(|changes| {
         let words = changes
@@ -132,7 +132,7 @@ fn a_wrong_answer_is_worse_than_none() {
 #[test]
 fn many_more_sweeps_or_solves_and_larger_errors_are_worse() {
     for (from, to, worse) in [
-        // Half as many more, and five.
+        // An increase by half, and by five.
         (
             "6      6      20 ",
             "11     6      20 ",
@@ -153,7 +153,7 @@ fn many_more_sweeps_or_solves_and_larger_errors_are_worse() {
         ),
         ("9.0e-15", "-      ", Some("backward error 9.0e-15 | inf")),
         ("1.2e-16", "9.9e-15", None),
-        // Time alone is a matter of the machine.
+        // Time alone depends on the machine.
         ("1.00 springs", "9.00 springs", None),
     ] {
         let comparison = changed(from, to);
@@ -197,7 +197,7 @@ fn sums_are_those_of_a_suite_an_operator_and_a_law() {
     assert_eq!(line("all"), "3 3 100.00 0 | 2 66.67 0 | 1.00 1.00");
 }
 
-/// The columns that only a run can fill.
+/// The columns are those that only a run can provide.
 #[test]
 fn a_row_holds_what_the_program_says_of_a_run() {
     let mut solvers = BTreeSet::new();
@@ -214,7 +214,7 @@ fn a_row_holds_what_the_program_says_of_a_run() {
             continue;
         };
         assert_eq!(row.exit, Some(0));
-        // Where nothing drives anything there is no system to solve.
+        // Without any load there is no system to solve.
         assert!(
             solves >= newton && (newton >= sweeps || newton == 0),
             "{seed}: {sweeps} {newton} {solves}"

@@ -1,6 +1,6 @@
-//! The report: its schema and its page in the docs are those of the types, and reports follow it.
+//! The report: its schema and its page in the docs are generated from the types, and reports conform to the schema.
 //!
-//! `WRITE_DOCS=1 cargo test --test cli report` writes docs/report.schema.json and docs/report.md anew.
+//! `WRITE_DOCS=1 cargo test --test cli report` rewrites docs/report.schema.json and docs/report.md.
 
 mod collecting;
 mod figures;
@@ -30,7 +30,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
 }
 
-/// Fails unless the file is `text`, or makes it so where that is asked for.
+/// Fails unless the file contains `text`, or writes it if requested.
 fn is_up_to_date(path: &Path, text: &str) {
     if env::var_os("WRITE_DOCS").is_some() {
         fs::write(path, text).unwrap();
@@ -57,7 +57,7 @@ fn the_page_on_the_report_has_all_fields_of_the_types() {
     is_up_to_date(&path, &page::below(above, &schema::published()));
 }
 
-/// The schema, by which no field may stand in a report that it doesn't name.
+/// The schema that allows no unknown fields in a report.
 fn strict() -> Validator {
     let mut schema = schema::published();
     schema::close(&mut schema);

@@ -1,4 +1,4 @@
-//! The scripts: what they say before they install or build anything.
+//! The scripts: their messages before they install or build anything.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
@@ -10,7 +10,7 @@ use tempfile::{TempDir, tempdir};
 use crate::support::process::{Ended, Running};
 use crate::support::solver::LIMIT;
 
-/// Programs that every Debian has.
+/// Programs of every Debian.
 const ESSENTIAL: [&str; 12] = [
     "awk", "basename", "bash", "cat", "cut", "dirname", "env", "ls", "sed", "sh", "sort", "tail",
 ];
@@ -21,7 +21,7 @@ fn script(name: &str) -> PathBuf {
         .join(name)
 }
 
-/// A folder with these programs of this machine, and none of these that does anything but leave `called` behind.
+/// A folder with the `real` programs of this machine, and `fake` ones that only create the file `called`.
 fn programs(real: &[&str], fake: &[&str]) -> TempDir {
     let folder = tempdir().unwrap();
     for name in real {
@@ -160,7 +160,7 @@ fn the_set_up_checks_several_options_at_once() {
     for package in ["munge", "openmpi-bin"] {
         assert!(ended.stderr.contains(package), "{}", ended.stderr);
     }
-    // Without Rust the rest would be in vain.
+    // Without Rust everything else would fail.
     let ended = run("setup", &["--gmsh", "--python", "--check"], path);
     assert_eq!(ended.code(), 1);
     assert!(ended.stderr.contains("install Rust"), "{}", ended.stderr);

@@ -1,4 +1,4 @@
-//! `scripts/test`, with a Cargo that only says that it tests.
+//! `scripts/test`, with a Cargo that only pretends to test.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use crate::support::process::{Ended, Running};
 
-/// Runs the script with a time-out, and a Cargo whose builds take two seconds and whose second program `sleeps` as long.
+/// Runs the script with a time limit, and a Cargo whose builds take two seconds and whose second program takes `sleeps`
+/// seconds.
 fn tested(limit: &str, sleeps: &str) -> Ended {
     let folder = tempfile::tempdir().unwrap();
     let cargo = folder.path().join("cargo");
@@ -43,7 +44,7 @@ fn scripts_test_says_how_far_it_is() {
 
 #[test]
 fn the_time_out_of_scripts_test_counts_no_build_and_says_where_it_was() {
-    // The build alone takes longer.
+    // The build alone exceeds the limit.
     let ended = tested("2", "60");
     assert_eq!(ended.code(), 124, "{}", ended.stderr);
     assert!(

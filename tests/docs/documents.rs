@@ -1,23 +1,20 @@
-//! The documents: every command on a page runs as printed, every link leads somewhere, and VTK reads
-//! what the pages say it reads. Beside them the tests of the Python package, which take the same Python.
+//! The documents: every command on a page works as printed, every link has a target, and VTK reads the files as the
+//! pages claim. The tests of the Python package are here, too, as they need the same Python.
 //!
 //! A page is run in a fresh folder, its blocks in order:
 //!
 //! - `sh` and `bash` are shell scripts that have to end with 0;
-//! - `console` holds commands behind `$ ` with what they print; a command that fails has to be followed by
-//!   `$ echo $?`;
+//! - `console` contains commands after `$ ` with their output; a command that fails has to be followed by `$ echo $?`;
 //! - `python` is run by the documents' Python;
-//! - any block after a paragraph that ends with a file's name in backticks and a colon is written to that
-//!   file;
-//! - `text` after a paragraph that ends with "prints:" is what the block before has to print.
+//! - any block after a paragraph that ends with a file's name in backticks and a colon is written to that file;
+//! - `text` after a paragraph that ends with "prints:" is the expected output of the block before.
 //!
-//! In what is printed `…` stands for anything; a line of nothing else stands for any number of lines. What
-//! can't be run here has a comment `<!-- not run: reason -->` before it, or, for all that follows,
-//! `<!-- none of this page is run: reason -->`; anything else that isn't run is an error.
+//! In the output `…` stands for anything; as a line of its own it stands for any number of lines. A block that can't be
+//! run here is preceded by a comment `<!-- not run: reason -->`, or, for all following blocks,
+//! `<!-- none of this page is run: reason -->`; any other block that isn't run is an error.
 //!
-//! `DOCUMENTS_PYTHON` names the Python, which `scripts/setup --documents` makes; without it what needs it
-//! is ignored.
-//! `DOCUMENTS_KEEP` names a folder that keeps what the pages made.
+//! `DOCUMENTS_PYTHON` names the Python, which `scripts/setup --documents` installs; without it the tests that need it
+//! are ignored. `DOCUMENTS_KEEP` names a folder that keeps the pages' output.
 
 mod block;
 mod book;
@@ -104,7 +101,7 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Ignored, and the reason shown, where there is no Python for the documents.
+/// Ignores a test, with the reason, if there is no Python for the documents.
 fn needs_python(trial: Trial) -> Trial {
     match run::python() {
         Some(_) => trial,

@@ -1,9 +1,9 @@
-//! The gallery: every built-in scene has a page, and a page's own commands give the numbers of its table.
+//! The gallery: every built-in scene has a page, whose commands reproduce the numbers of its table.
 //!
-//! A page shows a part of its scene as `toml`, commands, and a table with the columns number, found, theory,
-//! off and where. *Found* holds to within one in its last digit; where *theory* has a number, what is found
-//! is off from it by *off* at most. *Where* is a path in the report, entries of lists by their names or
-//! numbers, or a dataset below VTKHDF of the result, of which it is the largest length or absolute value.
+//! A page shows a part of its scene as `toml`, commands, and a table with the columns number, found, theory, off and
+//! where. *Found* agrees to within one unit in its last digit; where *theory* has a number, the result deviates from it
+//! by at most *off*. *Where* is a path in the report, with entries of lists by their names or numbers, or a dataset
+//! below VTKHDF of the result, whose largest length or absolute value is the number.
 
 mod expected;
 mod numbers;
@@ -37,8 +37,8 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Fails unless what the commands of the page `name` left in a folder has the numbers of the page's table;
-/// other pages than those of scenes have none.
+/// Fails unless the results of the page `name` in a folder agree with the numbers of its table; only pages of scenes
+/// have any.
 pub fn numbers_hold(name: &str, folder: &Path) {
     let of_scenes = page::all();
     let is_meant = |scene: &str| name == format!("partition/src/example/{scene}/README.md");
@@ -69,7 +69,7 @@ fn every_scene_has_a_page() {
     }
 }
 
-/// The scene that a page shows is part of the built-in one, line by line.
+/// The scene on a page is part of the built-in one, line by line.
 fn scene_is_built_in(page: &Page, name: &str) {
     let scene = example::find(name).unwrap().scene;
     assert!(

@@ -23,7 +23,7 @@ use libtest_mimic::{Arguments, Trial};
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    // The harness shows the message; what it doesn't know is the place.
+    // The harness shows the message; this adds the location.
     panic::set_hook(Box::new(|panic| {
         panic.location().inspect(|place| eprintln!("at {place}:"));
     }));

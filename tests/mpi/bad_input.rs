@@ -1,10 +1,10 @@
-//! Bad input and bad usage: exit code 2, one message, nothing lost.
+//! Invalid input and usage: exit code 2, one message, no file lost.
 
 use hdf5::File;
 
 use super::*;
 
-/// A fault put into a problem file that was right.
+/// An error introduced into a valid problem file.
 type Damage = fn(&Case);
 
 fn damaged() -> [(&'static str, Damage, &'static [&'static str]); 8] {
@@ -70,13 +70,13 @@ fn damaged() -> [(&'static str, Damage, &'static [&'static str]); 8] {
 }
 
 fn open(case: &Case) -> File {
-    // A process that another test is starting may hold the lock of a file that was open when it was forked.
+    // A process that another test is starting may have inherited the lock of an open file.
     let mut options = File::with_options();
     options.with_fapl(|access| access.file_locking(false));
     options.open_rw(case.problem()).unwrap()
 }
 
-/// Bad input ends with 2 and one message, whichever ranks notice it; no result is touched.
+/// Invalid input ends with 2 and one message, on any rank; no result is changed.
 pub fn bad_input(trials: &mut Trials) {
     for (name, damage, words) in damaged() {
         trials.on_all_ranks(&format!("bad_input::{name}"), move |ranks| {
@@ -92,7 +92,7 @@ pub fn bad_input(trials: &mut Trials) {
     }
 }
 
-/// Settings that can't be, in the problem.
+/// Invalid settings in the problem.
 pub fn bad_settings(trials: &mut Trials) {
     trials.on_all_ranks("bad_settings::in_the_problem", |ranks| {
         let scene = format!("{}\n[solver]\ntolerance = 1e-8\n", two_block_scene());
@@ -100,7 +100,7 @@ pub fn bad_settings(trials: &mut Trials) {
         let settings = open(&case).group("settings").unwrap();
         let tolerance = settings.attr("tolerance").unwrap();
         tolerance.write_scalar(&-1.0).unwrap();
-        // What is open isn't written yet.
+        // Open attributes aren't written yet.
         drop((settings, tolerance));
         let words = ["problem.h5", "tolerance of /settings", "above 0"];
         failed_once(&case.run_on(ranks, &[]), 2, &words);

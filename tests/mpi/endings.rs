@@ -1,8 +1,8 @@
-//! Runs that end otherwise than with a solution: on every rank alike.
+//! Runs that end without a solution: in the same manner on every rank.
 
 use super::*;
 
-/// A free rigid motion with load along it ends with 4 and the name of the body.
+/// A loaded rigid-body motion without resistance ends with 4 and the name of the body.
 pub fn no_equilibrium(trials: &mut Trials) {
     let lifted = "[[traction]]\non = 'upper top'\nvalue = [0.0, 1e6]\n";
     let pushed = "[[traction]]\non = 'upper top'\nvalue = [1e5, -1e6]\n";
@@ -31,7 +31,7 @@ pub fn no_equilibrium(trials: &mut Trials) {
     }
 }
 
-/// Nothing holds the upper block but contact.
+/// The upper block is held only by contact.
 fn lower_support() -> &'static str {
     SUPPORTS
         .split("[[displacement]]\non = 'upper left'")
@@ -39,7 +39,7 @@ fn lower_support() -> &'static str {
         .unwrap_or_default()
 }
 
-/// Results that aren't converged are written and flagged; the message names a way out.
+/// Results without convergence are written and marked; the message suggests a remedy.
 pub fn not_converged(trials: &mut Trials) {
     let methods: [(&str, &[&str]); 3] = [
         (
@@ -63,7 +63,7 @@ pub fn not_converged(trials: &mut Trials) {
             assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
             let report = Solution::read(&case.result()).report;
             assert_eq!(report["status"], "not_converged");
-            // What hasn't converged isn't the fault of the scene.
+            // The lack of convergence isn't blamed on the scene.
             assert!(!report["warnings"].to_string().contains("badly conditioned"));
         });
     }

@@ -1,7 +1,7 @@
-//! The program under its launcher: every case once for every number of ranks.
+//! The program under its launcher: every case for every number of ranks.
 //!
-//! `MPIEXEC` names the launcher, `mpirun` by default. A case that hangs fails after a minute, and
-//! its processes are ended.
+//! `MPIEXEC` names the launcher, `mpirun` by default. A case that hangs fails after a minute, and its processes are
+//! killed.
 
 #![expect(
     clippy::unwrap_used,
@@ -43,14 +43,14 @@ use support::solution::{Solution, datasets};
 use support::solver::{Case, LIMIT, program};
 use support::sorts::sort;
 
-/// Numbers of ranks; there are few cores, so that more would only wait for each other.
+/// Numbers of ranks; with few cores, more ranks would only wait for each other.
 const RANKS: [usize; 4] = [1, 2, 3, 4];
 
 fn main() -> ExitCode {
     let mut arguments = Arguments::from_args();
-    // Most of a case's time is the launcher's, which sleeps.
+    // Most of the time of a case is spent sleeping in the launcher.
     arguments.test_threads.get_or_insert(4);
-    // The harness shows the message; what it doesn't know is the place.
+    // The harness shows the message; this adds the location.
     panic::set_hook(Box::new(|panic| {
         panic.location().inspect(|place| eprintln!("at {place}:"));
     }));
@@ -89,12 +89,12 @@ fn main() -> ExitCode {
     libtest_mimic::run(&arguments, trials.0).exit_code()
 }
 
-/// The cases so far.
+/// The cases added so far.
 #[derive(Default)]
 struct Trials(Vec<Trial>);
 
 impl Trials {
-    /// Adds `case` once for every number of ranks.
+    /// Adds `case` for every number of ranks.
     fn on_all_ranks(&mut self, name: &str, case: impl Fn(usize) + Send + Sync + 'static) {
         let case = Arc::new(case);
         for ranks in RANKS {
@@ -112,7 +112,7 @@ impl Trials {
     }
 }
 
-/// Fails unless a run ended with `code` and said why exactly once.
+/// Fails unless a run ended with `code` and gave the reason exactly once.
 #[track_caller]
 fn failed_once(ended: &Ended, code: i32, words: &[&str]) {
     assert_eq!(ended.code(), code, "{}{}", ended.stdout, ended.stderr);
@@ -130,7 +130,7 @@ type MakeCase = fn() -> Case;
 /// A problem and the bits of its solution on one rank.
 type Solved = OnceLock<(Case, BTreeMap<String, Vec<u64>>)>;
 
-/// One problem file has one answer: the same bits on any number of ranks and without a launcher.
+/// The solution of a problem file has the same bits on any number of ranks and without a launcher.
 fn same_results(trials: &mut Trials) {
     let cases: [(&str, MakeCase); 22] = [
         ("granite", || Case::of(&built_in_model("granite", 0), 8)),
@@ -265,13 +265,13 @@ fn same_bits(trials: &mut Trials, name: &str, make: MakeCase, args: &'static [&'
         assert_eq!(report["ranks"], ranks);
         assert_eq!(report["hosts"], 1);
         assert_eq!(report["per_rank"].as_array().unwrap().len(), ranks);
-        // The certificate stands once, whoever printed it.
+        // The certificate is printed once, by whichever rank.
         assert_eq!(ended.stdout.matches("certificate").count(), 1);
         assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
     });
 }
 
-/// Stresses that are left out aren't in the file, and nothing else in it changes.
+/// Omitting stresses removes them from the file and changes nothing else.
 fn without_stresses(trials: &mut Trials) {
     trials.on_all_ranks("without_stresses", |ranks| {
         let case = Case::of(&built_in_model("granite", 0), 8);
@@ -291,7 +291,7 @@ fn without_stresses(trials: &mut Trials) {
     });
 }
 
-/// The memory that `--check` estimates is what a run of the same problem needs, by a third.
+/// The memory estimated by `--check` is that of a run of the same problem, to within a third.
 fn memory() {
     let case = Case::of(&built_in_model("granite", 3), 30);
     let checked = case.run_on(2, &["--check"]);

@@ -1,4 +1,4 @@
-//! Outputs that can't be written: exit code 5, one message, the older file as it was.
+//! Outputs that can't be written: exit code 5, one message, the older file unchanged.
 
 use std::path::Path;
 
@@ -24,10 +24,10 @@ pub fn unwritable_output(trials: &mut Trials) {
     }
 }
 
-/// A file system without space, whenever that comes out, and one that is read-only.
+/// A full file system, at whatever stage it fills up, and a read-only one.
 pub fn full_disk(trials: &mut Trials) {
     let full = "No space left on device";
-    // The result has some 150 kB, the report some 4 kB, and yesterday's file has a page of 4.
+    // The result has some 150 kB, the report some 4 kB, and the older file one page of 4 kB.
     let places: [(&str, Mounted, &str, &str); 6] = [
         ("from_the_start", Mounted::OfSize(4 << 10), "-o", full),
         ("soon", Mounted::OfSize(20 << 10), "-o", full),
@@ -64,10 +64,10 @@ pub fn full_disk(trials: &mut Trials) {
     }
 }
 
-/// The second run with the same output is refused while the first one is on its way, and stays out of its way; a run
-/// that was killed keeps nobody from going on.
+/// A second run with the same output is refused while the first one is active, without disturbing it; a killed run
+/// doesn't keep others from continuing.
 pub fn the_same_output(trials: &mut Trials) {
-    // A program that is optimized doesn't wait on purpose.
+    // An optimized program doesn't have the artificial stops.
     if cfg!(not(debug_assertions)) {
         return;
     }
@@ -88,7 +88,7 @@ pub fn the_same_output(trials: &mut Trials) {
             ];
             failed_once(&second, 5, &words);
         }
-        // It stops once more in every load step, and is killed in the last one.
+        // It stops again in every load step, and is killed in the last one.
         for _ in 0..2 {
             kill_process(Pid::from_raw(id as i32).unwrap(), Signal::CONT).unwrap();
             assert_eq!(first.stopped(LIMIT), id);
@@ -104,7 +104,7 @@ pub fn the_same_output(trials: &mut Trials) {
     });
 }
 
-/// An unwritable terminal is an error, but no reason not to write the result.
+/// An unwritable terminal is an error, but the result is written all the same.
 pub fn full_terminal(trials: &mut Trials) {
     let runs: [(&str, &[&str]); 4] = [
         ("text", &[]),
@@ -132,13 +132,13 @@ pub fn full_terminal(trials: &mut Trials) {
     }
 }
 
-/// A limit on memory that is too small, whenever that comes out.
+/// A memory limit that is too small, at whatever stage it is reached.
 pub fn little_memory(trials: &mut Trials) {
     for ranks in [0, 2] {
         trials.once(&format!("little_memory::on_{ranks}_ranks"), move || {
             let case = Case::of(&built_in_model("granite", 2), 12);
             let limits = [80, 100, 130, 160, 180, 200, 240].map(|megabytes| {
-                // The launcher needs more than the limit.
+                // The launcher itself needs more than the limit.
                 let script = format!("ulimit -v {}; exec \"$0\" \"$@\"", megabytes << 10);
                 let mut command = launched(Path::new("sh"), ranks);
                 command
@@ -147,12 +147,12 @@ pub fn little_memory(trials: &mut Trials) {
                     .arg(case.problem());
                 let ended = Running::start(&mut command).wait(LIMIT);
                 let said = format!("{megabytes} MB: {}{}", ended.stdout, ended.stderr);
-                // MPI that finds no memory for its own libraries may end by a signal before the program starts, with words of its
-                // own or without.
+                // If MPI runs out of memory for its own libraries, it may end with a signal before the program starts,
+                // with or without a message.
                 let in_mpi = ["failed to map segment", "mmap(2)"].map(|words| said.contains(words));
                 let in_mpi = in_mpi.contains(&true) || ended.stdout.is_empty();
                 let aborted = said.contains("memory allocation of") || said.contains("panicked");
-                // An abort would be a signal, 128 and more in a launcher's words.
+                // An abort would be a signal, which launchers report as 128 or more.
                 let is_told = ended.code() < 128 || in_mpi && !aborted;
                 assert!(is_told, "{said}");
                 said
@@ -164,7 +164,7 @@ pub fn little_memory(trials: &mut Trials) {
     }
 }
 
-/// Ranks that don't see the folder of the result, as on hosts with disks of their own, leave writing to the root.
+/// Ranks without access to the folder of the result, as on hosts with local disks, leave writing to the root.
 pub fn folder_of_the_root_alone(trials: &mut Trials) {
     trials.once("folder_of_the_root_alone", || {
         let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 9);
@@ -194,9 +194,9 @@ pub fn folder_of_the_root_alone(trials: &mut Trials) {
     });
 }
 
-/// A folder that is gone by the time its result is whole.
+/// A folder that is removed before its result is complete.
 pub fn vanished_folder(trials: &mut Trials) {
-    // A program that is optimized doesn't wait on purpose.
+    // An optimized program doesn't have the artificial stops.
     if cfg!(not(debug_assertions)) {
         return;
     }

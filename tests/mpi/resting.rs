@@ -1,4 +1,4 @@
-//! Scenes that have no equilibrium, and scenes that just have one.
+//! Scenes without equilibrium, and scenes at the limit of equilibrium.
 
 use contact_dd_partition::model::Model;
 
@@ -13,7 +13,7 @@ plane = 'strain'
 materials.rock = {young = 20e9, poisson = 0.22}
 ";
 
-/// A unit square, its weight, and what is added.
+/// A unit square under its weight, with `rest` appended to its scene.
 fn square(force: [f64; 2], rest: &str) -> Model {
     let [x, y] = force;
     let text = format!(
@@ -39,7 +39,7 @@ fn ground() -> String {
     obstacle("ground", "bottom", "point = [0, 0], normal = [0, 1]")
 }
 
-/// Three blocks on each other, each pressed upon by its weight and the next, whose nodes don't match.
+/// Three blocks on top of each other, each loaded by its weight and the next one, with non-matching meshes.
 pub fn uneven() -> Model {
     let mut blocks = Blocks::new();
     let mut text = ROCK.to_owned();
@@ -64,8 +64,8 @@ pub fn uneven() -> Model {
     model(&text, blocks.mesh)
 }
 
-/// Three blocks in a row, the last one with a traction on its right; perhaps with a wall on the
-/// left of the first one, which is held otherwise.
+/// Three blocks in a row, the last one with a traction on its right, and the first one held on its left by a rigid wall
+/// or by supports.
 pub fn row(traction: [f64; 2], wall: bool) -> Model {
     let mut blocks = Blocks::new();
     let mut text = ROCK.to_owned();
@@ -96,13 +96,13 @@ pub fn row(traction: [f64; 2], wall: bool) -> Model {
     model(&text, blocks.mesh)
 }
 
-/// A block that falls 0.3 m and may slide where it lands.
+/// A block that falls 0.3 m and may slide after landing.
 pub fn fallen() -> Model {
     let text = obstacle("ground", "bottom", "point = [0, -0.3], normal = [0, 1]");
     square([0.0, -25e3], &text)
 }
 
-/// Two blocks on three circles each, where every node of theirs may touch several of them.
+/// Two blocks on three circles each, where every node of the blocks may touch several circles.
 pub fn on_circles() -> Model {
     let mut blocks = Blocks::new();
     let mut text = ROCK.to_owned();
@@ -126,7 +126,7 @@ pub fn no_rest(trials: &mut Trials) {
     let incline = obstacle("incline", "bottom", "point = [0, 0], normal = [-1, 10]");
     let lifted = "[[traction]]\non = 'block left'\nvalue = [0.0, 20e3]\n";
     let circle = obstacle("circle", "bottom", "center = [0.45, -1], radius = 1");
-    // The walls of a groove that becomes wider to the right.
+    // The walls of a groove that widens to the right.
     let wedge = obstacle("low", "bottom", "point = [0, 0], normal = [-1, 5]")
         + &obstacle("high", "top", "point = [0, 1], normal = [-1, -5]");
     let corner = ground() + &obstacle("wall", "left", "point = [0, 0], normal = [1, 0]");
@@ -179,11 +179,11 @@ pub fn no_rest(trials: &mut Trials) {
     }
 }
 
-/// Scenes that are just in equilibrium are solved.
+/// Scenes just within the limit of equilibrium are solved.
 pub fn just_rest(trials: &mut Trials) {
     type Make = fn() -> Model;
     let scenes: [(&str, Make, [f64; 3]); 3] = [
-        // ∫ 3e3 (6 x − 2) dx = 3e3, and its moment as well: it goes through the lower right corner.
+        // ∫ 3e3 (6 x − 2) dx = 3e3, and its moment is the same: the resultant passes through the lower right corner.
         (
             "on_its_edge",
             || {

@@ -1,8 +1,8 @@
-//! When MPI is started, and what launchers are believed.
+//! The start of MPI, and the detection of launchers.
 
 use super::*;
 
-/// No Open MPI starts with this.
+/// An environment with which no Open MPI starts.
 const NO_MPI: (&str, &str) = ("OMPI_MCA_pml", "none-at-all");
 
 /// Runs on `ranks` ranks, without a launcher for 0, where MPI can't be started.
@@ -15,7 +15,7 @@ fn without_mpi(case: &Case, ranks: usize, args: &[&str]) -> Ended {
     Running::start(&mut command).wait(LIMIT)
 }
 
-/// A single rank runs without MPI, and so does what isn't a run; several ranks don't.
+/// A single rank runs without MPI, and so do commands that don't solve; several ranks fail.
 pub fn only_where_needed(trials: &mut Trials) {
     trials.once("starting::a_single_rank_needs_no_mpi", || {
         let case = Case::of(&model(&two_block_scene(), two_blocks().mesh), 6);
@@ -47,7 +47,7 @@ pub fn only_where_needed(trials: &mut Trials) {
     });
 }
 
-/// Processes of a launcher that this MPI doesn't know never solve the problem each for itself.
+/// Processes of a launcher unknown to this MPI never solve the problem redundantly, one by one.
 pub fn foreign_launchers(trials: &mut Trials) {
     for size in [
         "OMPI_COMM_WORLD_SIZE",

@@ -9,18 +9,18 @@ pub fn two_blocks_in_steps() -> Model {
     posed_in_steps(&two_block_scene())
 }
 
-/// The same with friction in their joint.
+/// The two blocks with friction in their joint, in these load steps.
 pub fn two_blocks_with_friction() -> Model {
     posed_in_steps(&rubbing())
 }
 
-/// The same in cells of second order: the lower block has 1122 dofs.
+/// The two blocks with friction in quadratic cells: the lower block has 1122 dofs.
 pub fn two_fine_blocks_with_friction() -> Model {
     let mesh = sort("quad9").of(&two_blocks().mesh);
     model(&format!("{}{STEPS}", rubbing()), mesh)
 }
 
-/// The same, unloaded in the middle step.
+/// The two blocks with friction, unloaded in the middle step.
 pub fn two_blocks_unloaded() -> Model {
     let steps = "[[step]]\n[[step]]\nscale = 0\n[[step]]\n";
     model(&format!("{}{steps}", rubbing()), two_blocks().mesh)
@@ -33,7 +33,8 @@ fn rubbing() -> String {
     scene.replacen("[[contact]]\n", "[[contact]]\nfriction = '0.1+0.2*x'\n", 1)
 }
 
-/// The same, and another block that is put on the upper one after the first step, and taken away after the second.
+/// The two blocks with friction, and another block that is placed on the upper one after the first step, and removed
+/// after the second.
 pub fn two_blocks_in_stages() -> Model {
     let scene = two_block_scene().replacen("[[contact]]\n", "[[contact]]\nfriction = 0.1\n", 1);
     let other = "
@@ -56,7 +57,7 @@ pub fn two_blocks_in_stages() -> Model {
     model(&format!("{scene}[[contact]]{rest}"), blocks.mesh)
 }
 
-/// Two solids, the upper one of which is moved to and fro on the lower one.
+/// Two solids, the upper one of which is moved back and forth on the lower one.
 pub fn two_solids_with_friction() -> Model {
     let block = |name, z| {
         solid(
@@ -109,7 +110,7 @@ const STEPS: &str = "
     scale = { pressure = 2, displacement = 3 }
     body_force = { upper = [0.0, -1e6] }";
 
-/// A step that has no solution ends the run before anything is solved, and names itself.
+/// A step without equilibrium ends the run before anything is solved, and the message names the step.
 pub fn no_equilibrium(trials: &mut Trials) {
     trials.on_all_ranks("steps::lifted", |ranks| {
         let lift =
@@ -122,7 +123,7 @@ pub fn no_equilibrium(trials: &mut Trials) {
     });
 }
 
-/// A step in which supports and obstacles leave no place for a node is refused by name, whichever it is.
+/// A step in which supports and obstacles leave no admissible position of a node is refused by name, whichever it is.
 pub fn squeezed(trials: &mut Trials) {
     let factors = [("first", [1, 0]), ("last", [0, 1])];
     for (name, [first, last]) in factors {
@@ -163,7 +164,7 @@ pub fn squeezed(trials: &mut Trials) {
     }
 }
 
-/// A step that doesn't converge is flagged, and the next ones are solved all the same.
+/// A step that doesn't converge is marked, and the next ones are solved all the same.
 pub fn not_converged(trials: &mut Trials) {
     trials.on_all_ranks("steps::not_converged", |ranks| {
         let case = Case::of(&two_blocks_in_steps(), 6);

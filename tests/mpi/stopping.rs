@@ -1,4 +1,4 @@
-//! Runs that a signal stops.
+//! Runs stopped by a signal.
 
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -11,9 +11,9 @@ use super::*;
 
 type MakeModel = fn() -> Model;
 
-/// A signal stops a run between two sweeps, with exit code 6, a message and the older result untouched.
+/// A signal stops a run between two sweeps, with exit code 6 and a message; the older result is unchanged.
 pub fn stopped_while_sweeping(trials: &mut Trials) {
-    // A program that is optimized doesn't wait on purpose.
+    // An optimized program doesn't have the artificial stops.
     if cfg!(not(debug_assertions)) {
         return;
     }
@@ -21,7 +21,7 @@ pub fn stopped_while_sweeping(trials: &mut Trials) {
         ("term", &[Signal::TERM]),
         ("int", &[Signal::INT]),
         ("usr1", &[Signal::USR1]),
-        // A batch system asks, and asks again otherwise; only the same one twice ends at once.
+        // A batch system may send a second, different signal; only the same signal twice ends the run immediately.
         ("usr1_and_term", &[Signal::USR1, Signal::TERM]),
     ];
     for (name, signals) in signals {
@@ -29,7 +29,7 @@ pub fn stopped_while_sweeping(trials: &mut Trials) {
             let case = Case::of(&built_in_model("granite", 0), 8);
             fs::write(case.result(), "an older result").unwrap();
             let ended = stop(&case, ranks, "sweeping", |running| {
-                // Both signals are there before it goes on. Any rank may get them.
+                // Both signals are pending before it continues, on any rank.
                 let last = *running.descendants("contact-dd-mpi").last().unwrap();
                 signals.iter().for_each(|&signal| send(last, signal));
             });
@@ -41,13 +41,13 @@ pub fn stopped_while_sweeping(trials: &mut Trials) {
     }
 }
 
-/// Between two load steps it is enough that one rank hears of it. What is finished is on disk, and going on from
-/// there has the bits of a run that wasn't stopped, on any number of ranks.
+/// Between two load steps one rank that receives the signal is enough. Finished steps are on disk, and a restarted run
+/// has the bits of an uninterrupted run, on any number of ranks.
 pub fn stopped_between_steps(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
     }
-    // Subdomains with more numbers than a reader's buffer holds at once are among them.
+    // Some subdomains have more numbers than a reader's buffer.
     let cases: [(&str, MakeModel, usize); 6] = [
         ("", steps::two_blocks_in_steps, 6),
         ("_with_friction", steps::two_blocks_with_friction, 6),
@@ -103,7 +103,7 @@ fn friction(case: &Case) -> Vec<Value> {
     steps.iter().map(|step| step["friction"].clone()).collect()
 }
 
-/// A state file of another run is refused and stays; where there is nothing to go on with the run begins anew.
+/// A state file of another run is refused and kept; without a state file the run starts from the beginning.
 pub fn restarted_in_vain(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
@@ -142,8 +142,8 @@ pub fn restarted_in_vain(trials: &mut Trials) {
     });
 }
 
-/// Of what is kept with some bytes changed, cut off or added, `--restart` makes the result of the whole run or refuses it in
-/// words; `DAMAGES=500` takes as many of each file.
+/// With some bytes of the kept files changed, cut off or appended, `--restart` either reproduces the result of the
+/// whole run or refuses the files with a message; `DAMAGES=500` tests that many cases for each file.
 pub fn restarted_from_damage(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
@@ -192,8 +192,8 @@ pub fn restarted_from_damage(trials: &mut Trials) {
     });
 }
 
-/// A run that is killed again and again, whatever it is doing, goes on after its last finished load step every time,
-/// and comes to the same bits.
+/// A run that is killed repeatedly, at any stage, continues after its last finished load step each time, and arrives at
+/// the same bits.
 pub fn killed_again_and_again(trials: &mut Trials) {
     let case = |ranks: usize| {
         let mut steps =
@@ -210,11 +210,11 @@ pub fn killed_again_and_again(trials: &mut Trials) {
         let written = |path: &Path| fs::metadata(path).and_then(|of| of.modified()).ok();
         let (mut first, mut kills) = (Vec::new(), 0_u32);
         while !case.result().exists() {
-            // As users do: by paths that are relative to the folder.
+            // With paths relative to the folder, as users do.
             let mut command = program(ranks);
             command.current_dir(case.folder());
             let running = Running::start(command.args(["problem.h5", "--restart"]));
-            // Some steps later, in another place every time.
+            // Some steps later, at a different stage each time.
             let (mut kept, mut steps) = (written(&state), 0);
             let deadline = Instant::now() + LIMIT;
             while steps < 2 + kills && !case.result().exists() && Instant::now() < deadline {
@@ -260,7 +260,7 @@ fn stop_after_one_step(case: &Case, ranks: usize) {
     assert!(case.files().contains(&"problem.vtkhdf.unfinished".into()));
 }
 
-/// A run whose first rank stops in `phase` until something was `sent`.
+/// A run whose first rank pauses in `phase` until `sent` has sent its signals.
 fn stop(case: &Case, ranks: usize, phase: &str, sent: impl FnOnce(&Running)) -> Ended {
     let mut command = program(ranks);
     command.arg(case.problem());
@@ -272,8 +272,8 @@ fn stop(case: &Case, ranks: usize, phase: &str, sent: impl FnOnce(&Running)) -> 
     running.wait(LIMIT)
 }
 
-/// A signal that comes at the start of a phase ahead of the sweeps ends the run in it, whichever rank hears of it where
-/// all ranks work on it, and nothing is left behind.
+/// A signal at the start of a phase before the sweeps ends the run in that phase, on whichever of the participating
+/// ranks it arrives, and leaves no files behind.
 pub fn stopped_ahead_of_sweeps(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
@@ -302,13 +302,13 @@ pub fn stopped_ahead_of_sweeps(trials: &mut Trials) {
     }
 }
 
-/// A table of the result file or a factor that is being made when a signal comes is finished, then the run ends.
+/// A table of the result file or a factor that is in progress when a signal arrives is completed, then the run ends.
 pub fn stopped_once_all_is_read(trials: &mut Trials) {
     trials.on_all_ranks("stopped::once_all_is_read", |ranks| {
         let case = Case::of(&built_in_model("granite", 2), 40);
         let mut running = Running::start(program(ranks).arg(case.problem()));
         let deadline = Instant::now() + LIMIT;
-        // The result file is made when everything is read.
+        // The result file is created after everything has been read.
         let is_made = || case.files().iter().any(|name| name.ends_with(".part"));
         while !is_made() && Instant::now() < deadline {
             thread::sleep(Duration::from_millis(2));

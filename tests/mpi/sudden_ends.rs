@@ -1,20 +1,20 @@
-//! Ranks that fail, panic or are killed, on purpose, in every phase of a run.
+//! Ranks that fail, panic or are killed deliberately, in every phase of a run.
 
 use super::*;
 
-/// Ends of a rank, as the program reads it from `CONTACT_DD_END`.
+/// Kinds of a rank's end, as in `CONTACT_DD_END`.
 const KINDS: [&str; 3] = ["failure", "panic", "kill"];
 
-/// Phases in which nothing returns an error, so that a rank can only end suddenly.
+/// Phases without error returns, in which a rank can only end suddenly.
 const WITHOUT_FAILURES: [&str; 3] = ["starting", "sweeping", "recovering"];
 
 /// The phase in which only load steps after the first return errors.
 const OF_LATER_STEPS: &str = "condensing the load";
 
-/// The end of one rank is the end of all, whichever it is and whatever it was doing, with no process left
-/// and the older result untouched. A message names both, but where a rank was killed: then the launcher speaks.
+/// The end of one rank, in any phase, ends all ranks; no process is left and the older result is unchanged. A message
+/// names rank and phase, unless the rank was killed: then the launcher reports it.
 pub fn sudden_ends(trials: &mut Trials) {
-    // A program that is optimized ends no rank on purpose.
+    // An optimized program has no artificial ends.
     if cfg!(not(debug_assertions)) {
         return;
     }
@@ -23,7 +23,7 @@ pub fn sudden_ends(trials: &mut Trials) {
             if kind == "failure" && WITHOUT_FAILURES.contains(&phase) {
                 continue;
             }
-            // The panic of a single rank, which runs without MPI, ends it in the same way.
+            // The panic of a single rank, which runs without MPI, has the same effect.
             let has_case = |&ranks: &usize| ranks > 1 || kind == "panic";
             for ranks in RANKS.into_iter().filter(has_case) {
                 let name = format!("sudden_end::{kind}_while_{phase}::on_{ranks}_ranks");
@@ -37,7 +37,7 @@ pub fn sudden_ends(trials: &mut Trials) {
                     for rank in [0, ranks - 1] {
                         sudden_end(&case, [rank, ranks], kind, phase);
                     }
-                    // A rank that is killed can't clear up.
+                    // A killed rank can't remove its files.
                     if kind == "failure" {
                         assert_eq!(case.files(), ["problem.h5", "problem.vtkhdf"]);
                     }
@@ -47,7 +47,8 @@ pub fn sudden_ends(trials: &mut Trials) {
     }
 }
 
-/// A rank that fails while one of many active sets is fixed: all try once more with springs, and end.
+/// A rank that fails while a fixed active set is solved, for many contact constraints: all ranks try once more with
+/// springs, and end.
 pub fn in_an_active_set_step(trials: &mut Trials) {
     if cfg!(not(debug_assertions)) {
         return;
@@ -63,7 +64,7 @@ pub fn in_an_active_set_step(trials: &mut Trials) {
     }
 }
 
-/// All phases of a run by the names that it gives them.
+/// All phases of a run, by their names in its source.
 fn phases() -> impl Iterator<Item = &'static str> {
     let run = include_str!("../../src/run.rs").split("phase(\"").skip(1);
     let named = run.filter_map(|call| call.split('"').next());

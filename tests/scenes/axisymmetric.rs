@@ -1,4 +1,4 @@
-//! Scenes that are the same all around an axis.
+//! Axisymmetric scenes.
 
 mod contact;
 
@@ -27,7 +27,7 @@ fn rectangle(name: &str, x: [f64; 2], y: [f64; 2], n: [usize; 2]) -> Mesh {
     Blocks::new().rectangle(name, x, y, n).mesh
 }
 
-/// u_r = a r, u_y = b y under tractions that are the same on each face.
+/// u_r = a r, u_y = b y under uniform tractions on each face.
 #[test]
 fn a_uniform_strain_is_exact_on_and_off_the_axis_in_all_cells() {
     let (a, b) = (3e-5, -5e-5);
@@ -64,7 +64,7 @@ value = [0.0, {axial}]\n",
                     close(u[0], a * x[0], 1e-10 * a);
                     close(u[1], b * x[1], 1e-10 * a);
                 }
-                // The force of the floor is that of the disc above it.
+                // The force of the floor is that on the disc above it.
                 let reaction = &solution.report["reactions"][0]["force"];
                 let area = PI * ((inner + 1.0).powi(2) - inner * inner);
                 close(
@@ -78,8 +78,8 @@ value = [0.0, {axial}]\n",
     }
 }
 
-/// A thick shell from radius 1 to 2 under a pressure p from inside: a cylinder between smooth plates, or a sphere, of
-/// which a quarter turns around the axis.
+/// A thick shell of radii 1 and 2 under an internal pressure p: a cylinder between smooth plates, or a sphere, of which
+/// a quarter is rotated around the axis.
 fn lame(sphere: bool, name: &str, n: usize) -> [f64; 2] {
     let p = 1e6;
     let mapped = Blocks::new().mapped("ring", [n, n], |[s, t]| match sphere {
@@ -93,7 +93,7 @@ fn lame(sphere: bool, name: &str, n: usize) -> [f64; 2] {
     let sort = sort(name);
     let mut mesh = sort.of(&mapped.mesh);
     if sphere && sort.is_quadratic {
-        // Onto the spheres through what lies between their nodes.
+        // Nodes on edges are moved onto the spheres through the ends.
         for point in &mut mesh.points {
             let [x, y, _] = *point;
             let (r, cell) = (x.hypot(y), 1.0 / n as f64);
@@ -240,7 +240,7 @@ fn a_problem_file_has_no_node_on_the_other_side_of_the_axis() {
     );
 }
 
-/// Lamé: u = A r + B/r with σ_r = 0 on the outer face, in plane strain; the inner face is moved outwards.
+/// Lamé: u = A r + B/r with σ_r = 0 on the outer face, in plane strain; the inner face is displaced outwards.
 #[test]
 fn a_ring_that_supports_widen_is_that_of_lame() {
     let (inner, outer, poisson, moved) = (1.0_f64, 2.0_f64, 0.3, 1e-3);

@@ -1,4 +1,4 @@
-//! Cells with incompatible modes: uniform stress through any shape, and bending with one of them across a beam.
+//! Cells with incompatible modes: uniform stress in cells of any shape, and bending with one cell across a beam.
 
 use contact_dd_partition::element::ElementKind::Hexahedron8;
 use contact_dd_partition::mesh::Mesh;
@@ -15,7 +15,7 @@ const YOUNG: f64 = 2e5;
 /// Length of the beam, whose cross section is a square of 1 m.
 const LENGTH: f64 = 10.0;
 
-/// The mesh with modes in all cells.
+/// The mesh with incompatible modes in all cells.
 fn bending(mesh: Mesh) -> Mesh {
     Mesh {
         has_modes: vec![true; mesh.cells.len()],
@@ -45,7 +45,7 @@ fn pushed(push: [f64; 3]) -> String {
     )
 }
 
-/// The deflection of the end by Timoshenko's theory, with a shear factor of 5/6.
+/// The deflection of the end by Timoshenko's theory, with a shear correction factor of 5/6.
 fn deflection() -> f64 {
     let inertia = 1.0 / 12.0;
     LENGTH.powi(3) / (3.0 * YOUNG * inertia) + LENGTH / (5.0 / 6.0 * 0.5 * YOUNG)
@@ -109,7 +109,7 @@ fn a_beam_of_one_cell_across_bends_as_by_the_theory_of_beams() {
     });
     assert!(plain < 0.8, "{plain}");
     assert!((with - 1.0).abs() < 0.01, "{with}");
-    // In the plane, where ν = 0 leaves nothing of the state.
+    // In the plane; with ν = 0 plane stress and plane strain coincide.
     let plane = Blocks::new().rectangle("beam", [0.0, LENGTH], [-0.5, 0.5], [10, 1]);
     let plane = bending(sort("quad4").of(&plane.mesh));
     let text = pushed([0.0, -1.0, 0.0])
@@ -122,7 +122,7 @@ fn a_beam_of_one_cell_across_bends_as_by_the_theory_of_beams() {
     assert!((depth - 1.0).abs() < 0.01, "{depth}");
 }
 
-/// Turned around two axes, by 3-4-5 and 5-12-13 triangles.
+/// Rotated about two axes, by angles of 3-4-5 and 5-12-13 triangles.
 fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
     let [x, y] = [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y];
     let [y, z] = [(12.0 * y - 5.0 * z) / 13.0, (5.0 * y + 12.0 * z) / 13.0];
@@ -143,7 +143,7 @@ fn a_turned_beam_bends_as_much() {
     }
 }
 
-/// Stress of pure bending, σ = −M z/I, of which no cell has a uniform one.
+/// Stress of pure bending, σ = −M z/I, which is uniform in no cell.
 #[test]
 fn stresses_of_bending_are_linear_across_one_cell() {
     let text = pushed([0.0; 3]).replace("[0.0, 0.0, 0.0]", "['12*z', 0, 0]");

@@ -1,4 +1,4 @@
-//! Contacts whose sides overlap by pressure over stiffness.
+//! Compliant contacts, whose sides overlap by pressure over stiffness.
 
 mod exact;
 mod friction;
@@ -25,15 +25,15 @@ fn scene(normal: f64) -> String {
     format!("{BODIES}{SUPPORTS}{LOAD}{}", joint(normal))
 }
 
-/// Blocks whose nodes don't match.
+/// Blocks with non-matching meshes.
 fn uneven() -> Blocks {
     Blocks::new()
         .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [13, 7])
         .rectangle("upper", [0.5, 1.5], [1.0, 2.0], [9, 8])
 }
 
-/// The displacement and the forces of a model by penalty: springs where sides overlap, K + Σ k b bᵀ, from what overlaps
-/// without them on.
+/// The displacement and the forces of a model by penalty: springs where sides overlap, K + Σ k b bᵀ, starting from the
+/// overlaps without springs.
 fn by_springs(model: &Model) -> (Vec<f64>, Vec<f64>) {
     let dim = model.mesh.dim;
     let points: Vec<_> = model.contacts.iter().flat_map(|of| &of.points).collect();
@@ -73,7 +73,7 @@ fn by_springs(model: &Model) -> (Vec<f64>, Vec<f64>) {
     panic!("springs come and go");
 }
 
-/// Fails unless a solution is that of springs.
+/// Fails unless a solution is that with penalty springs.
 #[track_caller]
 fn is_as_by_springs(model: &Model, solution: &Solution) {
     let (u, forces) = by_springs(model);
@@ -102,7 +102,7 @@ fn a_compliant_contact_is_what_springs_make_of_the_whole_mesh() {
     }
 }
 
-/// Half the compliance is half as far from hard contact.
+/// Half the compliance gives half the difference from hard contact.
 #[test]
 fn the_limit_of_a_stiff_joint_is_hard_contact_to_first_order() {
     let mesh = two_blocks().mesh;
@@ -119,7 +119,7 @@ fn the_limit_of_a_stiff_joint_is_hard_contact_to_first_order() {
     }
 }
 
-/// Any number of ranks has the same bits, and both solvers the same answer.
+/// The solution has the same bits on any number of ranks, and both solvers agree.
 #[test]
 fn ranks_and_solvers_make_no_difference() {
     for mesh in [two_blocks().mesh, uneven().mesh] {
@@ -147,7 +147,7 @@ fn ranks_and_solvers_make_no_difference() {
     }
 }
 
-/// A contact that comes in the second step has its springs from there on.
+/// A contact that is added in the second step has its springs from then on.
 #[test]
 fn a_compliant_contact_may_come_later() {
     let steps = "

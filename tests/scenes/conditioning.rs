@@ -8,8 +8,8 @@ use crate::support::blocks::Blocks;
 use crate::support::scenes::model;
 use crate::support::solver::solve;
 
-/// λ_max / λ_min of the stiffness of a model without contact, scaled to a unit diagonal, on the
-/// dofs that no support along an axis holds.
+/// λ_max / λ_min of the stiffness of a model without contact, scaled to a unit diagonal, on the dofs without supports,
+/// which are along axes.
 fn condition_number(model: &Model) -> f64 {
     let mut stiffness =
         DMatrix::<f64>::zeros(2 * model.mesh.points.len(), 2 * model.mesh.points.len());

@@ -10,7 +10,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::solve;
 use crate::support::sorts::{SORTS, Sort, sort};
 
-/// A unit square of cells no two of which are alike, their edges inside curved where they can be.
+/// A unit square of irregular cells, with curved inner edges where possible.
 fn block(sort: Sort, n: usize) -> Mesh {
     let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [n, n]);
     moved(sort.of(&blocks.mesh), |[s, t]| {
@@ -21,8 +21,8 @@ fn block(sort: Sort, n: usize) -> Mesh {
 
 const STEEL: [f64; 2] = [200e9, 0.3];
 
-/// A scene of the unit square with the displacement prescribed at its bottom and left side, and
-/// what a displacement field asks for elsewhere: traction on the right, on top, and body force.
+/// A scene of the unit square with the displacement prescribed at its bottom and left side, and the loads of a
+/// displacement field elsewhere: traction on the right and on top, and body force.
 fn clamped(u: [&str; 2], right: [&str; 2], top: [&str; 2], body: [&str; 2]) -> String {
     let [young, poisson] = STEEL;
     format!(
@@ -61,7 +61,7 @@ fn quadratic_displacements_are_exact_in_quadratic_cells_with_straight_edges() {
     let xx = format!("{l}*{trace} + {}*(2*x + 2*y)", 2.0 * m);
     let yy = format!("{l}*{trace} + {}*(4*y - x)", 2.0 * m);
     let xy = format!("{m}*(8*x - 3*y)");
-    // −div σ.
+    // The body force is −div σ.
     let body = [
         format!("{}", -(l + 4.0 * m - 3.0 * m)),
         format!("{}", -(8.0 * m + 6.0 * l + 8.0 * m)),
@@ -73,7 +73,7 @@ fn quadratic_displacements_are_exact_in_quadratic_cells_with_straight_edges() {
         [&body[0], &body[1]],
     );
     for name in ["triangle6", "quad8", "quad9", "triangle6, quad8 and quad9"] {
-        // Quadrilaterals of eight nodes have all quadratic fields on parallelograms alone.
+        // Quadrilaterals of eight nodes represent all quadratic fields on parallelograms only.
         let amount = if name.contains("quad8") { 0.0 } else { 0.03 };
         let linear = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [4, 4]);
         let model = model(&text, sort(name).of(&jittered(linear.mesh, amount, 3)));
@@ -94,9 +94,9 @@ fn quadratic_displacements_are_exact_in_quadratic_cells_with_straight_edges() {
     }
 }
 
-/// The error of u = v = 1e-3·sin(x)·sin(y) in the norm of the energy, relative, the largest error of
-/// the stress at nodes, and the report's estimate over the true error. As nothing but zero is
-/// prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is the work of the loads.
+/// For u = v = 1e-3·sin(x)·sin(y): the relative error in the energy norm, the largest error of the stress at nodes, and
+/// the ratio of the estimated to the true error. As only zero is prescribed, ‖u − u_h‖² = ‖u‖² − ‖u_h‖², and ‖u_h‖² is
+/// the work of the loads.
 fn errors(sort: Sort, n: usize) -> [f64; 3] {
     let [l, m] = lame().map(|c| 1e-3 * c);
     let (ux, uy) = ("cos(x)*sin(y)", "sin(x)*cos(y)");
@@ -160,7 +160,7 @@ fn energy_and_nodal_stresses_converge_with_the_order_of_the_cells() {
 
 #[test]
 fn a_block_free_of_load_stays_as_it_was_moved() {
-    // A rigid motion prescribed at the bottom moves everything along, at no stress.
+    // A rigid-body motion prescribed at the bottom moves the whole body, without stress.
     let text = "plane = 'strain'
         materials.steel = {young = 200e9, poisson = 0.3}
         bodies.block.material = 'steel'

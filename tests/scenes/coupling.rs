@@ -46,7 +46,7 @@ fn coupling(on: &str, point: &[f64], keys: &str) -> String {
     format!("[[coupling]]\nname = 'grip'\non = '{on}'\npoint = {point:?}\n{keys}\n")
 }
 
-/// A resultant of the report: its force and its moment.
+/// A resultant in the report: force and moment.
 fn resultant(of: &Value) -> [f64; 6] {
     let number = |list: &str, k: usize| of[list][k].as_f64().unwrap();
     std::array::from_fn(|k| {
@@ -58,7 +58,7 @@ fn resultant(of: &Value) -> [f64; 6] {
     })
 }
 
-/// Fails unless both have the same displacements where both have nodes.
+/// Fails unless two solutions have the same displacements at common nodes.
 #[track_caller]
 fn same(one: &Solution, other: &Solution, slack: f64) {
     let scale = one.largest_displacement();
@@ -68,7 +68,7 @@ fn same(one: &Solution, other: &Solution, slack: f64) {
     }
 }
 
-/// A motion of the point moves the side as displacements do that are linear in the place, and asks for the same forces.
+/// A motion of the point moves the side like displacements linear in the position, with the same forces.
 #[test]
 fn a_rigid_motion_in_the_plane_is_that_of_prescribed_displacements() {
     let (rx, ry, turn) = (0.9, 1.7, 3e-5);
@@ -125,7 +125,7 @@ fn a_rigid_motion_in_space_is_that_of_prescribed_displacements() {
     }
 }
 
-/// The support at the other end bears the force and the moment at the point, whichever way nodes follow.
+/// The support at the other end carries the force and the moment of the point, for every kind of coupling.
 #[test]
 fn forces_and_moments_balance() {
     for kind in ["rigid", "distributing"] {
@@ -164,7 +164,7 @@ fn forces_and_moments_balance() {
     }
 }
 
-/// A force in the middle that is distributed is a uniform traction, and leaves the side to deform.
+/// A distributed force at the centre is a uniform traction, and allows the side to deform.
 #[test]
 fn a_distributed_force_in_the_middle_is_a_uniform_traction() {
     let loaded = "[[traction]]\non = 'block top'\nvalue = [1e6, -2e6]\n";
@@ -179,7 +179,7 @@ fn a_distributed_force_in_the_middle_is_a_uniform_traction() {
     }
 }
 
-/// Of a motion some parts may be prescribed and others free: a guided end turns by nothing and bears a moment.
+/// Some components of a motion may be prescribed and others free: a guided end doesn't rotate and carries a moment.
 #[test]
 fn a_rotation_is_prescribed_by_itself_and_goes_with_the_steps() {
     let keys = "force = [1e5, 0.0]\nrz = 0.0";
@@ -205,7 +205,7 @@ fn a_rotation_is_prescribed_by_itself_and_goes_with_the_steps() {
     close(last, 0.5 * first, 1e-9 * first);
 }
 
-/// A free block that a coupling holds alone, pressed on a wall with friction.
+/// A free block held only by a coupling, pressed on a wall with friction.
 fn pressed() -> String {
     "
 materials.rock = {young = 20e9, poisson = 0.22}

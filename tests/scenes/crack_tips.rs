@@ -14,7 +14,8 @@ use crate::support::validation::gather;
 /// Pressure on faces, or tension far away (Pa).
 const LOAD: f64 = 1e7;
 
-/// A plate of 6 m × 6 m with a crack of `length` along x from its left side on, in cells of a kind, so many times finer.
+/// A plate of 6 m × 6 m with a crack of `length` along x from its left side, in cells of a kind, refined by the factor
+/// `finer`.
 pub fn plate(length: f64, cells: &str, finer: usize) -> Mesh {
     let graded = |s: f64| s.powi(3);
     let x = move |column: &str, s: f64| match column {
@@ -45,7 +46,7 @@ pub fn plate(length: f64, cells: &str, finer: usize) -> Mesh {
 const ISOTROPIC: &str = "{young = 25e9, poisson = 0.25}";
 const ORTHOTROPIC: &str = "{stiffness = [[90e9, 8e9, 2e9], [8e9, 30e9, -1e9], [2e9, -1e9, 9e9]], out_of_plane = [5e9, 5e9, 0]}";
 
-/// The plate in a material under these loads.
+/// The plate with a material and loads.
 fn loaded(mesh: Mesh, material: &str, loads: &str) -> Model {
     let text = format!(
         "plane = 'strain'
@@ -67,14 +68,14 @@ fn pressure(on: &str, value: f64) -> String {
 const FACES: &str = "'crack below top', 'crack above bottom'";
 const FAR: &str = "'crack below bottom', 'rest below bottom', 'crack above top', 'rest above top'";
 
-/// The factors of the only tip.
+/// The stress intensity factors of the single tip.
 fn factors(solution: &Solution) -> [f64; 2] {
     let tips = solution.stress_intensity();
     assert_eq!(tips.len(), 1);
     tips[0]
 }
 
-/// The stress of the uncracked plate, uniform, is the difference of both.
+/// The two differ by the uniform stress of the uncracked plate.
 #[test]
 fn pressure_on_the_faces_does_what_tension_far_away_does() {
     for material in [ISOTROPIC, ORTHOTROPIC] {
@@ -112,7 +113,7 @@ fn the_energy_that_is_released_is_that_by_which_the_potential_falls() {
                 solve(&loaded(plate(length, cells, finer), material, &loads), 4)
             };
             let rate = &at(3.0).report["crack_tips"][0]["energy_release_rate"];
-            // Loads that don't change do twice the work that is stored.
+            // Constant loads do twice the work of the released energy.
             let released = (strain_energy(&at(3.02)) - strain_energy(&at(2.98))) / 0.04;
             (rate.as_f64().unwrap() / released - 1.0).abs()
         };
@@ -124,7 +125,7 @@ fn the_energy_that_is_released_is_that_by_which_the_potential_falls() {
     }
 }
 
-/// Shear of this size along a direction, all around the plate.
+/// Shear of this size on all sides of the plate, which is rotated so that x points in the direction (c, s).
 fn shear(size: f64, [c, s]: [f64; 2]) -> String {
     let sides = [
         ("'crack above top', 'rest above top'", [c, s]),
@@ -144,7 +145,7 @@ fn factors_are_the_same_wherever_the_plate_lies_and_sliding_is_turned_round_in_a
     let plate = || plate(3.0, "quad9", 1);
     let solved = |mesh: Mesh, loads: &str| factors(&solve(&loaded(mesh, ISOTROPIC, loads), 4));
     let first = solved(plate(), &shear(LOAD, [1.0, 0.0]));
-    // What lies to the left of the crack's direction is pulled along it.
+    // The side on the left of the crack's direction is pulled along it.
     assert!(first[1] > 0.0);
     let [c, s] = [0.6, 0.8];
     let turned = moved(plate(), |[x, y]| [c * x - s * y + 5.0, s * x + c * y]);

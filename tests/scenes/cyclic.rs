@@ -1,4 +1,4 @@
-//! A sector of a ring beside the whole ring.
+//! A sector of a ring, compared with the whole ring.
 
 use std::collections::HashMap;
 
@@ -16,7 +16,7 @@ use crate::support::solver::{Case, solve, solve_steps};
 
 const SECTORS: usize = 5;
 
-/// The place of a point of the unit square in sector k between two radii.
+/// The position of a point of the unit square in sector k between two radii.
 fn around(k: usize, [s, t]: [f64; 2], [inner, outer]: [f64; 2]) -> [f64; 2] {
     let angle = std::f64::consts::TAU * (k as f64 + t) / SECTORS as f64;
     let radius = inner + (outer - inner) * s;
@@ -29,7 +29,7 @@ fn ring(name: &str, radii: [f64; 2], n: [usize; 2], sectors: usize) -> Mesh {
     glued((0..sectors).fold(Blocks::new(), sector).mesh, |_| true)
 }
 
-/// A tyre that is tied to a hub, turns, and is dragged along its circumference, in two steps.
+/// A tyre tied to a hub, under centrifugal and circumferential loads, in two steps.
 const WHEEL: &str = "
 plane = 'stress'
 materials.steel = {young = 20e9, poisson = 0.3}
@@ -69,7 +69,8 @@ fn with_cyclic(text: &str) -> String {
     text.replacen("[[displacement]]", &format!("{CYCLIC}[[displacement]]"), 1)
 }
 
-/// Fails unless every node of the sector moves as the node of the ring that lies there; nodes of two bodies may lie there.
+/// Fails unless every node of the sector moves like the node of the ring at the same position; nodes of two bodies may
+/// coincide there.
 #[track_caller]
 fn is_part(sector: (&Model, &Solution), ring: (&Model, &Solution), slack: f64) {
     let key = |model: &Model, node: usize, body: u32| {
@@ -112,7 +113,8 @@ fn a_sector_of_a_wheel_is_the_whole_wheel() {
     }
 }
 
-/// A tyre that is shrunk onto its hub with friction: where the sector ends, contacts press along the normals of the ring.
+/// A tyre shrunk onto its hub with friction: at the ends of the sector, contact forces act along the normals of the
+/// ring.
 #[test]
 fn a_shrunk_sector_is_the_whole_wheel() {
     let joint = |keys: &str| {
@@ -145,7 +147,7 @@ fn ranks_and_solvers_make_no_difference() {
     case.is_the_same_on_all_ranks_and_by_iteration(1e-8);
 }
 
-/// A mesh with another one, whose groups grow the ones of their names.
+/// Two meshes combined; groups with the same name are merged.
 fn grown(first: Mesh, second: Mesh) -> Mesh {
     let before = first.groups.clone();
     let mut mesh = joined(first, second);
@@ -156,7 +158,7 @@ fn grown(first: Mesh, second: Mesh) -> Mesh {
     mesh
 }
 
-/// A ring in space that turns about an axis and is dragged, along no coordinate axis.
+/// A ring in space under centrifugal and circumferential loads, with a general axis.
 fn disc(kind: ElementKind, sectors: usize) -> Mesh {
     let sector = |k: usize| {
         solid("disc", kind, [2, 2, 2], move |[s, t, z]| {
@@ -197,7 +199,7 @@ value = ['-4e6*y', '4e6*x', '2e6*z']
         );
         is_part((&sector, &solve(&sector, 3)), (&whole, &expected), 1e-10);
     }
-    // Loads that don't depend on the place, turned with all else.
+    // Loads independent of the position, rotated with everything else.
     let axis = turned([0.0, 0.0, 1.0]);
     let text = text
         .replace(
@@ -217,7 +219,7 @@ value = ['-4e6*y', '4e6*x', '2e6*z']
     is_part((&sector, &solve(&sector, 3)), (&whole, &expected), 1e-10);
 }
 
-/// A full disc has an axis within, which stays where it is.
+/// A full disc includes its axis, whose nodes stay there.
 #[test]
 fn nodes_on_the_axis_stay_on_it() {
     let pie = |sectors: usize| {
@@ -227,7 +229,7 @@ fn nodes_on_the_axis_stay_on_it() {
                 ElementKind::Hexahedron8,
                 [2, 2, 2],
                 move |[s, t, z]| {
-                    // A kite: its corner on the axis is one of four.
+                    // A kite: one of its four corners is on the axis.
                     let angle = |t: f64| std::f64::consts::TAU * (k as f64 + t) / SECTORS as f64;
                     let (p, q) = (angle(0.0), angle(1.0));
                     let middle = angle(0.5);

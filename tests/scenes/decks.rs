@@ -1,4 +1,4 @@
-//! Decks of Abaqus and CalculiX, solved as they are.
+//! Unmodified decks of Abaqus and CalculiX.
 
 mod conditions;
 mod couplings;
@@ -35,7 +35,7 @@ fn refused(deck: &str) -> String {
     error.unwrap_or_else(|| panic!("it is read")).to_string()
 }
 
-/// A column of two cubes that touch, without Poisson's effect: under a pressure, with its weight, and under forces alone.
+/// A column of two cubes in contact, with Poisson's ratio 0: under a pressure, with its weight, and under forces only.
 const COLUMN: &str = "\
 *NODE
  1, 0, 0, 0
@@ -106,7 +106,7 @@ Top, 3, -2.5
 #[test]
 fn a_column_of_a_deck_is_as_short_as_by_hooke() {
     let steps = solved(COLUMN);
-    // -∫ (p + γ (2 - z)) dz / E up to the middle and up to the top.
+    // −∫ (p + γ (2 − z)) dz / E up to the middle and up to the top.
     let expected = [(10.0, 0.0), (10.0, 30.0), (10.0, 0.0)];
     assert_eq!(steps.len(), expected.len());
     for (solution, (p, weight)) in steps.iter().zip(expected) {
@@ -125,7 +125,7 @@ fn a_column_of_a_deck_is_as_short_as_by_hooke() {
     }
 }
 
-/// The same column, pulled at one node, whose other nodes at the top move as that one does: what is tied holds.
+/// The same column, pulled at one node, whose displacement the other nodes at the top share: the tie transmits tension.
 const PULLED: &str = "\
 *EQUATION
 2
@@ -199,7 +199,7 @@ Upper, P2, 20.
 *END STEP
 ";
     let solution = &solved(&format!("{mesh}{on_springs}"))[0];
-    // Four springs are as stiff as 400 together, the column as 1000 / 2.
+    // Four springs have the stiffness 400 together, the column 1000 / 2.
     for (tags, expected) in [
         (1..5, -20.0 / 400.0),
         (15..19, -20.0 / 400.0 - 20.0 / 500.0),
@@ -214,7 +214,7 @@ Upper, P2, 20.
 fn gaps_of_a_deck_are_closed_up_to_a_distance() {
     let (model, _) = COLUMN.split_once("*AMPLITUDE").unwrap();
     let pressed = "*STEP\n*STATIC\n*DLOAD\nUpper, P2, 20.\n*END STEP\n";
-    // The upper cube stands off the lower one by a gap, which is closed without strain or is still there.
+    // The cubes are separated by a gap, which is closed without strain or stays open.
     for (gap, adjust, closed) in [
         (0.01, "0.02", true),
         (0.01, "0.005", false),

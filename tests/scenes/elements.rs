@@ -1,5 +1,4 @@
-//! Linear and quadratic triangles and quadrilaterals, alone and mixed, with straight and curved
-//! edges.
+//! Linear and quadratic triangles and quadrilaterals, uniform and mixed, with straight and curved edges.
 
 use contact_dd_partition::mesh::Mesh;
 
@@ -12,8 +11,8 @@ use crate::support::solution::Solution;
 use crate::support::solver::solve;
 use crate::support::sorts::{SORTS, Sort, sort};
 
-/// Two blocks that meet in an inclined line, in irregular cells; edges inside of quadratic ones are
-/// curved, those on the contact and on the outline straight.
+/// Two blocks that meet in an inclined line, in irregular cells; inner edges of quadratic cells are curved, those on
+/// the contact and on the outline straight.
 fn inclined_blocks(sort: Sort) -> Mesh {
     let blocks = Blocks::new()
         .quadrilateral(
@@ -72,7 +71,7 @@ fn uniform_compression_goes_through_a_contact_of_any_cells() {
     }
 }
 
-/// Patches run across Γ, also where it meets the boundary.
+/// Recovery patches extend across Γ, also where it meets the boundary.
 #[test]
 fn recovered_stress_and_estimate_are_the_same_in_any_number_of_subdomains() {
     for sort in SORTS {
@@ -91,7 +90,7 @@ fn recovered_stress_and_estimate_are_the_same_in_any_number_of_subdomains() {
     }
 }
 
-/// The two blocks in few irregular cells, curved inside.
+/// The two blocks in few irregular cells with curved inner edges.
 fn small_blocks(sort: Sort) -> Mesh {
     let blocks = Blocks::new()
         .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 3])
@@ -112,7 +111,7 @@ fn joints_of_any_cells_are_the_monolithic_solution() {
     }
 }
 
-/// The types of the result's cells.
+/// The result contains the types of its cells.
 #[test]
 fn results_name_the_types_of_their_cells() {
     let mesh = small_blocks(sort("triangle6, quad8 and quad9"));

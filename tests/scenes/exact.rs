@@ -1,4 +1,4 @@
-//! Scenes whose exact answer is known.
+//! Scenes with exact solutions.
 
 use contact_dd_partition::element::ElementKind::Quad4;
 use contact_dd_partition::example;
@@ -21,8 +21,8 @@ fn compressed([p, young, poisson]: Compression, x_0: f64, x: [f64; 3]) -> [f64; 
     [strain * (x[0] - x_0), strain * (x[1] - x_0)]
 }
 
-/// Fails unless stress and contact pressure are those of the compression everywhere, with every
-/// contact closed, all to within `slack`.
+/// Fails unless stress and contact pressure are those of the compression everywhere, with every contact closed, to
+/// within `slack`.
 #[track_caller]
 fn is_compressed(solution: &Solution, [p, _, poisson]: Compression, slack: f64) {
     let expected = [-p, -p, -2.0 * poisson * p, 0.0, 0.0, 0.0];
@@ -33,8 +33,8 @@ fn is_compressed(solution: &Solution, [p, _, poisson]: Compression, slack: f64) 
     }
 }
 
-/// The wedge may slide on the base and let the right block down, which costs nothing: the answer
-/// has no part in that motion, the uniform compression has.
+/// The wedge may slide on the base and the right block follow without energy: the solution contains only the uniform
+/// compression, no part of that motion.
 #[test]
 fn three_contacts_that_meet_leave_uniform_compression_alone() {
     let model = built_in_model("junction", 0);
@@ -77,8 +77,8 @@ fn three_contacts_that_meet_leave_uniform_compression_alone() {
     }
 }
 
-/// Sneddon's crack: a fluid's pressure p in it opens it by 4 (1−ν²) p b/E; where the plate is pressed by more than
-/// that, the crack is closed under the rest.
+/// Sneddon's crack: the pressure p of a fluid in it opens it by 4 (1−ν²) p b/E; if the compression of the plate exceeds
+/// p, the crack is closed under the difference.
 #[test]
 fn pressure_in_a_crack_opens_it_or_takes_from_its_contact_pressure() {
     let (text, mesh) = built_in("crack", 0);

@@ -1,4 +1,4 @@
-//! Bodies that nothing but contact holds, from the beginning or after they have fallen.
+//! Bodies held only by contact, from the beginning or after falling.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::solve;
 use crate::support::statics::{balanced, reaction};
 
-/// The upper block's guide against sliding.
+/// A support of the upper block that prevents sliding.
 const GUIDED: &str = "
 [[displacement]]
 on = 'upper left'
@@ -34,7 +34,7 @@ fn apart(gap: f64) -> Blocks {
         .rectangle("upper", [0.5, 1.5], [1.0 + gap, 2.0 + gap], [8, 8])
 }
 
-/// Fails unless stresses and contact forces of both are the same.
+/// Fails unless stresses and contact forces of both are equal.
 #[track_caller]
 fn stressed_alike(first: &Solution, second: &Solution, slack: f64) {
     let stresses = first.cells.iter().flat_map(|(_, stress)| stress);
@@ -57,7 +57,7 @@ fn a_body_that_falls_is_stressed_as_one_that_rests() {
         let rests = solve(&model(&text, apart(0.0).mesh), count);
         for gap in [1e-6, 1e-3, 0.1, 10.0] {
             let falls = solve(&model(&text, apart(gap).mesh), count);
-            // Coordinates, and so the stiffness, are rounded at the size of the gap.
+            // Coordinates, and therefore the stiffness, have round-off relative to the gap.
             stressed_alike(&rests, &falls, 1e-11 * (1.0 + gap));
             assert!(falls.sweeps() <= 1, "{} sweeps", falls.sweeps());
             assert_eq!(falls.report["warnings"].as_array().unwrap().len(), 0);
@@ -74,7 +74,7 @@ fn a_body_that_falls_on_one_that_falls_comes_to_rest_on_it() {
         .rectangle("lower", [0.0, 2.0], [0.0, 1.0], [8, 4])
         .rectangle("middle", [0.0, 2.0], [1.2, 2.2], [8, 4])
         .rectangle("upper", [0.5, 1.5], [2.5, 3.5], [4, 4]);
-    // The middle block has no load of its own.
+    // The middle block is unloaded.
     let text = format!(
         "{WEIGHT}
         bodies.middle.material = 'rock'
@@ -109,7 +109,7 @@ fn a_body_that_falls_on_one_that_falls_comes_to_rest_on_it() {
 #[test]
 fn a_block_falls_into_gaps_that_differ_and_turns_on_the_way() {
     let blocks = Blocks::new().rectangle("upper", [0.0, 2.0], [0.0, 1.0], [12, 6]);
-    // The ground rises to the right; in the middle it is too low to be touched.
+    // The ground rises to the right; in the middle it is too low for contact.
     let text = "
         plane = 'strain'
         materials.rock = {young = 20e9, poisson = 0.22}
@@ -150,7 +150,7 @@ fn a_plate_that_comes_from_afar_presses_as_one_that_is_there() {
     for count in [2, 6] {
         let there = solve(&model(&scene(-1e-5), apart(0.0).mesh), count);
         let afar = solve(&model(&scene(-0.12501), apart(0.125).mesh), count);
-        // Rounding 0.12501 m by 1e-17 m strains steel cells of 0.125 m to 2e-5 Pa, 3e-11 of all.
+        // Rounding 0.12501 m by 1e-17 m changes the stress in steel cells of 0.125 m by 2e-5 Pa, 3e-11 of it.
         stressed_alike(&there, &afar, 1e-10);
         assert!(there.largest_force() > 1e4);
     }
@@ -188,7 +188,7 @@ fn a_body_that_may_slide_stays_in_the_mean_and_a_warning_says_so() {
     }
 }
 
-/// The rest of forces along the motion that both are free in has to lie somewhere.
+/// The unbalanced part of forces along the common free motion has to be distributed.
 #[test]
 fn round_off_along_a_free_motion_is_left_at_no_single_node() {
     for n in [36, 48, 52, 56] {
@@ -219,7 +219,7 @@ fn round_off_along_a_free_motion_is_left_at_no_single_node() {
     }
 }
 
-/// A square that stands on its corner on top of a block.
+/// A square standing on its corner on top of a block.
 fn on_its_tip() -> Model {
     let corners = [[0.0, 0.0], [1.0, 1.0], [0.0, 2.0], [-1.0, 1.0]];
     let blocks = Blocks::new()
@@ -288,15 +288,15 @@ fn a_wedge_between_two_blocks_spreads_its_weight() {
     for count in [3, 7] {
         let solution = solve(&model, count);
         compare(&model, &reference, &solution);
-        // Its sides rise by 2 in 1: each carries half the weight and twice that aside.
+        // Its sides have the slope 2: each carries half the weight and twice that horizontally.
         let [right, left] = ["right joint", "left joint"].map(|n| reaction(&solution.contacts[n]));
         balanced([right[0], right[1], 0.0], [-25e3, 12.5e3, 0.0], 1e-6);
         balanced([left[0], left[1], 0.0], [25e3, 12.5e3, 0.0], 1e-6);
     }
 }
 
-/// The semi-coercive case: all subdomains in contact, so that there is no Γ and no S_0; then
-/// subdomains on Γ that touch only each other, S_0 singular; then many.
+/// The semi-coercive case: with all subdomains in contact there is no Γ and no S_0; with subdomains on Γ that only
+/// touch each other S_0 is singular; then with many subdomains.
 #[test]
 fn a_stack_has_one_answer_in_any_number_of_subdomains() {
     let model = built_in_model("stack", 0);

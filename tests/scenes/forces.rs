@@ -30,7 +30,7 @@ fn sum(model: &Model) -> [f64; 3] {
 
 #[test]
 fn a_total_on_a_side_is_shared_like_a_uniform_traction() {
-    // The areas of the tops, that around an axis of all of its ring.
+    // The areas of the tops; around an axis that of the whole ring.
     let ring = std::f64::consts::PI * (1.5_f64.powi(2) - 0.5_f64.powi(2));
     for (plane, area) in [("strain", 1.0), ("axisymmetric", ring)] {
         let mesh = Blocks::new()
@@ -103,7 +103,7 @@ fn a_joint_carries_a_force_at_a_point_with_its_moment() {
     assert_eq!(sum(&model), [0.0, force, 0.0]);
     for count in [2, 3, 6] {
         let solution = solve(&model, count);
-        // The support on the left, without friction, holds a moment but no vertical force.
+        // The support on the left, without friction, carries a moment but no vertical force.
         let [x, y, _] = reaction(solution.contacts.values().flatten());
         balanced([x, y, 0.0], [0.0, -force, 0.0], 1e-10 * force.abs());
     }

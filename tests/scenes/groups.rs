@@ -16,7 +16,7 @@ plane = 'strain'
 materials.rock = {young = 20e9, poisson = 0.22}
 ";
 
-/// Four barrels in a row, flat where they touch, 2 m long each.
+/// Four barrels in a row, 2 m long each, with flat contacts.
 fn row() -> (Mesh, String) {
     let mut blocks = Blocks::new();
     let mut bodies = ROCK.to_owned();
@@ -69,9 +69,9 @@ fn every_contact_of_a_row_carries_the_same_force() {
     }
 }
 
-/// A wall of `courses` courses, 4 m long, of bricks of 1 m × 0.5 m; every other course begins with
-/// half a brick where the bond is `running`. With its scene: its own weight, 25 kN/m³, and 0.1 MPa
-/// from above; a contact for all bed joints of a course, and one for all its head joints.
+/// A wall of `courses` courses, 4 m long, of bricks of 1 m × 0.5 m; with `running` bond every other course begins with
+/// half a brick. Its scene has its weight, 25 kN/m³, and 0.1 MPa from above; one contact for all bed joints of a
+/// course, and one for all its head joints.
 fn wall(courses: usize, running: bool) -> (Mesh, String) {
     let mut blocks = Blocks::new();
     let mut bodies = ROCK.to_owned();
@@ -134,7 +134,7 @@ fn every_bed_joint_of_a_wall_carries_what_is_above_it() {
                 let points = &solution.contacts[&format!("bed {course}")];
                 let above = (courses - course) as f64 * 4.0 * 0.5 * 25e3 + 4.0 * 1e5;
                 balanced(reaction(points), [0.0, above, 2.0 * above], 1e-10 * above);
-                // Shares cover the joint once, whatever the bricks.
+                // Tributary areas cover the joint exactly once, whatever the bricks.
                 let length: f64 = (points.iter())
                     .filter(|point| point.force > 0.0)
                     .map(|point| point.force / point.pressure)
@@ -190,7 +190,7 @@ fn pocket_scene(rest: &str) -> String {
 
 #[test]
 fn a_block_in_a_pocket_touches_it_on_three_sides_and_in_corners() {
-    // On one side at least the block's bulge closes the contact; on the other it stays open.
+    // On at least one side the block's lateral expansion closes the contact; on the other it stays open.
     let model = model(&pocket_scene(""), pocket());
     let reference = Monolithic::new(&model);
     for count in [2, 5, 8] {
@@ -211,7 +211,7 @@ fn a_block_in_a_pocket_touches_it_on_three_sides_and_in_corners() {
 
 #[test]
 fn contacts_and_a_support_may_meet_in_a_corner() {
-    // The pocket's corner node, and the block's, are held along x as well.
+    // The corner nodes of the pocket and of the block are held along x as well.
     let held = "[[displacement]]\non = ['block left', 'left wall right']\nx = 0.0\n";
     let model = model(&pocket_scene(held), pocket());
     assert!(

@@ -1,4 +1,4 @@
-//! Stress that bodies have without strain: what is left from before, and heat.
+//! Initial stress of bodies: residual and thermal stress.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron20, Tetrahedron4, Tetrahedron10};
 use contact_dd_partition::mesh::Mesh;
@@ -22,7 +22,7 @@ materials.rock = {young = 20e9, poisson = 0.25}
 bodies.block = {material = 'rock', thermal = {expansion = 1.2e-5, temperature = 80}}
 ";
 
-/// Fails unless all nodes are displaced as `exact` says, to within `slack`.
+/// Fails unless the displacements of all nodes are `exact`, to within `slack`.
 #[track_caller]
 fn is_displaced(
     model: &Model,
@@ -131,7 +131,7 @@ fn a_clamped_bar_is_pressed_by_the_heat_alone() {
     }
 }
 
-/// Stresses of two bodies of one material that share nodes stay apart.
+/// Stresses of two bodies of one material with common nodes are recovered separately.
 #[test]
 fn the_stress_of_a_hot_body_doesnt_leak_into_a_cold_one() {
     let mesh = Blocks::new()
@@ -168,7 +168,7 @@ sides = ['upper bottom', 'lower top']
 friction = 0.3
 ";
 
-/// The stress of the weight above is in equilibrium: nothing moves, the joint carries what lies upon it.
+/// The initial stress is in equilibrium with the weight: nothing moves, and the joint carries the weight above it.
 #[test]
 fn ground_under_its_own_weight_rests() {
     let mesh = Blocks::new()
@@ -179,7 +179,7 @@ fn ground_under_its_own_weight_rests() {
         let model = model(ROCK, sort.of(&mesh));
         for count in [2, 5] {
             let solution = solve(&model, count);
-            // The weight alone would press the ground by 2.5 µm.
+            // The weight alone would compress the ground by 2.5 µm.
             is_displaced(&model, &solution, 1e-16, |_| [0.0; 3]);
             for (tag, x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
                 let weight = 25e3 * (x[1] - 2.0);
@@ -202,7 +202,7 @@ fn ground_under_its_own_weight_rests() {
     }
 }
 
-/// A pressure holds the wall of a round hole in stressed ground; then it is let go (Lamé).
+/// A pressure supports the wall of a round hole in stressed ground, and is then removed (Lamé).
 #[test]
 fn a_hole_closes_when_its_support_goes() {
     let (p, inner, outer) = (1e6, 1.0_f64, 3.0_f64);
@@ -247,7 +247,7 @@ scale = {pressure = 0}
     }
 }
 
-/// A ring that cools down on a hub presses on it as Lamé's formulas say, in plane strain.
+/// A ring that cools on a hub exerts the pressure of Lamé's formulas, in plane strain.
 #[test]
 fn a_ring_shrinks_on_its_hub() {
     let (hole, joint, outer) = (0.5_f64, 1.0_f64, 2.0_f64);
@@ -275,7 +275,7 @@ temperature = {ring = -80.0}
     let model = model(text, sort("quad8").of(&mesh));
     let compliance = |[a, b]: [f64; 2]| {
         let (a, b, r) = (a * a, b * b, joint * joint);
-        // Of the hub under p from outside, of the ring from inside.
+        // The hub is under external pressure p, the ring under internal pressure.
         ((1.0 - 2.0 * POISSON) * r + a) / (r - a) + ((1.0 - 2.0 * POISSON) * r + b) / (b - r)
     };
     let fit = (1.0 + POISSON) * EXPANSION * HEAT;

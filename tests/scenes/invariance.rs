@@ -1,4 +1,4 @@
-//! Invariance of solutions: place, size and numbering of a scene play no part.
+//! Invariance of solutions under motion, scaling and renumbering of a scene.
 
 use std::collections::BTreeMap;
 
@@ -12,8 +12,8 @@ use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::solve;
 use crate::support::sorts::sort;
 
-/// A block whose lower side is bent on a longer one, pressed down at one end: of cells of the same size, or of
-/// another one, where of the last facet that it covers it covers a fifth.
+/// A block with a curved lower side on a longer one, pressed down at one end: with cells of equal size, or of different
+/// size, so that it covers a fifth of the last facet.
 fn mesh(cells: &str, is_even: bool) -> Mesh {
     let (start, length, n) = match is_even {
         true => (0.5, 1.5, 3),
@@ -48,7 +48,7 @@ fn text(upside_down: bool) -> String {
     )
 }
 
-/// The model of a mesh with forces by tag.
+/// The model of a mesh with forces by node tag.
 fn loaded(text: &str, mesh: Mesh, force: impl Fn(i64) -> [f64; 2]) -> Model {
     let mut model = model(text, mesh);
     model.forces = (0_u32..)
@@ -60,7 +60,7 @@ fn loaded(text: &str, mesh: Mesh, force: impl Fn(i64) -> [f64; 2]) -> Model {
     model
 }
 
-/// The scene, moved by a turn (and a reflection), a factor and a translation.
+/// A transformation of the scene: rotation (and reflection), scaling and translation.
 #[derive(Clone, Copy)]
 struct Place {
     angle: f64,
@@ -89,8 +89,7 @@ impl Place {
     }
 }
 
-/// Fails unless the scene has the same answer at all `places`, its nodes renumbered if `seed` says
-/// how.
+/// Fails unless the scene has the same solution at all `places`, with nodes renumbered by `seed` if given.
 #[track_caller]
 fn is_the_same_at(places: &[Place], seed: Option<u64>) {
     for (cells, is_even, upside_down) in [
@@ -133,7 +132,7 @@ fn agree(first: &Solution, second: &Solution, place: Place, old: &BTreeMap<i64, 
         let expected = place.turned([x, y]).map(|u| place.factor * u);
         (0..2).for_each(|k| close(u[k], expected[k], slack * size));
     }
-    // The node that has the condition, on either side.
+    // The node that carries the constraint, on either side.
     let named = |point: &ContactPoint| match point.tags {
         [-1, b] => b,
         [a, _] => a,

@@ -50,7 +50,7 @@ fn displacements_and_contacts_are_those_of_the_direct_solver() {
 
 #[test]
 fn displacements_and_contacts_are_those_of_the_direct_solver_in_space() {
-    // Sides whose nodes match, and sides one of which is wider than the other.
+    // Sides with matching nodes, and sides of different widths.
     for (kind, wide, upper) in [
         (Hexahedron8, [0.0, 1.0], [6, 4, 3]),
         (Hexahedron8, [0.0, 1.2], [7, 4, 3]),
@@ -81,8 +81,8 @@ fn displacements_and_contacts_are_those_of_the_direct_solver_in_space() {
     }
 }
 
-/// Active sets that come back where solutions are not accurate or springs come and go, and bodies that nothing presses in
-/// the end; forces that are nothing beside the largest, and yet hold a body.
+/// Active sets that recur with inaccurate solutions or with springs in some of them, bodies without contact pressure in
+/// the end, and forces that are tiny compared with the largest but hold a body.
 #[test]
 fn scenes_in_space_that_are_hard_to_settle_are_solved_between_clusters() {
     for seed in [2, 29, 55, 220, 331] {
@@ -111,7 +111,7 @@ fn the_number_of_iterations_does_not_grow_with_that_of_clusters() {
     let of = |clusters| iterations(&Case::in_clusters(&plate, 100, clusters).solve(&ITERATIVE))[0];
     let (few, many) = (of(16), of(64));
     assert!(few <= 20 && many <= 20, "{few}, {many}");
-    // By a fifth, of whole numbers.
+    // By a fifth, for integers.
     assert!(many as f64 <= (1.2 * few as f64).ceil(), "{few}, {many}");
 }
 
@@ -127,7 +127,7 @@ fn contrast_and_slender_and_nearly_incompressible_bodies_take_few_more() {
         let taken = iterations(&iterative)[0];
         assert!(taken <= 40, "{name}: {taken}");
         let difference = difference(&direct, &iterative);
-        // Either solution is as good as the condition number lets it be.
+        // The accuracy of both solutions is limited by the condition number.
         let condition = direct.report["condition_number"].as_f64().unwrap();
         let limit = 4.0 * f64::EPSILON * condition;
         assert!(difference < limit, "{name}: {difference:e}, {limit:e}");
@@ -163,8 +163,8 @@ fn a_file_without_clusters_is_refused_in_words() {
     assert!(ended.errors()[0].contains("/hierarchy/cluster is missing"));
 }
 
-/// Tolerance of friction: statuses may differ where a force is within 1e-12 of its bound, which moves slipping
-/// points by more.
+/// Tolerance of friction: statuses may differ where a force is within 1e-12 of its bound, and slipping points move by
+/// more.
 const FRICTION: f64 = 1e-9;
 
 #[test]
@@ -243,7 +243,7 @@ fn what_is_more_robust_is_said_where_friction_does_not_converge() {
         "{}",
         ended.stdout
     );
-    // Some of the points that aren't settled are named.
+    // Some of the points without convergence are named.
     assert!(ended.stdout.contains("node "), "{}", ended.stdout);
 }
 
@@ -264,7 +264,7 @@ fn what_friction_cannot_hold_slides() {
     }
 }
 
-/// Blocks on top of each other, pressed and pushed, so that their joints stick here and slip there.
+/// Blocks on top of each other under pressure and shear, with partial slip in the joints.
 fn pile(names: &[&str], cells: usize) -> Model {
     let mesh = names
         .iter()
@@ -307,7 +307,7 @@ fn pile(names: &[&str], cells: usize) -> Model {
     model(&scene, mesh.mesh)
 }
 
-/// Up the hierarchy for more than 3000 conditions, by a dense matrix in one cluster for more than 1000.
+/// In the tree for more than 3000 constraints, by a dense matrix in one cluster for more than 1000.
 #[test]
 fn many_conditions_with_friction_are_solved_alike_by_every_operator() {
     for (names, cells, operator) in [
@@ -329,7 +329,7 @@ fn many_conditions_with_friction_are_solved_alike_by_every_operator() {
             assert!(of(&direct) > Some(0), "{operator}: none {acts}");
             assert_eq!(of(&direct), of(&iterative), "{operator}: {acts}");
         }
-        // One cluster settles all its conditions before any sweep.
+        // A single cluster solves all its constraints before any sweep.
         let sweeps = direct.report["sweeps"].as_u64();
         assert_eq!(sweeps == Some(0), operator == "dense", "{sweeps:?}");
         let ended = case.run_on(2, &[]);

@@ -1,4 +1,4 @@
-//! Laws that every answer keeps: what doesn't change it, and what it costs.
+//! Laws of every solution: invariances, and costs.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ use crate::support::scenes::{built_in, built_in_model, model, two_block_scene, t
 use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::{Case, problem, solve};
 
-/// Numbers in which two runs are to agree.
+/// Factors between the numbers of two runs.
 struct Likeness {
     /// Contact force of the second over that of the first.
     force: f64,
@@ -33,10 +33,10 @@ const SAME: Likeness = Likeness {
     length: 1.0,
 };
 
-/// Allowed difference relative to the largest displacement; that of forces is ten times as large.
+/// Allowed difference relative to the largest displacement; for forces it is ten times as large.
 const SLACK: f64 = 1e-11;
 
-/// Fails unless `second` is `first` by `likeness`.
+/// Fails unless `second` is `first` scaled by `likeness`.
 #[track_caller]
 fn alike(first: &Solution, second: &Solution, likeness: &Likeness) {
     let size = second.largest_displacement();
@@ -63,7 +63,7 @@ fn alike(first: &Solution, second: &Solution, likeness: &Likeness) {
     }
 }
 
-/// Granite with a mesh that has no symmetry of its own.
+/// Granite with a mesh without symmetry.
 fn rough_granite() -> (&'static str, Mesh) {
     let (text, mesh) = built_in("granite", 0);
     (text, jittered(mesh, 0.02, 3))
@@ -156,7 +156,7 @@ fn the_number_of_subdomains_does_not_change_the_answer() {
     }
 }
 
-/// Soft layers on both sides of a joint between stiff blocks, each layer a subdomain.
+/// Compliant layers on both sides of a joint between stiff blocks, each layer a subdomain.
 fn soft_layers() -> Model {
     let mesh = Blocks::new()
         .rectangle("base", [0.0, 2.0], [0.0, 1.0], [16, 6])

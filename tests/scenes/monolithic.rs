@@ -1,4 +1,4 @@
-//! Domain decomposition against one system for the whole mesh.
+//! Domain decomposition compared with a single system for the whole mesh.
 
 use std::collections::BTreeSet;
 
@@ -12,8 +12,8 @@ use crate::support::scenes::{
 };
 use crate::support::solver::solve;
 
-/// Solves `model` in `count` subdomains and fails unless displacement, forces, pressures, gaps and
-/// status are those of the reference. Returns the number of closed conditions.
+/// Solves `model` in `count` subdomains and fails unless displacement, forces, pressures, gaps and status are those of
+/// the reference. Returns the number of closed constraints.
 #[track_caller]
 fn agrees(model: &Model, count: usize) -> usize {
     let solution = solve(model, count);
@@ -27,8 +27,7 @@ fn granite_is_the_monolithic_solution() {
     assert_eq!(closed, 31);
 }
 
-/// So many conditions that the active set is fixed and corrected step by step; the certificate knows the whole
-/// problem.
+/// So many constraints that fixed active sets are solved one after the other; the certificate checks the whole problem.
 #[test]
 fn many_conditions_are_solved_for_by_fixed_active_sets() {
     let solution = solve(&built_in_model("wall", 1), 33);
@@ -90,8 +89,7 @@ fn several_materials_in_one_body_are_the_monolithic_solution() {
     agrees(&model(&text, blocks.mesh), 7);
 }
 
-/// Three blocks on top of each other; the middle one is bent, so that the gaps that geometry
-/// gives differ from node to node.
+/// Three blocks on top of each other; the middle one is curved, so that the geometrical gaps vary from node to node.
 fn sandwich() -> Model {
     let bent = |[s, t]: [f64; 2]| {
         [
@@ -235,7 +233,7 @@ fn a_round_obstacle_is_the_monolithic_solution() {
     assert!(0 < closed && closed < 21, "{closed}");
 }
 
-/// The upper two blocks of the stack may slide; the answer has no part in that.
+/// The upper two blocks of the stack may slide; the solution contains no part of that motion.
 #[test]
 fn blocks_that_could_slide_are_the_monolithic_solution_without_sliding() {
     let model = built_in_model("stack", 0);

@@ -1,4 +1,4 @@
-//! Contact of sides whose nodes don't match.
+//! Contact between non-matching meshes.
 
 mod order;
 mod patch;

@@ -36,12 +36,12 @@ fn contact(obstacle: &str, keys: &str) -> String {
     )
 }
 
-/// A wall at a height below the block, which is turned against its bottom.
+/// A wall at a height below the block, facing its bottom.
 fn wall(height: f64) -> String {
     format!("point = [0.2, {height:?}], normal = [-2e-5, 1.0]")
 }
 
-/// Fails unless both have the same displacements, the second ones moved by so much.
+/// Fails unless both have the same displacements, apart from the translation `moved` of the second.
 #[track_caller]
 fn same(one: &Solution, other: &Solution, moved: [f64; 3], slack: f64) {
     let scale = one.largest_displacement();
@@ -88,7 +88,7 @@ fn a_wall_that_moves_is_in_every_step_the_wall_that_stands_there() {
     }
 }
 
-/// The result is the same where the die comes to the block and the block to the die, with friction, on the whole way.
+/// The solution is the same whether the die moves to the block or the block to the die, with friction, in every step.
 #[test]
 fn it_is_the_same_whether_the_die_moves_or_the_body() {
     for keys in [
@@ -120,7 +120,7 @@ fn it_is_the_same_whether_the_die_moves_or_the_body() {
     }
 }
 
-/// Motions count from the position that is given, are scaled with displacements, and without steps are there at once.
+/// Motions are relative to the given position, are scaled with displacements, and without steps are applied at once.
 #[test]
 fn a_motion_is_scaled_like_displacements() {
     let of = |keys: &str, steps: &str| {
@@ -142,7 +142,7 @@ fn a_motion_is_scaled_like_displacements() {
     same(&steps[1], &at_once[0], [0.0; 3], 1e-10);
 }
 
-/// Of a round one the last position is exact.
+/// The final position of a round obstacle is exact.
 #[test]
 fn a_round_die_presses_at_its_end_as_one_that_stands_there() {
     let round = |height: f64| format!("center = [0.4, {height:?}], radius = 50.0");
@@ -157,7 +157,7 @@ fn a_round_die_presses_at_its_end_as_one_that_stands_there() {
     same(&moving, &there, [0.0; 3], 1e-9);
 }
 
-/// A body that nothing else holds rests on the table and goes with it.
+/// A body held only by the table rests on it and moves with it.
 #[test]
 fn a_table_lifts_what_stands_on_it() {
     let lift = 0.25;
@@ -167,7 +167,7 @@ fn a_table_lifts_what_stands_on_it() {
         contact("point = [0.0, 0.0], normal = [0.0, 1.0]", "friction = 0.5")
     );
     let steps = solve_steps(&model(&text, mesh()), 3);
-    // Of a displacement that is a million times the deformation round-off is more.
+    // Round-off is larger for a displacement of a million times the deformation.
     same(&steps[1], &steps[0], [0.0, lift, 0.0], 1e-7);
     assert!(steps.iter().all(|step| step.closed() == 9));
 }

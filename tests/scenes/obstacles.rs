@@ -17,7 +17,7 @@ use crate::support::statics::{area, balanced, reaction};
 /// Body force downwards [N/m³].
 const WEIGHT: f64 = 25e3;
 
-/// A scene of one body, `block`, and what is added to it.
+/// A scene of one body, `block`, with `rest` appended.
 fn scene(force: [f64; 2], rest: &str) -> String {
     format!(
         "plane = 'strain'
@@ -42,7 +42,7 @@ fn contact(name: &str, sides: &[&str], obstacle: &str) -> String {
 
 const OUTLINE: [&str; 4] = ["bottom", "right", "top", "left"];
 
-/// A square that stands on its corner in a groove of two walls at right angles, tilted by `tilt`.
+/// A square standing on its corner in a groove of two perpendicular walls, tilted by `tilt`.
 fn groove(force: [f64; 2], tilt: f64, sides: [&[&str]; 2]) -> (Model, [[f64; 2]; 2]) {
     let (sin, cos) = tilt.sin_cos();
     let turned = |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y];
@@ -58,7 +58,7 @@ fn groove(force: [f64; 2], tilt: f64, sides: [&[&str]; 2]) -> (Model, [[f64; 2];
     (model(&scene(force, &walls), mesh), normals)
 }
 
-/// Parts of a force on a body that two walls with these normals bear.
+/// Components of a force on a body that two walls with these normals carry.
 fn shares(normals: [[f64; 2]; 2], force: [f64; 2]) -> [f64; 2] {
     let [[a, b], [c, d]] = normals;
     let determinant = a * d - b * c;
@@ -119,7 +119,7 @@ fn a_whole_outline_may_be_a_side() {
     }
 }
 
-/// A disc of radius 1 m that touches walls at 30° and 45° on its sides, and the walls' normals.
+/// A disc of radius 1 m that touches walls of 30° and 45° on its sides, and the walls' normals.
 fn disc_in_a_groove() -> (Model, [[f64; 2]; 2]) {
     let normals = [120_f64, 45.0].map(|angle| {
         let (sin, cos) = angle.to_radians().sin_cos();
@@ -151,7 +151,7 @@ fn a_disc_in_a_groove_touches_each_wall_in_a_point() {
 
 #[track_caller]
 fn pushes_both_alike(count: usize) {
-    // The upper wall reaches 1e-4 m into the disc.
+    // The upper wall overlaps the disc by 1e-4 m.
     let walls = [
         contact("low", &OUTLINE, "point = [0, -1], normal = [0, 1]"),
         contact("high", &OUTLINE, "point = [0, 0.9999], normal = [0, -1]"),
@@ -168,7 +168,7 @@ fn a_disc_squeezed_between_walls_pushes_both_alike() {
     pushes_both_alike(1);
 }
 
-/// A block of 4 m on circles of radius 1 m below these places, with this body force.
+/// A block of 4 m on circles of radius 1 m below these positions, with this body force.
 fn on_circles(places: &[f64], force: [f64; 2]) -> Model {
     let circles: String = (places.iter())
         .map(|x| {
@@ -204,8 +204,8 @@ fn bodies_that_may_roll_are_as_accurate_in_several_subdomains() {
 
 #[test]
 fn a_block_on_three_circles_rests_on_them() {
-    // Nothing holds the block sideways. In one subdomain it ends up some 10⁴ times as far away as it deforms, and
-    // forces are as good as such displacements make them.
+    // Nothing holds the block sideways. In one subdomain it moves some 10⁴ times as far as it deforms, which limits the
+    // accuracy of forces.
     for (count, slack) in [(1, 1e-9), (4, 1e-12)] {
         let solution = solve(&on_circles(&[-1.0, 0.0, 1.0], [0.0, -WEIGHT]), count);
         let total = reaction(solution.points());
@@ -213,8 +213,8 @@ fn a_block_on_three_circles_rests_on_them() {
     }
 }
 
-/// Fails unless a solution of a model whose conditions depend on each other is the reference's with
-/// its closed conditions alone, which all press then while all others are kept.
+/// Fails unless the solution of a model with linearly dependent constraints is the reference's with exactly its closed
+/// constraints, which are all in compression there, with no other constraint violated.
 #[track_caller]
 fn solves(model: &Model, solution: &Solution) {
     let mut closed = model.clone();
@@ -250,8 +250,7 @@ fn a_block_pushed_over_five_circles_leans_on_some() {
     }
 }
 
-/// Mean pressure of a ring under internal pressure 1 MPa upon the circle that it fits into, over
-/// the exact one.
+/// Average pressure of a ring under internal pressure 1 MPa on its close-fitting rigid circle, over the exact one.
 fn ring_in_a_circle(cells: usize) -> f64 {
     let (inner, outer, poisson) = (0.5, 1.0, 0.22);
     let mesh = (Blocks::new().ring("block", [inner, outer], [cells, 8 * cells])).mesh;
@@ -311,8 +310,8 @@ fn a_body_between_a_wall_and_another_body_leans_on_both() {
     }
 }
 
-/// The last interior unknown and the first normal jump may be a node's two components: they belong
-/// together no more than any others.
+/// The last interior unknown and the first normal jump may be two components of one node, but are no more related than
+/// others.
 #[test]
 fn a_strip_under_a_plane_is_balanced_whatever_its_length() {
     for columns in 1..=9 {

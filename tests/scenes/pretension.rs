@@ -16,7 +16,7 @@ use crate::support::sorts::SORTS;
 
 const YOUNG: f64 = 20e9;
 
-/// The mesh with the group `cut` of the facets of cells all of whose nodes lie where `at` says.
+/// The mesh with the group `cut` of the cells' facets whose nodes are all at positions where `at` is true.
 fn with_cut(mut mesh: Mesh, at: impl Fn([f64; 3]) -> bool) -> Mesh {
     let mut facets: Vec<(_, Vec<u32>)> = Vec::new();
     for (kind, nodes) in mesh.cells.iter() {
@@ -84,7 +84,7 @@ fn reaction(solution: &Solution, support: usize) -> [f64; 3] {
     [0, 1, 2].map(|k| of[k].as_f64().unwrap())
 }
 
-/// A bar between two walls is pulled by the force that is asked for, and gets shorter by what it stretches.
+/// A bar between two walls has the prescribed tension, and is shortened by its elongation.
 #[test]
 fn a_bar_bears_the_force_and_stretches_by_the_shortening() {
     let (area, length, force) = (0.6 * 0.4, 2.0, 3e6);
@@ -111,7 +111,7 @@ fn a_bar_bears_the_force_and_stretches_by_the_shortening() {
     }
 }
 
-/// Whatever the bar is like, the walls bear the force across its cut, and nothing across it.
+/// For any bar, the walls carry the force normal to its cut, and nothing tangential.
 #[test]
 fn the_walls_bear_the_force_across_the_cut() {
     let plane = format!("plane = 'stress'\n{}", bar(0.3, ["bar bottom", "bar top"]));
@@ -130,14 +130,14 @@ fn the_walls_bear_the_force_across_the_cut() {
         close(found[1], 2e6, 1e-12 * 2e7);
         let foot = reaction(&by_force, 0);
         (0..2).for_each(|k| close(found[k], -foot[k], 1e-12 * 2e7));
-        // The shortening that it needed asks for the force again.
+        // Prescribing its shortening reproduces the force.
         let keys = format!("shortening = {shortening:?}");
         let by_length = solve(&model(&(plane.clone() + &bolt(&keys)), mesh), 3);
         close(tightened(&by_length.report)[0], 2e6, 1e-11 * 2e6);
     }
 }
 
-/// A round bar around its axis between smooth walls bears the force all around, whatever its cells are.
+/// A round bar around its axis between smooth walls carries the force of the full circumference, in any cells.
 #[test]
 fn a_round_bar_bears_the_force_all_around() {
     let (radius, length, force) = (0.4, 1.5, 2e6);
@@ -167,8 +167,7 @@ fn a_round_bar_bears_the_force_all_around() {
     }
 }
 
-/// A bar that is turned in space is tightened along its own axis, by the normal of the cut or by a direction that says
-/// the same.
+/// A rotated bar in space is tightened along its axis, by the normal of the cut or an equivalent direction.
 #[test]
 fn a_turned_bar_is_tightened_along_itself() {
     let mesh = solid(
@@ -196,7 +195,7 @@ fn a_turned_bar_is_tightened_along_itself() {
     }
 }
 
-/// A bolt beside a flange, both under a guided plate, which a force lifts: the flange is in two parts that touch.
+/// A bolt beside a flange, both under a guided plate, which a force lifts: the flange consists of two parts in contact.
 fn joint(keys: &str, steps: &str) -> String {
     format!(
         "
@@ -234,7 +233,8 @@ fn joint_mesh() -> Mesh {
     with_cut(mesh, |x| x[0] < 0.6 && (x[1] - 1.0).abs() < 1e-9)
 }
 
-/// The joint diagram: a locked bolt bears its share of a load by the stiffnesses, and all of it once the flange has parted.
+/// The joint diagram: a locked bolt carries its share of a load by the ratio of stiffnesses, and all of it once the
+/// flange has opened.
 #[test]
 fn a_locked_joint_follows_its_diagram_up_to_separation_and_back() {
     let (preload, [bolt, flange]) = (6e6, [0.5, 2.0].map(|width| YOUNG * width / 4.0));
@@ -252,7 +252,7 @@ fn a_locked_joint_follows_its_diagram_up_to_separation_and_back() {
             "[[step]]\npretension.bolt = {{ lock = true }}\ncoupling.plate = {{ force = [0.0, {load:?}] }}\n"
         );
     }
-    // What is loosened has the force that is given again.
+    // After unlocking it has the prescribed force again.
     steps += "[[step]]\npretension.bolt = { force = 3e6 }\n";
     for (count, keys) in [(4, ""), (7, "friction = 0.2")] {
         let solutions = solve_steps(&model(&joint(keys, &steps), joint_mesh()), count);
@@ -284,7 +284,7 @@ fn a_locked_joint_follows_its_diagram_up_to_separation_and_back() {
     }
 }
 
-/// Two plates with friction that a bolt between them presses together, pushed aside once it is locked.
+/// Two plates with friction clamped by a bolt between them, sheared once it is locked.
 #[test]
 fn ranks_and_solvers_make_no_difference() {
     let lower = solid(

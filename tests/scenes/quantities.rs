@@ -1,4 +1,4 @@
-//! Quantities of the solution, and their derivatives.
+//! Quantities of interest, and their derivatives.
 
 mod mesh_error;
 mod study;
@@ -19,7 +19,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::Case;
 use crate::support::sorts::sort;
 
-/// A number of a scene: its word in the text, its value, a small change of it, and the parameter that it is.
+/// A number in a scene: its placeholder in the text, its value, a small change of it, and the name of its parameter.
 struct Knob(&'static str, f64, f64, &'static str);
 
 const KNOBS: [Knob; 9] = [
@@ -118,7 +118,7 @@ fn plane() -> String {
     format!("plane = 'strain'\n{SCENE}")
 }
 
-/// Words of the scene in the plane, with the sides of solids in the place of those of rectangles.
+/// The placeholders of the plane scene, with the sides of solids in place of those of rectangles.
 fn on_solids(text: &str) -> String {
     text.replace("low bottom", "low z0")
         .replace("high bottom", "high z0")
@@ -129,7 +129,7 @@ fn on_solids(text: &str) -> String {
         .replace("': y", "': z")
 }
 
-/// The scene in space, pushed across its plane as well.
+/// The scene in space, with an additional shear out of its plane.
 fn space() -> String {
     on_solids(SCENE)
         .replace("y = @settle@", "y = 0\nz = @settle@")
@@ -203,7 +203,7 @@ fn derivative(quantity: &Value, parameter: &str) -> f64 {
     one["derivative"].as_f64().unwrap()
 }
 
-/// Compares all derivatives with central differences of whole runs.
+/// Compares all derivatives with central differences of complete runs.
 #[track_caller]
 fn check_differences(text: &str, law: &str, mesh: &Mesh, args: &[&str]) {
     let knobs = KNOBS.iter().chain([&FRICTION]);

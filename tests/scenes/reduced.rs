@@ -1,4 +1,5 @@
-//! Reduced integration of quadratic cells: uniform stress, heat without stress in cells of any shape, and the sum of a weight.
+//! Reduced integration of quadratic cells: uniform stress, stress-free thermal expansion in cells of any shape, and the
+//! resultant of a weight.
 
 use contact_dd_partition::element::ElementKind::Hexahedron20;
 use contact_dd_partition::mesh::Mesh;
@@ -77,14 +78,14 @@ fn linear_displacements_pass_through_affine_cells() {
     }
 }
 
-/// A body that heats up freely has no stress, however its cells are shaped: loads are integrated as the stiffness is.
+/// A body with free thermal expansion has no stress in cells of any shape, as loads are integrated like the stiffness.
 #[test]
 fn cells_of_any_shape_expand_without_stress() {
     for (mesh, side, head) in meshes(0.15) {
         let dim = mesh.dim;
         let corners: Vec<usize> = (0..mesh.points.len()).collect();
         let heat = "thermal = {expansion = 1e-5, temperature = 100}";
-        // Held where the expansion from the origin has no part: along the normal of nothing but points.
+        // Held where the expansion about the origin has no component: only points, along normals.
         let axes = ["x", "y", "z"].iter().take(dim);
         let held: String = axes.map(|x| format!("{x} = '1e-3*{x}'\n")).collect();
         let model = model(

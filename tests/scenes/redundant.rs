@@ -1,4 +1,4 @@
-//! Conditions that say what others or supports say already.
+//! Constraints that repeat other constraints or supports.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::support::scenes::{BODIES, JOINT, LOAD, SUPPORTS, model, two_block_sce
 use crate::support::solution::Solution;
 use crate::support::solver::solve;
 
-/// Forces by the tags of a condition's nodes, whichever comes first.
+/// Forces by the tags of a constraint's nodes in either order.
 fn forces(solution: &Solution) -> BTreeMap<[i64; 2], f64> {
     let mut sums = BTreeMap::new();
     for point in solution.points() {
@@ -21,7 +21,7 @@ fn forces(solution: &Solution) -> BTreeMap<[i64; 2], f64> {
     sums
 }
 
-/// A scene with the contact of another one beside its own, which no scene may have; a problem file may.
+/// A scene with the contact of another one in addition to its own, which no scene may have, but a problem file may.
 fn with_contact_of(scene: &str, other: &str) -> Model {
     let mut both = model(scene, two_blocks().mesh);
     let mut again = model(other, two_blocks().mesh).contacts.remove(0);

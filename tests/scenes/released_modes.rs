@@ -1,4 +1,4 @@
-//! Bodies that no contact force is left to hold: of all places where they may be, the nearest.
+//! Bodies released by all contacts: of all admissible positions they take the nearest.
 
 use contact_dd_partition::model::Model;
 
@@ -14,7 +14,7 @@ use crate::support::stress::judge::Findings;
 /// Cells along and across half of the lower block.
 const CELLS: [usize; 2] = [4, 4];
 
-/// A block without load on one whose bottom goes up by `rise`, `gap` apart.
+/// An unloaded block above one whose bottom moves up by `rise`, with the initial `gap`.
 fn on_a_lift(rise: f64, gap: f64) -> Model {
     with_cells(CELLS, rise, gap)
 }
@@ -53,11 +53,11 @@ fn moved_with_cells(
     y: f64,
 ) {
     let of_lower = ((2 * along + 1) * (across + 1)) as i64;
-    // Round-off grows with how much longer than wide cells are.
+    // Round-off grows with the slenderness of cells.
     let slender = 1.0_f64.max(along as f64 / across as f64 / 32.0);
     for (x, tag) in model.mesh.points.iter().zip(&model.mesh.node_tags) {
         let u = solution.displacement[tag];
-        // Both have nodes where they touch; those of the lower one come first.
+        // Nodes coincide where the blocks touch; those of the lower one come first.
         let on_upper = x[1] > 1.0 || (x[1] == 1.0 && *tag > of_lower);
         let expected = [0.0, if on_upper { y } else { rise }];
         for (u, e) in u.iter().zip(expected) {
@@ -84,7 +84,7 @@ fn a_body_without_load_stays_when_its_support_leaves() {
     }
 }
 
-/// So many conditions that active sets are fixed: where all are open, springs hold the upper block.
+/// So many constraints that fixed active sets are solved: where all are open, springs hold the upper block.
 #[test]
 fn a_body_stays_that_many_contacts_let_go() {
     let cells = [650, 2];
@@ -106,8 +106,8 @@ fn a_body_without_load_is_lifted_no_further_than_it_must() {
     }
 }
 
-/// Squeezed from both sides, which are divided unevenly: the sums of both loads differ by round-off,
-/// and so do their moments.
+/// Squeezed from both sides with different meshes: the resultants of the loads differ by round-off, and so do their
+/// moments.
 #[test]
 fn a_body_whose_load_is_in_balance_stays_where_it_is() {
     for (seed, gap) in [(1, 0.0), (2, 1e-5), (3, 0.3)] {
@@ -123,7 +123,7 @@ fn a_body_whose_load_is_in_balance_stays_where_it_is() {
             gap = {gap:e}"
         );
         let mut model = model(&text, blocks.mesh);
-        // Forces of a displacement: K u has no resultant but that of its round-off.
+        // Forces of a displacement: the resultant of K u is pure round-off.
         let stiffness = Assembled::new(&model);
         let mut random = Random::new(seed);
         let u: Vec<f64> = (model.mesh.node_tags.iter())
@@ -154,7 +154,7 @@ fn what_carries_force_is_not_loose() {
     assert!(!warnings.contains("no contact force"), "{warnings}");
 }
 
-/// A disc in a larger round hole turns freely: it doesn't, in whatever pieces it is solved.
+/// A disc in a larger round hole may rotate freely: it doesn't, in any number of subdomains.
 #[test]
 fn a_disc_in_a_hole_has_one_answer_in_any_number_of_subdomains() {
     let text = "

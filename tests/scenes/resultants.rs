@@ -1,4 +1,4 @@
-//! Forces and moments of the report, against statics.
+//! Forces and moments in the report, compared with equilibrium.
 
 use hdf5::File;
 use serde_json::Value;
@@ -21,8 +21,7 @@ fn named<'a>(solution: &'a Solution, list: &str, key: &str, name: &str) -> &'a V
     found.unwrap_or_else(|| panic!("{name} isn't in {entries:?}"))
 }
 
-/// The pressure 1e6 (1.95 − 1.9 x) on 0.5 ≤ x ≤ 1.5 presses with 0.05e6 in all; its moment about
-/// the origin is −∫ x p dx.
+/// The pressure 1e6 (1.95 − 1.9 x) on 0.5 ≤ x ≤ 1.5 has the resultant 0.05e6; its moment about the origin is −∫ x p dx.
 #[test]
 fn supports_and_contacts_carry_the_load() {
     let model = model(&two_block_scene(), two_blocks().mesh);
@@ -44,7 +43,7 @@ fn supports_and_contacts_carry_the_load() {
             "displacement[2] on 'upper left'",
         ));
         let slack = 1e-9 * 1e6;
-        // The joint is frictionless and level; side a is the upper block's.
+        // The joint is frictionless and horizontal; side a belongs to the upper block.
         close(joint[0], 0.0, slack);
         close(joint[1], force, slack);
         close(bottom[0], 0.0, slack);
@@ -63,8 +62,8 @@ fn supports_and_contacts_carry_the_load() {
     }
 }
 
-/// Two blocks that overlap in part, turned by an angle: a node at an end of the overlap hands over
-/// to its neighbour. What acts on the upper one is in balance, moments included.
+/// Two partly overlapping blocks, rotated by an angle: a node at an end of the overlap passes its part on to its
+/// neighbour. The forces on the upper block are in equilibrium, including moments.
 #[test]
 fn a_body_between_load_supports_and_contact_is_balanced() {
     for (n, x, angle) in [
@@ -147,7 +146,7 @@ fn reactions_balance_loads_in_any_number_of_subdomains() {
     }
 }
 
-/// A problem file from elsewhere needn't say which condition a support comes from.
+/// A problem file of another program may lack the boundary conditions of supports.
 #[test]
 fn supports_without_names_have_one_reaction() {
     let case = Case::of(&built_in_model("granite", 0), 8);
@@ -163,8 +162,8 @@ fn supports_without_names_have_one_reaction() {
     close(up, 3e6 * 10.0, 1e-9 * 3e8);
 }
 
-/// Above a bed joint of the wall are 18e3 × 1.25 × 0.125 N/m a course and the load of 50e3 × 1.25 N/m. Head
-/// joints press along x, as much as the pillars do on both ends.
+/// The load above a bed joint of the wall is 18e3 × 1.25 × 0.125 N/m per course and 50e3 × 1.25 N/m. Head joints press
+/// along x, with the force of the pillars at both ends.
 #[test]
 fn the_joints_of_the_wall_carry_what_is_above_them() {
     let solution = solve(&built_in_model("wall", 0), 33);
@@ -177,7 +176,7 @@ fn the_joints_of_the_wall_carry_what_is_above_them() {
         let [x, y, moment] = force(&format!("bed joint {below}"));
         close(x, 0.0, slack);
         close(y, load + f64::from(6 - below) * course, slack);
-        // The wall is its own mirror image.
+        // The wall is symmetric.
         close(moment, 0.625 * y, slack);
     }
     let pillars = resultant(named(
@@ -189,9 +188,9 @@ fn the_joints_of_the_wall_carry_what_is_above_them() {
     close(pillars[0], 0.0, slack);
 }
 
-/// Flanks press along the line of action, a tangent of the base circle: P r_b = M. The largest pressure of
-/// each pair is Hertz's with its own force and radii, r₁ sin α ± s and r₂ sin α ∓ s at half a base pitch s
-/// from the pitch point, and moments are as numbers of teeth.
+/// Flanks press along the line of action, a tangent of the base circle: P r_b = M. The largest pressure of each pair
+/// follows from Hertz with its force and radii, r₁ sin α ± s and r₂ sin α ∓ s at half a base pitch s from the pitch
+/// point, and moments are proportional to numbers of teeth.
 #[test]
 fn gears_transmit_the_torque_and_press_as_hertz_says() {
     let solution = solve(&built_in_model("gears", 0), 8);

@@ -29,7 +29,7 @@ materials.rock = {young = 20e9, poisson = 0.25}
 bodies.block.material = 'rock'
 ";
 
-/// A symmetric stress with no special direction (Pa): XX YY ZZ XY YZ XZ.
+/// A general symmetric stress (Pa): XX YY ZZ XY YZ XZ.
 const STRESS: [f64; 6] = [1e6, -2e6, 3e6, 0.5e6, -0.7e6, 0.9e6];
 
 /// σ n.
@@ -59,7 +59,7 @@ fn is_near(found: &[f64], expected: &[f64], slack: f64) {
     (found.iter().zip(expected)).for_each(|(a, b)| close(*a, *b, slack));
 }
 
-/// The tractions of a stress on the faces of a turned cube.
+/// The tractions of a stress on the faces of a rotated cube.
 fn tractions(stress: [f64; 6]) -> String {
     let faces = (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]);
     let face = |(axis, end): (usize, usize)| {
@@ -81,7 +81,7 @@ fn a_uniform_stress_passes_through_a_free_body_of_any_cells_in_any_position() {
         for count in [1, 4] {
             let solution = solve(&model, count);
             solution.check_stress(STRESS, 1e-10 * 3e6);
-            // What is fixed is the mean over the nodes, without rotation in the mean: u − ε x is rigid.
+            // The average displacement and rotation of the nodes are fixed: u − ε x is a rigid-body motion.
             let (mut moved, mut turned) = ([0.0; 3], [0.0; 3]);
             let mut at = Vec::new();
             for (tag, &x) in model.mesh.node_tags.iter().zip(&model.mesh.points) {
@@ -95,7 +95,7 @@ fn a_uniform_stress_passes_through_a_free_body_of_any_cells_in_any_position() {
             }
             let (x0, u0) = at[0];
             for (x, u) in &at {
-                // A rigid motion moves no two points towards each other.
+                // A rigid-body motion preserves distances.
                 let (way, change) = (advance(*x, -1.0, x0), advance(*u, -1.0, u0));
                 assert!(dot(way, change).abs() < 1e-14, "{kind:?}");
             }
@@ -104,7 +104,7 @@ fn a_uniform_stress_passes_through_a_free_body_of_any_cells_in_any_position() {
     }
 }
 
-/// Two blocks on a floor, both pressed from above and aside.
+/// Two blocks on a floor, both under pressure from above and from the side.
 const PRESSED: &str = "
 materials.rock = {young = 20e9, poisson = 0.25}
 bodies.lower.material = 'rock'
@@ -122,7 +122,7 @@ name = 'joint'
 sides = ['lower z1', 'upper z0']
 ";
 
-/// Two blocks that meet in an inclined face, all cells irregular.
+/// Two blocks that meet in an inclined face, in irregular cells.
 fn two_blocks(kind: ElementKind, upper: [usize; 3]) -> Mesh {
     let joint = |x: f64, y: f64| 0.9 + 0.2 * x - 0.1 * y;
     let lower = shaken(solid("lower", kind, [3, 2, 2], |x| x), 0.015);
@@ -137,7 +137,7 @@ fn uniform_compression_goes_through_contacts_of_any_cells_in_any_position() {
     let floor = "[[contact]]\nname = 'floor'\nsides = ['lower z0']\n";
     let normal = turned([0.0, 0.0, 1.0]);
     let floor = format!("{floor}obstacle = {{point = [0, 0, 0], normal = {normal:?}}}\n");
-    // All three pressures the same: the joint may be inclined.
+    // With three equal pressures the joint may be inclined.
     let text = format!("{}{floor}", PRESSED.replace("2e6", "1e6"));
     let strain = -1e6 * (1.0 - 2.0 * POISSON) / YOUNG;
     for kind in SOLIDS {
@@ -164,7 +164,7 @@ fn uniform_compression_goes_through_contacts_of_any_cells_in_any_position() {
 
 #[test]
 fn quadratic_cells_bend_exactly() {
-    // Pure bending about y: u = κ (x z, 0, −x²/2) + ν κ (0, −y z, …) without any load but moments at the ends.
+    // Pure bending about y: u = κ (x z, 0, −x²/2) + ν κ (0, −y z, …) under moments at the ends only.
     let k = 1e-4;
     let exact = |[x, y, z]: [f64; 3]| {
         [
@@ -205,7 +205,7 @@ value = ['20e9*1e-4*z', '0', '0']
 
 #[test]
 fn a_body_that_nothing_holds_turns_about_an_axis() {
-    // Held at one edge against translations, pushed so that it turns about it.
+    // Held at one edge against translations, with a load that rotates it about the edge.
     let text = format!(
         "{BODY}
 [[displacement]]
@@ -220,7 +220,7 @@ value = [1e6, 0, 0]
     );
     let mesh = solid("block", Hexahedron8, [2, 2, 2], |x| x);
     solve(&model(&text, mesh.clone()), 2);
-    // On rollers below, pushed round: it turns about z.
+    // On rollers below, with a load that rotates it about z.
     let text = format!(
         "{BODY}
 [[bilateral]]
@@ -244,7 +244,7 @@ value = [0, -1e6, 0]
     }
 }
 
-/// Support that makes a scene in space a plane one: nothing moves along z.
+/// Supports that make a scene in space a plane one, without displacement along z.
 const FLAT: &str = "
 [[bilateral]]
 on = ['lower back', 'lower front', 'upper back', 'upper front']
@@ -262,7 +262,8 @@ fn an_extruded_scene_is_that_of_plane_strain() {
         let heights = [0.0, 0.3];
         let mesh = extruded(&plane, &heights).unwrap();
         assert!(mesh.cells.iter().all(|(kind, _)| kind == solid));
-        // The conditions on faces of eight nodes are others than on lines of three: alike where all are closed.
+        // The constraints on faces of eight nodes differ from those on lines of three; the solutions agree where all
+        // are closed.
         let all_closed = solid == Hexahedron20;
         let text = match all_closed {
             true => two_block_scene().replace("1.95-1.9*x", "1.2-0.2*x"),
@@ -276,7 +277,7 @@ fn an_extruded_scene_is_that_of_plane_strain() {
         let (flat, deep) = (solve(&in_plane, 6), solve(&in_space, 6));
         let size = flat.largest_displacement();
         let key = |x: [f64; 3]| [x[0], x[1]].map(f64::to_bits);
-        // Two nodes on the joint are in one place.
+        // Two nodes on the joint coincide.
         let mut of_plane: HashMap<_, Vec<[f64; 3]>> = HashMap::new();
         for (tag, &x) in in_plane.mesh.node_tags.iter().zip(&in_plane.mesh.points) {
             of_plane

@@ -21,7 +21,7 @@ materials.rock = {young = 20e9, poisson = 0.0}
 bodies.block.material = 'rock'
 ";
 
-/// A column on a foundation under pressure: u_y = −p/k − p y/E, whatever its cells are.
+/// A column on a foundation under pressure: u_y = −p/k − p y/E, in any cells.
 #[test]
 fn a_column_on_a_foundation_sinks_as_a_whole() {
     let (p, k, young) = (1e6, 4e8, 20e9);
@@ -52,7 +52,7 @@ value = {p}"
     }
 }
 
-/// A beam on springs at its ends under a force off its middle: statics says what each end carries.
+/// A beam on springs at its ends under an eccentric force: equilibrium determines the force at each end.
 #[test]
 fn a_beam_on_springs_at_points_is_a_lever() {
     let plane = Blocks::new()
@@ -99,7 +99,7 @@ total = [0.0, {force}, 0.0]"
     }
 }
 
-/// A body that springs alone hold presses one that supports hold: they share the load as springs do.
+/// A body held only by springs presses on one held by supports: they share the load by their stiffnesses.
 #[test]
 fn springs_and_contact_share_a_load() {
     let (k, p) = (5e9, 1e6);
@@ -143,7 +143,8 @@ value = {p}"
     close(of_contact[0], of_contact[1], 1e-9 * p);
 }
 
-/// A block on a foundation, and one that it bears with friction on springs at its sides, pushed aside in the second step.
+/// A block on a foundation, and another one with friction on top of it with springs at its sides, sheared in the second
+/// step.
 #[test]
 fn ranks_and_solvers_make_no_difference() {
     let text = format!(

@@ -55,7 +55,7 @@ fn the_judge_finds_every_kind_of_fault() {
         let closed = points.iter_mut().find(|point| point.closed).unwrap();
         closed.closed = false;
     });
-    // All of one body alike: the other is met, or left.
+    // All points of one body are changed equally: the other body is penetrated, or released.
     for (name, by) in [("penetration", -1e-6), ("complementarity", 1e-6)] {
         found(name, &|solution| {
             for u in solution.displacement.values_mut().skip(17 * 9) {
@@ -68,7 +68,7 @@ fn the_judge_finds_every_kind_of_fault() {
     });
 }
 
-/// The same blocks under other loads and supports, as somebody with a pencil would judge them.
+/// The same blocks with other loads and supports, whose equilibrium can be decided by hand.
 #[test]
 fn the_linear_program_knows_what_stands_and_what_falls() {
     let held = SUPPORTS;
@@ -106,7 +106,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// One that has no equilibrium is answered by the message that says so.
+    /// Scenes without equilibrium are to end with the message about it.
     #[test]
     fn a_random_scene_is_answered_rightly(seed in 0_u64..1_000_000) {
         let (verdict, why) = judged(draw(seed, 4));
@@ -120,7 +120,7 @@ proptest! {
     }
 }
 
-/// The round-off of stiff bodies is more than the tolerance of the sweeps.
+/// The round-off of stiff bodies exceeds the tolerance of the sweeps.
 #[test]
 fn newton_gives_up_where_it_gets_no_further() {
     for seed in [193, 475] {
@@ -149,8 +149,9 @@ fn random_scenes_in_space_with_friction_are_answered_rightly() {
     }
 }
 
-/// Points that slip beside stiff bodies, where refinement changes slips by more than round-off, and forces have to turn
-/// with them (8), or supports leave one direction (225); and what sticks although several contacts hold it (67, 260).
+/// Slipping points of stiff bodies, where refinement changes slips by more than round-off, and the direction of forces
+/// has to follow (8), or where supports leave one direction (225); and sticking points held by several contacts (67,
+/// 260).
 #[test]
 fn refinement_in_space_keeps_the_law_of_friction() {
     for seed in [8, 67, 225, 260] {
@@ -161,7 +162,7 @@ fn refinement_in_space_keeps_the_law_of_friction() {
     }
 }
 
-/// Nothing acts on them: gaps of round-off would press them together, by forces that are nothing else.
+/// Unloaded bodies: gaps that are round-off would press them together, with forces that are pure round-off.
 #[test]
 fn what_touches_in_space_without_a_load_stays_where_it_is() {
     for seed in [281, 305, 395, 425] {
@@ -170,7 +171,7 @@ fn what_touches_in_space_without_a_load_stays_where_it_is() {
     }
 }
 
-/// In some of them what one contact group ties another one ties to others.
+/// In some of them one contact group ties an unknown to unknowns of another group, which are themselves tied.
 #[test]
 fn random_scenes_are_answered_rightly_by_iteration_between_clusters() {
     for seed in 0..16 {
@@ -181,35 +182,35 @@ fn random_scenes_are_answered_rightly_by_iteration_between_clusters() {
     }
 }
 
-/// The verdict on a scene, and what to say of it.
+/// The verdict on a scene, and its description.
 fn judged(drawn: Drawn) -> (Verdict, String) {
     judged_between(drawn, Interface::Chosen)
 }
 
-/// The same with an interface solver.
+/// The verdict with a given interface solver.
 fn judged_between(mut drawn: Drawn, interface: Interface) -> (Verdict, String) {
-    // Tests of several ranks stand elsewhere.
+    // Runs on several ranks are tested elsewhere.
     drawn.ranks = 0;
     let trial = Trial::with(&drawn, built(), LIMIT, None, interface);
     let why = format!("{}\n{}", trial.reason, drawn.described());
     (trial.verdict, why)
 }
 
-/// The generator draws inner nodes that are moved, where one side of a block is far shorter than its opposite.
+/// The generator moves inner nodes, also where one side of a block is far shorter than its opposite.
 #[test]
 fn a_block_whose_inner_nodes_are_moved_does_not_fold() {
     draw(685_175, 12);
 }
 
-/// A strip 6,000 times as long as thick, which bends so easily that pivots of its matrix are round-off.
+/// A strip 6,000 times as long as thick, so flexible that pivots of its matrix are round-off.
 #[test]
 fn what_bends_with_next_to_no_force_is_not_said_to_move() {
     let (verdict, why) = judged(draw(688_391, 12));
     assert_eq!(verdict, Verdict::Right, "{why}");
 }
 
-/// The residual of the sweeps is round-off of bodies that lie far from where they would touch, or of stiff ones, and
-/// refinement takes it off.
+/// The residual of the sweeps is round-off of bodies far from their contact position, or of stiff ones, and refinement
+/// removes it.
 #[test]
 fn what_round_off_keeps_sweeps_from_is_found_by_refinement() {
     for seed in [685_154, 696_382] {

@@ -1,4 +1,4 @@
-//! Bodies and contacts that come and go: every load step has the solution of what is there.
+//! Activation and deactivation of bodies and contacts: every load step has the solution of its active parts.
 
 mod exact;
 
@@ -16,14 +16,14 @@ use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, problem, solve_steps};
 
-/// The nodes of the bodies that aren't there in step k.
+/// The nodes of the absent bodies in step k.
 fn absent_nodes(model: &Model, k: usize) -> BTreeSet<u32> {
     let cells = model.mesh.cells.iter().zip(&model.cell_body);
     let absent = cells.filter(|(_, body)| model.steps[k].absent_bodies.contains(body));
     absent.flat_map(|((_, nodes), _)| nodes.to_vec()).collect()
 }
 
-/// Presence of contacts in step k.
+/// For each contact whether it is active in step k.
 fn is_there(model: &Model, k: usize) -> Vec<bool> {
     let absent = absent_nodes(model, k);
     let of_contact = |(c, contact): (u32, &contact_dd_partition::model::Contact)| {
@@ -34,8 +34,8 @@ fn is_there(model: &Model, k: usize) -> Vec<bool> {
     (0..).zip(&model.contacts).map(of_contact).collect()
 }
 
-/// Fails unless every step is the monolithic solution of what is there: absent bodies held everywhere, absent contacts
-/// left out, and those that came closed at the jump that their sides had in the step before.
+/// Fails unless every step is the monolithic solution of its active parts: absent bodies fixed everywhere, absent
+/// contacts left out, and added ones closed at the jump of their sides in the previous step.
 #[track_caller]
 fn agrees(model: &Model, solutions: &[Solution]) {
     let dim = model.mesh.dim;
@@ -113,7 +113,7 @@ fn solved(model: &Model, count: usize, args: &[&str]) -> Vec<Solution> {
     steps
 }
 
-/// The upper block is put on the lower one when that is deformed, loaded, and taken away.
+/// The upper block is added on the deformed lower one, loaded, and removed.
 const COMES_AND_GOES: &str = "
 [[step]]
 body_force = { lower = [0.0, -1e6] }
@@ -204,8 +204,8 @@ fn bodies_come_and_go_around_an_axis_and_in_space() {
     agrees(&solids, &solved(&solids, 4, &[]));
 }
 
-/// Without a load of its own what is put on deformed bodies carries nothing, and they don't feel it; it sticks where it is
-/// put.
+/// Without loads a body added on deformed ones carries no force and has no effect on them; it sticks at the position at
+/// which it is added.
 #[test]
 fn what_comes_without_load_has_no_stress() {
     for law in ["", "friction = 0.5", "tresca = 1e5"] {
@@ -278,7 +278,7 @@ fn contacts_are_switched_by_themselves() {
     assert_eq!(closed, [true, false, true, true]);
 }
 
-/// Friction isn't affected by a body that comes and goes elsewhere.
+/// Friction isn't affected by activation and deactivation of a body elsewhere.
 #[test]
 fn friction_goes_on_where_something_else_comes_and_goes() {
     let friction = JOINT.replace("name", "friction = 0.3\nname");
@@ -348,7 +348,7 @@ fn what_is_left_has_to_hold() {
     assert_eq!(case.files(), ["problem.h5"]);
 }
 
-/// A file that says so of a body that isn't there and is loaded is refused.
+/// A file with a loaded absent body is refused.
 #[test]
 fn nothing_may_act_on_what_is_not_there() {
     let text = format!("{BODIES}{SUPPORTS}{LOAD}{JOINT}[[step]]\n[[step]]");

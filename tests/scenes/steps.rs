@@ -1,4 +1,4 @@
-//! Load steps: each has the solution of its own loads, whatever came before.
+//! Load steps: each has the solution of its own loads, independent of earlier steps.
 
 use contact_dd_partition::model::Model;
 
@@ -11,7 +11,7 @@ use crate::support::scenes::{
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
-/// Up and down, other loads, others' sign, and the loads of the first step again.
+/// Increasing and decreasing, other loads, the opposite sign, and the loads of the first step again.
 const STEPS: &str = "
 [[step]]
 name = 'a little'
@@ -46,8 +46,7 @@ fn solved(model: &Model, count: usize, args: &[&str]) -> Vec<Solution> {
     steps
 }
 
-/// Fails unless every step has the solution that the reference finds for its loads alone; returns the
-/// numbers of closed conditions.
+/// Fails unless every step has the reference's solution for its loads alone; returns the numbers of closed constraints.
 #[track_caller]
 fn agrees(model: &Model, count: usize, args: &[&str]) -> Vec<usize> {
     let steps = solved(model, count, args);
@@ -63,7 +62,7 @@ fn every_step_is_the_monolithic_solution_of_its_own_loads() {
     let two = model(&format!("{}{STEPS}", two_block_scene()), two_blocks().mesh);
     for method in ["newton", "anderson"] {
         let closed = agrees(&two, 6, &["--method", method, "--tolerance", "1e-12"]);
-        // Scaling loads changes no contact; the others do.
+        // Scaling the loads changes no contact status; the other steps do.
         assert_eq!((closed[0], closed[0]), (closed[1], closed[4]));
         assert!(
             closed[2] != closed[0] && closed[3] != closed[0],
@@ -123,8 +122,8 @@ fn constants_of_normal_jumps_follow_the_steps() {
     agrees(&model(&text, two_blocks().mesh), 4, &[]);
 }
 
-/// The corner of a block lies in that of two walls, across which a third one stands: three conditions on
-/// a node, of which the tightest ones become unknowns. Which these are changes with the closing motion.
+/// The corner of a block lies in that of two walls and on a third one across: three constraints on a node, of which the
+/// tightest ones become unknowns. Which ones these are changes with the closing motion.
 #[test]
 fn conditions_that_depend_on_others_follow_the_steps() {
     let blocks = Blocks::new().rectangle("block", [0.01, 1.01], [0.02, 1.02], [8, 8]);
@@ -153,7 +152,7 @@ fn conditions_that_depend_on_others_follow_the_steps() {
     alike(&model(&text, blocks.mesh), 4);
 }
 
-/// Fails unless every step has the contact forces and gaps that its loads alone lead to.
+/// Fails unless every step has the contact forces and gaps of its loads alone.
 #[track_caller]
 fn alike(model: &Model, count: usize) {
     for (k, solution) in solved(model, count, &[]).iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Strains that are no small ones any more are said, with where they are.
+//! Large strains are reported, with their position.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Hexahedron20, Tetrahedron10};
 
@@ -22,7 +22,7 @@ fn said(text: &str, mesh: contact_dd_partition::mesh::Mesh, args: &[&str]) -> Ve
         .collect()
 }
 
-/// u_x = s (x + x²/2) at all nodes, so that the largest strain, of about s (1 + x), is that of the cells at x = 1.
+/// u_x = s (x + x²/2) at all nodes, so that the largest strain, of about s (1 + x), is in the cells at x = 1.
 fn stretched(strain: f64, others: &str) -> String {
     format!(
         "materials.rubber = {{young = 1e6, poisson = 0.3}}
@@ -79,7 +79,7 @@ fn strains_of_space_and_around_an_axis_are_said_in_their_load_step_alone() {
             "{words:?}"
         );
     }
-    // The hoop of a ring that is moved outwards by 0.1 m: 0.1/(1 + 0.1/3) in its innermost triangle.
+    // Hoop strain of a ring displaced outwards by 0.1 m: 0.1/(1 + 0.1/3) in its innermost triangle.
     let blocks = Blocks::new().rectangle("block", [1.0, 2.0], [0.0, 0.1], [10, 1]);
     let text = "plane = 'axisymmetric'\nmaterials.rubber = {young = 1e6, poisson = 0.3}
         bodies.block.material = 'rubber'
@@ -92,6 +92,6 @@ fn strains_of_space_and_around_an_axis_are_said_in_their_load_step_alone() {
         words[0].contains("strains of up to 0.09677 at (1.033,"),
         "{words:?}"
     );
-    // Without stresses there are no strains to look at.
+    // Without stresses, strains aren't computed.
     assert!(said(text, blocks.mesh, &["--no-stress"]).is_empty());
 }

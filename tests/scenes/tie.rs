@@ -31,7 +31,7 @@ name = 'weld'
 sides = ['upper bottom', 'lower top']
 ";
 
-/// Support of the lower block, and loads that pull, shear and bend the upper one.
+/// Support of the lower block, and tension, shear and bending of the upper one.
 const LOADED: &str = "
 [[displacement]]
 on = 'lower bottom'
@@ -45,7 +45,7 @@ on = 'upper right'
 value = '1e6*y'
 ";
 
-/// Fails unless two solutions have the same displacements where they have nodes in common places.
+/// Fails unless two solutions have the same displacements at coincident nodes.
 #[track_caller]
 fn same_displacements(one: (&Model, &Solution), other: (&Model, &Solution), slack: f64) {
     let scale = one.1.largest_displacement();
@@ -68,7 +68,7 @@ fn same_displacements(one: (&Model, &Solution), other: (&Model, &Solution), slac
     }
 }
 
-/// A tie of sides whose nodes match is what the same mesh is where it shares these nodes, of all kinds of cells.
+/// A tie of matching sides is equivalent to merging their nodes, in all kinds of cells.
 #[test]
 fn sides_that_match_are_as_if_they_shared_nodes() {
     let two = Blocks::new()
@@ -101,7 +101,7 @@ fn rows(model: &Model) -> Vec<Vec<(usize, f64)>> {
     (0..dim).flat_map(of_axis).collect()
 }
 
-/// The same system with a multiplier for every component of every jump, solved as a whole.
+/// The system of the whole mesh with a multiplier for every component of every jump.
 #[test]
 fn a_tie_is_what_lagrange_multipliers_make_of_the_whole_mesh() {
     let mesh = Blocks::new()
@@ -119,7 +119,7 @@ fn a_tie_is_what_lagrange_multipliers_make_of_the_whole_mesh() {
     }
 }
 
-/// The force of a tie is what the load beyond it asks for.
+/// The force of a tie balances the loads beyond it.
 #[test]
 fn a_tie_carries_what_acts_beyond_it() {
     let mesh = Blocks::new()
@@ -141,10 +141,10 @@ value = [2e6, 3e6]
     let weld = &solution.report["contacts"][0];
     assert_eq!(weld["name"], "weld");
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
-    // What the lower block does to the upper one, side a.
+    // The force of the lower block on the upper one, side a.
     close(number(&weld["force"][0]), -2e6, 1e-8 * 2e6);
     close(number(&weld["force"][1]), -3e6, 1e-8 * 2e6);
-    // Around the origin: that of the traction, 1 m over the tie, is carried, too.
+    // The moment about the origin: it includes that of the traction, 1 m above the tie.
     let moment = -(0.5 * 3e6 - 2.0 * 2e6);
     close(number(&weld["moment"][2]), moment, 1e-8 * 2e6);
     assert!(
@@ -159,7 +159,7 @@ value = [2e6, 3e6]
     );
 }
 
-/// Any number of ranks has the same bits, and both solvers the same answer.
+/// The solution has the same bits on any number of ranks, and both solvers agree.
 #[test]
 fn ranks_and_solvers_make_no_difference() {
     let mesh = Blocks::new()

@@ -1,4 +1,4 @@
-//! Contacts that are found wherever bodies touch give the answers of those that are told by their sides.
+//! Automatically detected contacts have the solutions of contacts declared by their sides.
 
 use contact_dd_partition::element::ElementKind::{self, Hexahedron8, Tetrahedron4, Tetrahedron10};
 use contact_dd_partition::mesh::Mesh;
@@ -12,7 +12,7 @@ use crate::support::solver::{Case, solve};
 use crate::support::sorts::sort;
 use crate::support::statics::reaction;
 
-/// Fails unless two solutions have the same displacements but for `slack`, relative to the largest.
+/// Fails unless two solutions have the same displacements within `slack`, relative to the largest.
 #[track_caller]
 fn move_the_same(found: &Solution, explicit: &Solution, slack: f64) {
     let size = explicit.largest_displacement();
@@ -22,7 +22,7 @@ fn move_the_same(found: &Solution, explicit: &Solution, slack: f64) {
     }
 }
 
-/// The forces of all points by their nodes, whichever side these are on.
+/// The forces of all points by their nodes, in either order of the sides.
 fn forces(solution: &Solution) -> Vec<([i64; 2], f64)> {
     let mut forces: Vec<([i64; 2], f64)> = (solution.points())
         .map(|point| {
@@ -35,7 +35,7 @@ fn forces(solution: &Solution) -> Vec<([i64; 2], f64)> {
     forces
 }
 
-/// A scene with one table for all its contacts of two sides, with these keys.
+/// A scene with one table that detects all its contacts of two sides, with these keys.
 fn without_sides(scene: &str, keys: &str) -> String {
     let tables = scene
         .split("\n[[")
@@ -74,8 +74,8 @@ fn built_in_scenes_are_solved_the_same() {
     }
 }
 
-/// Two blocks beside each other under a third, and a fourth on which all three lean, pressed down and aside: nothing
-/// matches. With its explicit contacts, whose side a is that of the name that comes first.
+/// Two blocks beside each other under a third one, and a fourth one in contact with all three, under pressure and
+/// shear, with non-matching meshes; with explicit contacts, whose side a belongs to the body whose name comes first.
 fn heap(kind: ElementKind, [a, b, c, d]: [&str; 4]) -> (String, Mesh) {
     let mesh = [
         solid(a, kind, [3, 2, 2], between([0.0; 3], [1.0, 1.0, 0.5])),
@@ -118,7 +118,7 @@ fn heap(kind: ElementKind, [a, b, c, d]: [&str; 4]) -> (String, Mesh) {
         [(c, "y1"), (d, "y0")],
     ];
     touching.iter_mut().for_each(|pair| pair.sort_unstable());
-    // In the order in which they are found.
+    // In the order of detection.
     touching.sort_unstable_by_key(|pair| pair.map(|(body, _)| body));
     for [(first, on_first), (second, on_second)] in touching {
         text += &format!(
@@ -142,7 +142,7 @@ fn blocks_in_space_that_do_not_match_are_solved_the_same() {
         // The integrals over polygons are summed in another order.
         let [solution, expected] = [&found, &explicit].map(|model| solve(model, 5));
         move_the_same(&solution, &expected, 1e-11);
-        // Which of two near nodes carries a force is less certain than how much the contact does.
+        // The distribution of a force between two close nodes is less accurate than the total force of the contact.
         for (one, other) in found.contacts.iter().zip(&explicit.contacts) {
             let [one, other] = [(&solution, one), (&expected, other)]
                 .map(|(solution, contact)| reaction(&solution.contacts[&contact.name]));
@@ -151,7 +151,7 @@ fn blocks_in_space_that_do_not_match_are_solved_the_same() {
     }
 }
 
-/// Two blocks of quadratic cells whose meshes don't match, on a dome; the upper one `clearance` above the lower one.
+/// Two blocks of quadratic cells with non-matching meshes, on a dome; the upper one is `clearance` above the lower one.
 fn dome(clearance: f64) -> Mesh {
     let bent = |[x, y, z]: [f64; 3]| [x, y, z - 0.3 * (x * x + y * y)];
     let lower = solid(
@@ -174,7 +174,7 @@ name = 'c'
 between = 'all'
 ";
 
-/// A pin in half a hole, 0.05 m larger in radius, of quadratic cells whose edges run aslant and are curved all ways.
+/// A pin in half a hole, 0.05 m larger in radius, of quadratic cells with oblique and curved edges.
 fn twisted_pin() -> Mesh {
     let turned = |twist: f64| {
         move |[s, t, r]: [f64; 3]| {
@@ -209,7 +209,7 @@ fn a_curved_pin_with_a_clearance_is_not_said_to_overlap_or_to_part() {
     );
 }
 
-/// Puts the nodes on edges in the middle of their chords.
+/// Moves the nodes on edges to the middle of their chords.
 fn straightened(mut mesh: Mesh) -> Mesh {
     for e in 0..mesh.cells.len() {
         let nodes = mesh.cells.nodes_of(e).to_vec();

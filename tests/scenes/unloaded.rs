@@ -1,4 +1,4 @@
-//! Load steps without load, after others with some: what is left is round-off of those, and no failure.
+//! Unloaded load steps after loaded ones: the solution is round-off of these, without failure.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron4};
 use contact_dd_partition::model::Model;
@@ -11,7 +11,7 @@ use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::Case;
 
-/// On, off, on again, off.
+/// Loaded, unloaded, loaded again, unloaded.
 const STEPS: &str = "
 [[step]]
 [[step]]
@@ -23,7 +23,7 @@ name = 'off again'
 scale = 0
 ";
 
-/// Solves the steps in one subdomain and in several; all of them converge. Of the last ones.
+/// Solves the steps in one subdomain and in several, where all have to converge; returns the steps of the last run.
 #[track_caller]
 fn solved(text: &str, model: &Model) -> Vec<Solution> {
     let mut all = Vec::new();
@@ -38,7 +38,7 @@ fn solved(text: &str, model: &Model) -> Vec<Solution> {
     all
 }
 
-/// Two solids on each other, with friction, of which the upper one is held by nothing else.
+/// Two solids on top of each other, with friction, where the upper one is held only by contact.
 fn solids(
     kind: contact_dd_partition::element::ElementKind,
 ) -> (String, contact_dd_partition::mesh::Mesh) {
@@ -84,7 +84,7 @@ fn a_step_without_load_is_solved_after_others() {
     }
     let rough = two_block_scene().replacen("[[contact]]\n", "[[contact]]\nfriction = 0.3\n", 1);
     scenes.push((rough, two_blocks().mesh));
-    // The upper one is held by friction alone.
+    // The upper one is held only by friction.
     let free = format!("{BODIES}{HELD}{LOAD}{JOINT}friction = 0.3\n").replace("1.95-1.9*x", "0.5");
     scenes.push((free, two_blocks().mesh));
     for (text, mesh) in scenes {
@@ -93,21 +93,21 @@ fn a_step_without_load_is_solved_after_others() {
         let steps = solved(&text, &model);
         let most = [0, 1, 3].map(|k| steps[k].largest_force());
         if text.contains("friction") {
-            // What is locked in stays in balance, and the law holds it.
+            // Locked-in forces stay in equilibrium, within the law of friction.
             for k in [1, 3] {
                 check_locked_in(&steps[k], most[0], &text);
             }
             continue;
         }
-        // Nothing presses that nothing loads, nothing is displaced, and the second time is as the first one.
+        // Without loads there are no forces and no displacements, and the second time equals the first.
         assert!(most[1].max(most[2]) <= 1e-9 * most[0], "{most:?}\n{text}");
         let far = [0, 1, 3].map(|k| steps[k].largest_displacement());
         assert!(far[1].max(far[2]) <= 1e-9 * far[0], "{far:?}\n{text}");
     }
 }
 
-/// That the forces of a step without load are held by the law of friction, and balance: what contacts and supports exert
-/// sums up to nothing, as nothing else acts; `most` is the largest force of a step with load (N).
+/// Checks that the forces of an unloaded step fulfil the law of friction and are in equilibrium: the forces of contacts
+/// and supports sum up to zero without other loads; `most` is the largest force of a loaded step (N).
 #[track_caller]
 fn check_locked_in(step: &Solution, most: f64, text: &str) {
     step.check_certificate();
@@ -130,7 +130,7 @@ fn check_locked_in(step: &Solution, most: f64, text: &str) {
         );
         assert!(point.force * point.gap <= 1e-12 * most, "{point:?}\n{text}");
     }
-    // A body that nothing but one contact touches is in balance by that alone.
+    // A body with a single contact is in equilibrium under that contact alone.
     for contact in step.report["contacts"].as_array().unwrap() {
         let force = contact["force"].as_array().unwrap();
         let size = |part: &serde_json::Value| part.as_f64().unwrap().abs();
@@ -142,7 +142,8 @@ fn check_locked_in(step: &Solution, most: f64, text: &str) {
     }
 }
 
-/// A position that contact leaves open is the nearest one whatever came before: without friction a step is as it is alone.
+/// A position that contact doesn't determine is the nearest one, independent of earlier steps: without friction a step
+/// has the solution that it has alone.
 #[test]
 fn what_a_step_leaves_without_load_is_where_it_is_without_earlier_steps() {
     let (text, mesh) = built_in("rollers", 0);
@@ -170,8 +171,8 @@ fn what_a_step_leaves_without_load_is_where_it_is_without_earlier_steps() {
     }
 }
 
-/// Bodies that are unheld, and that nothing loads, lie anywhere; what round-off does to them is nothing that keeps the others
-/// from their solution.
+/// The position of unloaded bodies without supports is arbitrary; their round-off must not affect the solution of the
+/// others.
 #[test]
 fn one_body_is_loaded_among_others_that_nothing_holds() {
     let (text, mesh) = built_in("rollers", 0);

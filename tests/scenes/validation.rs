@@ -1,4 +1,4 @@
-//! Scenes with exact answers: errors and observed orders, the short form of docs/validation.md.
+//! Scenes with exact solutions: errors and observed orders, the short form of docs/validation.md.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron20, Hexahedron27};
 
@@ -85,7 +85,7 @@ fn a_ball_on_a_ball_whose_curved_sides_do_not_match_presses_as_hertz_says() {
     space::balls().check();
 }
 
-/// Where a side ends before the other does, some facets are partly covered.
+/// Where a side ends before the other one, some facets are partly covered.
 #[test]
 fn no_point_of_curved_sides_is_much_nearer_to_the_other_side_than_its_place() {
     for kind in [Hexahedron20, Hexahedron27] {
@@ -155,12 +155,12 @@ fn the_default_tolerance_leaves_the_error_to_the_mesh() {
                 "{usual:e}, {of_mesh:e}"
             );
         }
-        // Where these sweeps ended, without the refinement that follows.
+        // A run limited to these sweeps, without the subsequent refinement.
         let sweeps = Solution::read(&case.result()).sweeps().to_string();
         let limits = ["--max-sweeps", &sweeps, "--tolerance", "1e-300"];
         let code = case.run(&[&slow[..], &limits].concat()).code();
         let solution = Solution::read(&case.result());
-        // The last sweep may have left nothing but round-off, which is as far as sweeps go.
+        // If the last sweep's residual is pure round-off, further sweeps have no effect.
         let residual = solution.report["interface_residual"].as_f64().unwrap();
         assert_eq!(code, if residual <= 1e-15 { 0 } else { 3 });
         let stopped = error(&solution);

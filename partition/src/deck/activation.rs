@@ -1,16 +1,16 @@
-//! Bodies and contacts of each step, in the words of the scene.
+//! Activation of bodies and contacts in each step, in the syntax of the scene.
 
 use std::collections::BTreeSet;
 
 use super::document::{Document, quoted};
 
-/// A body, contact or equation that isn't there in all steps.
+/// A body, contact or equation that isn't active in all steps.
 pub(super) struct Activation {
     pub(super) name: String,
     pub(super) steps: Vec<bool>,
 }
 
-/// Writes activations and deactivations of a step.
+/// Writes the activations and deactivations of a step.
 pub(super) fn write(all: &[Activation], step: usize, document: &mut Document) {
     for (key, comes) in [("add", true), ("remove", false)] {
         let changes = |of: &&Activation| match step.checked_sub(1) {

@@ -5,15 +5,15 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
-/// A factor over time, linear between its points.
+/// A factor over time, piecewise linear.
 #[derive(Clone)]
 pub(super) struct Amplitude {
     points: Vec<(f64, f64)>,
-    /// True if its time is that of the whole deck, not that of a step.
+    /// True if its time is the total time of the deck, false for the time of the step.
     pub(super) is_total: bool,
 }
 
-/// A moment, by both times.
+/// A point in time, as step time and total time.
 #[derive(Clone, Copy)]
 pub(super) struct Moment {
     pub(super) in_step: f64,
@@ -64,7 +64,7 @@ impl Amplitude {
         Ok(Self { points, is_total })
     }
 
-    /// The value at a moment: before its first point and behind its last that of these.
+    /// The value at a time; constant before the first and after the last point.
     pub(super) fn at(&self, moment: Moment) -> f64 {
         let time = if self.is_total {
             moment.total
@@ -82,7 +82,7 @@ impl Amplitude {
         }
     }
 
-    /// True if it isn't linear from one moment to another of the same step.
+    /// True if it isn't linear between two times of the same step.
     pub(super) fn bends(&self, from: Moment, to: Moment) -> bool {
         let time = |moment: Moment| {
             if self.is_total {

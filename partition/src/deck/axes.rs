@@ -1,4 +1,4 @@
-//! Directions of a deck that aren't those of its coordinates: `*ORIENTATION` of materials, `*TRANSFORM` of nodes.
+//! Local directions of a deck: `*ORIENTATION` of materials, `*TRANSFORM` of nodes.
 
 use crate::element::geometry::{cross, difference, dot, length};
 use crate::error::InputError;
@@ -15,12 +15,12 @@ pub(super) type Axes = [Vector; 3];
 pub(super) enum System {
     /// The same axes everywhere.
     Rectangular(Axes),
-    /// The radius, the hoop and the axis through two points.
+    /// Radial, hoop and axial directions, for the axis through two points.
     Cylindrical(Vector, Vector),
 }
 
 impl System {
-    /// The system of an `*ORIENTATION`, perhaps turned about one of its axes.
+    /// The system of an `*ORIENTATION`, possibly rotated about one of its axes.
     pub(super) fn of_material(source: &Source, block: &Block) -> Result<Self, InputError> {
         let definition = block.parameter("DEFINITION").unwrap_or("COORDINATES");
         if !definition.eq_ignore_ascii_case("COORDINATES") {
@@ -118,7 +118,7 @@ impl System {
                 let out = [0, 1, 2].map(|k| arm[k] - along * axis[k]);
                 let out = match length(out) > 1e-12 * length(arm) {
                     true => unit(out),
-                    // On the axis any radius will do.
+                    // On the axis any radial direction is valid.
                     false => unit(cross(axis, least(axis))),
                 };
                 [out, cross(axis, out), axis]
@@ -140,7 +140,7 @@ fn unit(vector: Vector) -> Vector {
     vector.map(|component| component / norm)
 }
 
-/// The coordinate axis that is the least along a direction.
+/// The coordinate axis with the smallest component along a direction.
 pub(super) fn least(direction: Vector) -> Vector {
     let mut axis = [0.0; 3];
     let smallest = (0..3).min_by(|&i, &j| direction[i].abs().total_cmp(&direction[j].abs()));
@@ -148,7 +148,7 @@ pub(super) fn least(direction: Vector) -> Vector {
     axis
 }
 
-/// Axes turned about one of themselves by an angle in degrees.
+/// Axes rotated about one of themselves by an angle in degrees.
 fn turned(axes: Axes, about: usize, angle: f64) -> Axes {
     let (sin, cos) = angle.to_radians().sin_cos();
     let (next, last) = ((about + 1) % 3, (about + 2) % 3);

@@ -1,4 +1,4 @@
-//! `*SURFACE BEHAVIOR`: the pressure of surfaces that overlap.
+//! `*SURFACE BEHAVIOR`: the pressure-overclosure law.
 
 use super::loads::item;
 use super::place::Places;
@@ -25,7 +25,7 @@ pub(super) fn linear(places: &Places, block: &Block) -> Result<f64, InputError> 
     }
 }
 
-/// Softness of a `*SURFACE BEHAVIOR` that is taken as hard, in words.
+/// Description of a softened `*SURFACE BEHAVIOR` that is replaced by hard contact.
 pub(super) fn soft(places: &Places, block: &Block) -> Result<Option<String>, InputError> {
     let source = places.source;
     let law = block

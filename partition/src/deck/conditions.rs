@@ -1,5 +1,5 @@
-//! Linear conditions between displacements of nodes of bodies: what `*EQUATION` says without the nodes of no body, and supports
-//! that are along no axis of the scene, or that begin or end with a step.
+//! Linear constraints between displacements of bodies' nodes: `*EQUATION` after eliminating nodes without cells, and
+//! supports along local axes or in some of the steps only.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,35 +13,35 @@ use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::LinePlace;
 
-/// Relative size of factors that count as 0.
+/// Relative size of coefficients that count as 0.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Factors by nodes and the axes of the scene.
+/// Coefficients by nodes and the axes of the scene.
 type Terms = BTreeMap<NodeAxis, f64>;
 
 /// Σ factor · displacement = value.
 pub(super) struct Condition {
     place: Option<LinePlace>,
     terms: Terms,
-    /// Values by step; none where the condition isn't active.
+    /// Values by step; `None` where the constraint is inactive.
     values: Vec<Option<f64>>,
-    /// The plain name of those that have values.
+    /// The plain name of constraints with values.
     word: &'static str,
-    /// True if what its displacements have reached where it comes is kept.
+    /// True if activation fixes the current displacements.
     is_kept: bool,
 }
 
-/// A condition in the words of the scene.
+/// A constraint in the syntax of the scene.
 pub(super) struct SceneEquation {
     name: Option<String>,
-    /// Groups, axes and factors.
+    /// Groups, axes and coefficients.
     terms: Vec<(String, usize, f64)>,
     values: Vec<Option<f64>>,
     is_kept: bool,
 }
 
 impl Condition {
-    /// Adds a multiple of another one.
+    /// Adds a multiple of another constraint.
     fn add(&mut self, factor: f64, other: &Self) {
         for (&dof, term) in &other.terms {
             let sum = self.terms.entry(dof).or_default();
@@ -56,12 +56,12 @@ impl Condition {
     }
 }
 
-/// The conditions of a deck; forces on nodes of no body become those on the nodes that move these, and supports that are no
-/// prescribed displacements of the scene leave the steps.
+/// The constraints of a deck. Forces on nodes without cells are transferred to the nodes that these depend on, and
+/// supports that become constraints are removed from the steps.
 ///
 /// # Errors
-/// An equation of a reference node, one that contradicts what holds its nodes, a node of no body that isn't held in all steps
-/// alike.
+/// An equation of a reference node, one that contradicts supports of its nodes, a node without cells that is held in
+/// some of the steps only.
 pub(super) fn all(
     places: &Places,
     equations: &[Equation],
@@ -135,7 +135,7 @@ fn along_axes(
     })
 }
 
-/// The direction of an axis of a node.
+/// The direction of a local axis of a node.
 fn direction(places: &Places, steps: &Steps, (node, axis): NodeAxis) -> [f64; 3] {
     match steps.systems.get(&node) {
         Some(system) => system.at(places.deck.points[node as usize])[axis],
@@ -143,8 +143,9 @@ fn direction(places: &Places, steps: &Steps, (node, axis): NodeAxis) -> [f64; 3]
     }
 }
 
-/// The conditions without a displacement of a node of no body: what is prescribed for it goes into their values, else the
-/// first condition that has it gives it to the others, and its force to its other nodes.
+/// Eliminates a displacement of a node without cells from the constraints. If it is prescribed, it becomes part of the
+/// constraints' values; otherwise the first constraint with it is solved for it and substituted into the others, and
+/// its force is transferred to that constraint's other nodes.
 fn without(
     places: &Places,
     dof: NodeAxis,
@@ -200,10 +201,10 @@ fn without(
     Ok(all)
 }
 
-/// Supports of nodes of bodies that don't hold in all steps, which leave these.
+/// Constraints for supports of bodies' nodes that hold in some of the steps only; they are removed from the steps.
 fn passing(has_cell: &[bool], steps: &mut Steps) -> Vec<Condition> {
     let (fixed, systems) = (&steps.loads.fixed, &steps.systems);
-    // Axes of nodes with a local system are counted otherwise there.
+    // The axes of a node with a local system are local there.
     let is_kept = |(node, axis): NodeAxis| match systems.contains_key(&node) {
         true => (0..3).any(|local| fixed.contains(&(node, local))),
         false => fixed.contains(&(node, axis)),
@@ -247,7 +248,7 @@ fn passing(has_cell: &[bool], steps: &mut Steps) -> Vec<Condition> {
     all
 }
 
-/// Supports along local axes that are none of the scene.
+/// Constraints for supports along local axes other than the scene's.
 fn turned(places: &Places, steps: &Steps) -> Vec<Condition> {
     let dofs: BTreeSet<NodeAxis> = (steps.done.iter())
         .flat_map(|step| step.turned.keys().copied())
@@ -271,7 +272,8 @@ fn turned(places: &Places, steps: &Steps) -> Vec<Condition> {
     dofs.into_iter().map(condition).collect()
 }
 
-/// The conditions with the groups of their nodes; those with the same values in all steps share a name that is none of `names`.
+/// The constraints with the groups of their nodes; those with the same values in all steps share a name that isn't in
+/// `names`.
 pub(super) fn in_scene(
     conditions: &[Condition],
     groups: &mut Groups,
@@ -329,7 +331,7 @@ impl SceneEquation {
         }
     }
 
-    /// The steps in which it is active, unless it is in all.
+    /// The steps in which it is active; `None` if it is active in all.
     pub(super) fn activation(&self) -> Option<Activation> {
         let name = self.name.clone().filter(|_| self.values.contains(&None))?;
         let steps = self.values.iter().map(Option::is_some).collect();
@@ -337,7 +339,7 @@ impl SceneEquation {
     }
 }
 
-/// Writes the values of a step, where they aren't always the same.
+/// Writes the values of a step, if they vary.
 pub(super) fn write_step(all: &[SceneEquation], step: usize, document: &mut Document) {
     let varies = |of: &&SceneEquation| {
         let mut values = of.values.iter().flatten();

@@ -1,4 +1,4 @@
-//! `*CONTACT PAIR`, `*SURFACE INTERACTION` and what stands behind it, and general contact.
+//! `*CONTACT PAIR`, `*SURFACE INTERACTION` with its subordinate keywords, and general contact.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -11,14 +11,14 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 use crate::name;
 
-/// The law between two surfaces, in the words of a scene.
+/// The contact law between two surfaces, in the syntax of a scene.
 #[derive(Clone, Copy, Default)]
 pub(super) struct ContactLaw {
     /// Coefficient of friction.
     friction: f64,
-    /// Pressure over overclosure; `None` where nothing overlaps.
+    /// Pressure over overclosure; `None` for hard contact.
     stiffness: Option<f64>,
-    /// Shear over the displacement of what sticks, beside it.
+    /// Shear stress over tangential displacement of sticking points.
     stick_slope: Option<f64>,
 }
 
@@ -40,19 +40,19 @@ impl ContactLaw {
     }
 }
 
-/// An interaction of two surfaces, from a step on.
+/// A surface interaction, valid from a step on.
 #[derive(Clone, Default)]
 struct Interaction {
-    /// The step, from 0 on.
+    /// The step, counted from 0.
     from: usize,
     law: ContactLaw,
-    /// Softness that is taken as hard contact, in words.
+    /// Description of a softened law replaced by hard contact.
     soft: Option<String>,
     /// True if the sides are tied.
     is_tied: bool,
 }
 
-/// The law of a pair in some steps.
+/// The contact law of a pair in some steps.
 pub(super) struct LawInSteps {
     pub(super) law: ContactLaw,
     /// True if its sides are tied.
@@ -60,29 +60,29 @@ pub(super) struct LawInSteps {
     pub(super) steps: Range<usize>,
 }
 
-/// A pair of surfaces, by name in capitals.
+/// A pair of surfaces, with names in capitals.
 pub(super) struct Pair {
     pub(super) slave: String,
     pub(super) master: String,
     interaction: String,
     pub(super) place: LinePlace,
-    /// Nodes of the slave that are to be moved onto the master.
+    /// Slave nodes to be moved onto the master.
     pub(super) adjust: Option<Adjust>,
     pub(super) gap: Option<f64>,
-    /// True if the pair itself says that its sides are tied.
+    /// True if the pair is declared as tied.
     tied: bool,
 }
 
-/// The nodes of a slave that `ADJUST` moves.
+/// The slave nodes that `ADJUST` moves.
 #[derive(Clone, Copy)]
 pub(super) enum Adjust {
-    /// The slave nodes that are no farther from the master, and all that overlap it.
+    /// The slave nodes within this distance of the master, and all that overlap it.
     Within(f64),
     /// The nodes of a set.
     Set,
 }
 
-/// Contact wherever bodies touch.
+/// General contact between all bodies.
 struct General {
     place: LinePlace,
     interaction: Option<String>,
@@ -91,15 +91,15 @@ struct General {
 /// All contacts of a deck.
 #[derive(Default)]
 pub(super) struct Contacts {
-    /// Interactions by name, one at least, those of later steps behind.
+    /// At least one interaction by name, in the order of their steps.
     interactions: BTreeMap<String, Vec<Interaction>>,
-    /// The interaction that is read, by name in capitals.
+    /// The interaction being read, by name in capitals.
     open: Option<String>,
     pub(super) pairs: Vec<Pair>,
     general: Option<General>,
 }
 
-/// Parameters of `*FRICTION` that are another law than that of Coulomb.
+/// Parameters of `*FRICTION` that change Coulomb's law.
 const FRICTION: [&str; 6] = [
     "ROUGH",
     "TAUMAX",
@@ -115,7 +115,7 @@ impl Contacts {
         self.pairs.is_empty() && self.general.is_none()
     }
 
-    /// True if friction acts somewhere.
+    /// True if any contact has friction.
     pub(super) fn have_friction(&self) -> bool {
         let general = self
             .general
@@ -132,7 +132,7 @@ impl Contacts {
         laws.any(|interaction| interaction.law.friction != 0.0)
     }
 
-    /// Reads a block of contacts.
+    /// Reads a block on contacts.
     pub(super) fn read(
         &mut self,
         places: &Places,
@@ -179,7 +179,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// `*FRICTION`: a coefficient, and CalculiX' stick slope.
+    /// `*FRICTION`: a coefficient, and CalculiX's stick slope.
     fn friction(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
@@ -216,7 +216,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// `*CHANGE FRICTION` and `*CHANGE SURFACE BEHAVIOR`: what follows is the law from a `step` on.
+    /// `*CHANGE FRICTION` and `*CHANGE SURFACE BEHAVIOR`: the following blocks define the law from a `step` on.
     fn change(
         &mut self,
         places: &Places,
@@ -311,7 +311,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// The laws of a pair in so many steps, and with `warnings` what they were taken for.
+    /// The laws of a pair in `steps` steps, with `warnings` for replaced laws.
     pub(super) fn laws_of(
         &self,
         places: &Places,
@@ -369,7 +369,7 @@ impl Contacts {
 }
 
 impl Interaction {
-    /// Contact law; `warnings` get what a law that isn't there is taken for.
+    /// The contact law, with `warnings` for replaced laws.
     fn law_with(&self, warnings: &mut Vec<String>) -> ContactLaw {
         let soft = self.soft.iter().filter(|soft| !warnings.contains(soft));
         let soft: Vec<String> = soft.cloned().collect();

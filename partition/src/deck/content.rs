@@ -1,4 +1,4 @@
-//! Content of a deck beside its mesh, block by block.
+//! Content of a deck except its mesh, block by block.
 
 use std::collections::BTreeMap;
 
@@ -25,13 +25,13 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of, Source};
 use crate::name;
 
-/// Content of a deck beside its mesh.
+/// Content of a deck except its mesh.
 #[derive(Default)]
 pub(super) struct Content {
     pub(super) title: Option<String>,
     /// Materials by name in capitals.
     pub(super) materials: BTreeMap<String, Material>,
-    /// The material that is read.
+    /// The material being read.
     open: Option<String>,
     orientations: Orientations,
     pub(super) sections: Vec<Section>,
@@ -39,7 +39,7 @@ pub(super) struct Content {
     pub(super) contacts: Contacts,
     pub(super) ties: Ties,
     equations: Equations,
-    /// The terms that equations and supports leave beside prescribed displacements.
+    /// Constraints for equations, and for supports that aren't prescribed displacements of the scene.
     pub(super) conditions: Vec<Condition>,
     pub(super) couplings: Couplings,
     pub(super) springs: Springs,
@@ -47,14 +47,14 @@ pub(super) struct Content {
     pub(super) sectors: Sectors,
     pub(super) prints: Requests,
     pub(super) steps: Steps,
-    /// The sets that steps add and remove.
+    /// The sets added and removed by steps.
     pub(super) changes: Changes,
-    /// The first step that asks for large displacements.
+    /// The first step that requests large displacements.
     pub(super) nlgeom: Option<LinePlace>,
 }
 
 impl Content {
-    /// Reads all amplitudes, which may stand behind what names them.
+    /// Reads all amplitudes first, as a deck may refer to them before their definition.
     pub(super) fn read_amplitudes(&mut self, source: &Source) -> Result<(), InputError> {
         let blocks = source.blocks.iter();
         for block in blocks.filter(|block| block.keyword == "AMPLITUDE") {
@@ -65,7 +65,7 @@ impl Content {
         Ok(())
     }
 
-    /// Reads all couplings and pretensions, before anything loads or holds their reference nodes.
+    /// Reads all couplings and pretensions first, before loads and supports of their reference nodes.
     pub(super) fn read_couplings(&mut self, places: &mut Places) -> Result<(), InputError> {
         for block in &places.source.blocks {
             match block.keyword.as_str() {
@@ -122,7 +122,7 @@ impl Content {
             "BOUNDARY" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" => {
                 self.steps.read(places, block)?
             }
-            // They have been read before all others.
+            // They have been read first.
             "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" | "PRE-TENSION SECTION" => {}
             "ELEMENT" => {
                 self.springs.elements(places, block)?;
@@ -149,7 +149,7 @@ impl Content {
             .or(line.map(|line| name::in_a_line(&line)));
     }
 
-    /// A block of contacts, of model changes, or of tables, which depends on the step that it stands in.
+    /// Reads a block of contacts, of model changes or of output requests, which belong to the current step.
     fn change_or_print(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let step = self.steps.number();
         match block.keyword.as_str() {
@@ -162,7 +162,7 @@ impl Content {
         }
     }
 
-    /// A block of ties, equations and sectors.
+    /// Reads a block of ties, equations or cyclic symmetry.
     fn connect(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         match block.keyword.as_str() {
             "CYCLIC SYMMETRY MODEL" => self.sectors.model(places, block),
@@ -179,7 +179,7 @@ impl Content {
         }
     }
 
-    /// A block of the material that is read.
+    /// Reads a block of the current material.
     fn law(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
         let open = self
             .open
@@ -195,13 +195,14 @@ impl Content {
         material.take(source, block)
     }
 
-    /// Finds the conditions between displacements, behind the last block.
+    /// Determines the constraints between displacements, after the last block.
     pub(super) fn find_conditions(&mut self, places: &Places) -> Result<(), InputError> {
         self.conditions = conditions::all(places, &self.equations.all, &mut self.steps)?;
         Ok(())
     }
 
-    /// Refuses loads that come on a path which one load step for each step doesn't follow, where friction makes it matter.
+    /// Refuses loads that aren't proportional to the time of their step if friction makes the solution depend on the
+    /// load path, as each step becomes a single load step.
     pub(super) fn check_path(&self, places: &Places) -> Result<(), InputError> {
         match self.steps.bend.filter(|_| self.contacts.have_friction()) {
             None => Ok(()),

@@ -11,7 +11,7 @@ use super::reference::{FREEDOMS, Reference};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
 
-/// Parameters of `*RIGID BODY` that name its nodes, by themselves or by elements.
+/// Parameters of `*RIGID BODY` that select its nodes, directly or by elements.
 const OF_RIGID_BODIES: [(&str, Of); 4] = [
     ("NSET", Of::Nodes),
     ("PIN NSET", Of::Nodes),
@@ -26,7 +26,7 @@ enum Coupled {
     Nodes(Vec<u32>),
 }
 
-/// The way in which nodes follow.
+/// The kind of coupling.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Rigid,
@@ -39,7 +39,7 @@ struct Coupling {
     name: String,
     coupled: Coupled,
     node: u32,
-    /// `None` before the keyword that says it.
+    /// `None` before the keyword that defines it.
     kind: Option<Kind>,
     /// Name of the local system of its displacements, in capitals.
     orientation: Option<String>,
@@ -65,10 +65,10 @@ impl Couplings {
         }
     }
 
-    /// The nodes that stand for reference points.
+    /// The reference nodes and their coupled components.
     ///
     /// # Errors
-    /// A coupling without the way in which nodes follow.
+    /// A coupling without its kind.
     pub(super) fn references(
         &self,
         places: &Places,
@@ -181,7 +181,7 @@ impl Couplings {
         }
     }
 
-    /// `*KINEMATIC` and `*DISTRIBUTING`: the first and the last of degrees of freedom, all without a line.
+    /// `*KINEMATIC` and `*DISTRIBUTING`: the first and the last of degrees of freedom, by default all.
     fn follow(&mut self, places: &Places, block: &Block, kind: Kind) -> Result<(), InputError> {
         let source = places.source;
         let keyword = &block.keyword;
@@ -223,12 +223,13 @@ impl Couplings {
                 );
                 return Err(source.error(block.place, message));
             }
-            // Nodes follow as the point turns, whether their own rotations are named or not: they have none.
+            // Nodes follow the rotation of the point whether their own rotations are listed or not, as nodes of solids
+            // have none.
             Kind::Rigid => {
                 open.follows.copy_from_slice(&coupled[..3]);
                 coupled = [true; FREEDOMS];
             }
-            // Forces are always distributed; a rotation that isn't named takes no moment.
+            // Forces are always distributed; a rotation that isn't listed has no moment.
             Kind::Distributing => coupled[..3].fill(true),
         }
         if let Some(reference) = self.references.get_mut(&open.node) {

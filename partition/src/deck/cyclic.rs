@@ -1,4 +1,4 @@
-//! `*CYCLIC SYMMETRY MODEL` and the `*TIE, CYCLIC SYMMETRY` that it names: sectors of a ring.
+//! `*CYCLIC SYMMETRY MODEL` and its `*TIE, CYCLIC SYMMETRY`: sectors of a ring.
 
 use super::axes::numbers;
 use super::document::{Document, Names, quoted, vector};
@@ -13,13 +13,13 @@ use crate::name;
 /// A tie of the sides of a sector.
 struct CyclicTie {
     place: LinePlace,
-    /// Name in capitals, as those of surfaces are.
+    /// Its name in capitals, like those of surfaces.
     name: String,
     slave: String,
     master: String,
 }
 
-/// A model of sectors.
+/// A model of a sector.
 struct CyclicModel {
     place: LinePlace,
     /// The tie, by name in capitals.
@@ -36,7 +36,7 @@ pub(super) struct Sectors {
     models: Vec<CyclicModel>,
 }
 
-/// A cyclic symmetry in the words of the scene.
+/// A cyclic symmetry in the syntax of the scene.
 pub(super) struct SceneCyclic {
     name: String,
     sides: [String; 2],
@@ -94,10 +94,11 @@ impl Sectors {
         Ok(())
     }
 
-    /// The cyclic symmetries, with the groups of their sides and names that are none of `names`.
+    /// The cyclic symmetries, with the groups of their sides and names that aren't in `names`.
     ///
     /// # Errors
-    /// A model without its tie, a tie without a model, an axis without a direction or, in the plane, along it.
+    /// A model without its tie, a tie without a model, an axis without a direction, or one in the plane of a plane
+    /// model.
     pub(super) fn in_scene(
         &self,
         groups: &mut Groups,

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-/// A scene on its way.
+/// A scene being written.
 #[derive(Default)]
 pub(super) struct Document(String);
 
 impl Document {
-    /// A line that begins a table, after a blank one.
+    /// Writes a line that begins a table, after a blank one.
     pub(super) fn table(&mut self, head: &str) {
         if !self.0.is_empty() {
             self.0.push('\n');
@@ -15,7 +15,7 @@ impl Document {
         self.0 += &format!("{head}\n");
     }
 
-    /// A key and its value.
+    /// Writes a key and its value.
     pub(super) fn key(&mut self, key: &str, value: impl std::fmt::Display) {
         self.0 += &format!("{key} = {value}\n");
     }
@@ -25,12 +25,12 @@ impl Document {
     }
 }
 
-/// Names of contacts, ties and couplings, of which no two are the same.
+/// Unique names of contacts, ties and couplings.
 #[derive(Default)]
 pub(super) struct Names(BTreeSet<String>);
 
 impl Names {
-    /// A name that no other has: a plain one, or with a number.
+    /// A unique name: the plain one, or with a number.
     pub(super) fn unique(&mut self, plain: &str) -> String {
         let plain = plain.replace('/', " ");
         let numbered = (2..).map(|number: usize| format!("{plain} {number}"));
@@ -58,7 +58,7 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// The vector as numbers and expressions.
+    /// The vector in the syntax of a scene, as numbers and expressions.
     pub(super) fn shown(&self, dim: usize) -> String {
         let component = |i: usize| {
             let mut text = format!("{:?}", self.constant[i]);

@@ -1,4 +1,4 @@
-//! `*ELASTIC`: the stiffness of a material, in its own axes and in those of the scene.
+//! `*ELASTIC`: the stiffness of a material, in its local axes and in those of the scene.
 
 use nalgebra::{Matrix3, Matrix6};
 
@@ -8,7 +8,7 @@ use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 use crate::scene::material::PlaneState;
 
-/// Places of the components 11, 22, 33, 12, 13, 23 in the scene's order xx, yy, zz, yz, xz, xy.
+/// Positions of the components 11, 22, 33, 12, 13, 23 in the scene's order xx, yy, zz, yz, xz, xy.
 const PLACES: [usize; 6] = [0, 1, 2, 5, 4, 3];
 
 /// The two indices of a component xx, yy, zz, yz, xz, xy.
@@ -19,7 +19,7 @@ const INDICES: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [1, 2], [0, 2], [0, 1]
 pub(super) enum Elastic {
     /// Young's modulus and Poisson's ratio.
     Isotropic(f64, f64),
-    /// Strains xx, yy, zz, yz, xz, xy to stresses, with engineering shear strains.
+    /// The matrix from strains xx, yy, zz, yz, xz, xy to stresses, with engineering shear strains.
     Anisotropic(Box<Matrix6<f64>>),
 }
 
@@ -69,12 +69,12 @@ impl Elastic {
         laws.into_iter().next().ok_or_else(missing)
     }
 
-    /// The same law of a material whose axes are these.
+    /// The law in the scene's axes, for a material with these local axes.
     pub(super) fn along(&self, axes: &Axes) -> Self {
         let Self::Anisotropic(own) = self else {
             return self.clone();
         };
-        // σ = T σ', and the work of strains stays the same: C = T C' Tᵀ.
+        // σ = T σ', and the strain energy is invariant: C = T C' Tᵀ.
         let turn = Matrix6::from_fn(|row, column| {
             let ([i, j], [p, q]) = (INDICES[row], INDICES[column]);
             let product = axes[p][i] * axes[q][j];
@@ -116,7 +116,7 @@ impl Elastic {
                 ),
             ],
             Some(PlaneState::Stress) => {
-                // Without stress out of the plane ε_zz follows from the strains in it.
+                // In plane stress ε_zz follows from the in-plane strains.
                 let condensed =
                     |i: usize, j: usize| own[(i, j)] - own[(i, 2)] * own[(2, j)] / own[(2, 2)];
                 vec![("stiffness", rows(&[0, 1, 5], &condensed))]
@@ -124,7 +124,7 @@ impl Elastic {
         }
     }
 
-    /// A modulus by which the unit of stresses is told.
+    /// A modulus, from which the unit of stresses is guessed.
     pub(super) fn modulus(&self) -> f64 {
         match self {
             Self::Isotropic(young, _) => *young,
@@ -133,13 +133,13 @@ impl Elastic {
     }
 }
 
-/// The law of 2, 9 or 21 numbers; nine are moduli or, of an orthotropic `kind`, stiffnesses.
+/// The law of 2, 9 or 21 numbers; nine are engineering constants or, for an orthotropic `kind`, stiffnesses.
 fn law(kind: &str, numbers: &[f64]) -> Result<Elastic, String> {
     let stiffness = match *numbers {
         [young, poisson] => return Ok(Elastic::Isotropic(young, poisson)),
         [a, b, c, d, e, f, g, h, i] if kind.starts_with("ORTHO") => {
             let mut all = vec![a, b, c, d, e, f];
-            // Rows and columns 12, 13, 23 hold their diagonals alone.
+            // Rows and columns 12, 13, 23 have only diagonal entries.
             all.extend([
                 0.0, 0.0, 0.0, g, 0.0, 0.0, 0.0, 0.0, h, 0.0, 0.0, 0.0, 0.0, 0.0, i,
             ]);
@@ -153,7 +153,7 @@ fn law(kind: &str, numbers: &[f64]) -> Result<Elastic, String> {
     Ok(Elastic::Anisotropic(Box::new(stiffness)))
 }
 
-/// The stiffness of moduli, Poisson's ratios ν_12, ν_13, ν_23 and shear moduli G_12, G_13, G_23.
+/// The stiffness from Young's moduli, Poisson's ratios ν_12, ν_13, ν_23 and shear moduli G_12, G_13, G_23.
 fn engineering(young: [f64; 3], ratios: [f64; 3], shear: [f64; 3]) -> Result<Matrix6<f64>, String> {
     let [n12, n13, n23] = ratios;
     let mut compliance = Matrix3::from_diagonal(&young.map(|e| 1.0 / e).into());

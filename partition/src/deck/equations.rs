@@ -9,26 +9,26 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
 use crate::name;
 
-/// An equation between displacements, whose sum is 0.
+/// A linear equation between displacements with the right-hand side 0.
 pub(super) struct Equation {
     pub(super) place: LinePlace,
-    /// Nodes and axes, which may be local ones, with factors that aren't 0.
+    /// Nodes and axes, possibly local ones, with nonzero coefficients.
     pub(super) terms: Vec<(NodeAxis, f64)>,
 }
 
-/// The type of elements that give a set of one node for `*DISTRIBUTING COUPLING`.
+/// The type of elements that define a set of one node for `*DISTRIBUTING COUPLING`.
 const OF_POINTS: &str = "DCOUP3D";
 
 /// All equations of a deck.
 #[derive(Default)]
 pub(super) struct Equations {
     pub(super) all: Vec<Equation>,
-    /// Nodes of elements of points by their set, whose name is in capitals.
+    /// Nodes of point elements by their set, whose name is in capitals.
     points: BTreeMap<String, Vec<u32>>,
 }
 
 impl Equations {
-    /// Reads the nodes of a block of elements if these are points.
+    /// Reads the nodes of a block of elements if these are point elements.
     pub(super) fn elements(
         &mut self,
         places: &mut Places,
@@ -88,7 +88,7 @@ impl Equations {
         Ok(())
     }
 
-    /// Takes an equation for every node of the one term that is of a set.
+    /// Adds an equation for every node of the single term that refers to a set.
     fn spread(
         &mut self,
         places: &Places,
@@ -115,7 +115,7 @@ impl Equations {
         Ok(())
     }
 
-    /// `*DISTRIBUTING COUPLING`: the node of an element moves as the weighted mean of others does.
+    /// `*DISTRIBUTING COUPLING`: the displacement of an element's node is the weighted average of those of others.
     pub(super) fn mean(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         let elements = source.required(block, "ELSET")?;

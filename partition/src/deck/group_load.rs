@@ -8,10 +8,10 @@ use super::steps::Steps;
 use crate::error::InputError;
 use crate::mesh::abaqus::Source;
 
-/// Values of something in all steps, as bits, so that places with the same ones come together.
+/// The values of a load in all steps, as bits, by which loads with equal values are grouped.
 type Course<V> = Vec<Option<V>>;
 
-/// A load on a group of the mesh: its table, what it is on, its key, and its value in each step.
+/// A load on a group of the mesh: its table, the group, its key, and its value in each step.
 pub(super) struct OnGroup {
     pub(super) list: &'static str,
     on: String,
@@ -20,7 +20,7 @@ pub(super) struct OnGroup {
 }
 
 impl OnGroup {
-    /// Writes what it is in a step.
+    /// Writes its values in a step.
     pub(super) fn write(&self, step: usize, within: &str, document: &mut Document) {
         let Some(values) = &self.values[step] else {
             return;
@@ -33,7 +33,7 @@ impl OnGroup {
     }
 }
 
-/// Loads and supports on their way to groups of the mesh.
+/// Translation of loads and supports to groups of the mesh.
 pub(super) struct OnGroups<'a, 'b, 'c> {
     pub(super) steps: &'a Steps,
     pub(super) dim: usize,
@@ -43,10 +43,10 @@ pub(super) struct OnGroups<'a, 'b, 'c> {
 }
 
 impl OnGroups<'_, '_, '_> {
-    /// All of it.
+    /// All loads and supports.
     ///
     /// # Errors
-    /// Steps hold different nodes, or along different axes.
+    /// Supports that differ between steps in their nodes or axes.
     pub(super) fn all(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
         let steps = &self.steps.done;
         let mut all = self.supports(source)?;
@@ -69,7 +69,7 @@ impl OnGroups<'_, '_, '_> {
         Ok(all)
     }
 
-    /// The pressures, on faces of elements and then on surfaces, behind what `all` has.
+    /// Appends the pressures to `all`, those on faces of elements before those on surfaces.
     fn add_pressures(&mut self, all: &mut Vec<OnGroup>) {
         let steps = &self.steps.done;
         for (faces, course) in
@@ -97,7 +97,7 @@ impl OnGroups<'_, '_, '_> {
         }
     }
 
-    /// The tractions on surfaces, behind what `all` has.
+    /// Appends the tractions on surfaces to `all`.
     fn add_tractions(&mut self, all: &mut Vec<OnGroup>) {
         let steps = &self.steps.done;
         let tractions: BTreeSet<&(String, usize)> = steps
@@ -130,7 +130,7 @@ impl OnGroups<'_, '_, '_> {
     /// Prescribed displacements.
     ///
     /// # Errors
-    /// Steps hold different nodes, or along different axes.
+    /// Supports that differ between steps in their nodes or axes.
     fn supports(&mut self, source: &Source) -> Result<Vec<OnGroup>, InputError> {
         let steps = &self.steps.done;
         let axes = |held: &[Option<f64>; 3]| held.map(|value| value.is_some());
@@ -170,7 +170,7 @@ impl OnGroups<'_, '_, '_> {
     }
 }
 
-/// A number that isn't zero, as text.
+/// A nonzero number, as text.
 fn number(value: f64) -> Option<String> {
     (value != 0.0).then(|| format!("{value:?}"))
 }
@@ -182,7 +182,8 @@ fn of_key(course: Course<String>, key: &'static str) -> Course<Vec<(&'static str
         .collect()
 }
 
-/// Places that have the same values in all steps, those of the smallest place first; places without any are left out.
+/// Groups of keys with the same values in all steps, in the order of their smallest key; keys without values are left
+/// out.
 fn together<'a, K: Ord + Clone + 'a, V: 'a, T: Ord>(
     steps: impl Iterator<Item = &'a BTreeMap<K, V>> + Clone,
     shown: impl Fn(&V) -> Option<T>,

@@ -1,4 +1,4 @@
-//! Groups of the mesh for what a scene has to name: the deck's own sets, or new ones.
+//! Groups of the mesh for the scene to refer to: the deck's own sets, or new ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,9 +10,9 @@ use crate::mesh::abaqus::{Face, LinePlace};
 /// Names of groups by their members.
 pub(super) struct Groups<'a, 'b> {
     places: &'a mut Places<'b>,
-    /// Number of sets of any kind that have a name, in capitals.
+    /// Number of named sets of any kind, by name in capitals.
     count: BTreeMap<String, usize>,
-    /// Sets by their members, of those whose name is that of a group.
+    /// Sets by their members, for those whose name is that of a group.
     nodes: BTreeMap<Vec<u32>, String>,
     cells: BTreeMap<Vec<u32>, String>,
     faces: BTreeMap<Vec<(u32, usize)>, String>,
@@ -80,12 +80,12 @@ impl<'a, 'b> Groups<'a, 'b> {
         (self.nodes, self.cells, self.faces) = (nodes, cells, all_faces);
     }
 
-    /// True if the group that a set makes has its name: no other set has it, and it is of no instance.
+    /// True if the group of a set has the set's name: it is unique and belongs to no instance.
     fn is_plain(&self, name: &str, internal: bool) -> bool {
         !internal && self.count.get(&name.to_uppercase()) == Some(&1) && !name.contains('.')
     }
 
-    /// Nodes that cells have, each once.
+    /// Nodes that belong to cells, without repetition.
     fn with_cells(&self, nodes: &[u32]) -> Vec<u32> {
         let used = nodes
             .iter()
@@ -94,9 +94,9 @@ impl<'a, 'b> Groups<'a, 'b> {
         used.collect::<BTreeSet<u32>>().into_iter().collect()
     }
 
-    /// A name that no set has yet: `word` itself, or with a number.
+    /// A name that no set has yet: `word`, possibly with a number.
     fn fresh(&mut self, word: &str, numbered: bool) -> String {
-        // What stands before a point might be taken for an instance.
+        // The part of a name before a point might be taken for an instance.
         let word = word.replace('.', " ");
         let plain = (!numbered).then(|| word.clone());
         let names = plain
@@ -108,7 +108,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         name
     }
 
-    /// True if a cell has a node.
+    /// True if a node belongs to a cell.
     pub(super) fn is_of_body(&self, node: u32) -> bool {
         self.has_cell[node as usize]
     }
@@ -133,7 +133,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         self.places.source.error(at, message)
     }
 
-    /// The group of nodes; `None` where cells have none of them.
+    /// The group of nodes; `None` if none of them belongs to a cell.
     pub(super) fn of_nodes(&mut self, nodes: &[u32], word: &str) -> Option<String> {
         let members = self.with_cells(nodes);
         if members.is_empty() {
@@ -151,7 +151,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         Some(name)
     }
 
-    /// The group of nodes as points, each by itself, also where they are all nodes of faces; `None` where cells have none.
+    /// The group of nodes as single points, even if they form faces; `None` if none belongs to a cell.
     pub(super) fn of_points(&mut self, nodes: &[u32], word: &str) -> Option<String> {
         let members = self.with_cells(nodes);
         if members.is_empty() {
@@ -164,19 +164,19 @@ impl<'a, 'b> Groups<'a, 'b> {
         Some(name)
     }
 
-    /// The nodes of a surface that is told by them.
+    /// The nodes of a node-based surface.
     pub(super) fn of_node_surface(&self, surface: &str) -> Option<Vec<u32>> {
         let surface = self.places.deck.node_surfaces.get(surface)?;
         Some(surface.members.list().to_vec())
     }
 
-    /// True if a direction points to the outside of a surface of faces, as none does.
+    /// True if a direction points out of a surface of faces; `None` counts as outward.
     pub(super) fn points_outward(&self, surface: &str, direction: Option<[f64; 3]>) -> bool {
         let outward = self.places.deck.outward(surface);
         direction.is_none_or(|direction| dot(direction, outward) >= 0.0)
     }
 
-    /// The group of cells, which are those of the set `word` or some of them.
+    /// The group of cells, which are all or some of the set `word`.
     pub(super) fn of_cells(&mut self, cells: &[u32], word: &str) -> String {
         if let Some(name) = self.cells.get(cells) {
             return name.clone();
@@ -223,7 +223,7 @@ impl<'a, 'b> Groups<'a, 'b> {
         }
         let copy = format!("{} side", name.replace('.', " "));
         if self.count.insert(copy.to_uppercase(), 1).is_some() {
-            // It is there from before.
+            // The group exists already.
             return copy;
         }
         let deck = &mut self.places.deck;

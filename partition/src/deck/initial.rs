@@ -12,7 +12,7 @@ use crate::scene::material::PlaneState;
 /// A stress xx, yy, zz, xy, xz, yz.
 type Stress = [f64; 6];
 
-/// Stresses and temperatures before anything acts.
+/// Initial stresses and temperatures.
 #[derive(Default)]
 pub(super) struct Initial {
     /// Temperatures of nodes.
@@ -47,7 +47,7 @@ impl Initial {
         Ok(())
     }
 
-    /// A line of stresses: elements, in CalculiX with a point of integration, and the components.
+    /// Reads a line of stresses: elements, in CalculiX with an integration point, and the components.
     fn stress(&mut self, places: &mut Places, data: &Data) -> Result<(), InputError> {
         let source = places.source;
         let from = source.items(data).count().saturating_sub(6).max(1);
@@ -76,7 +76,7 @@ impl Initial {
     }
 }
 
-/// The components of a stress that a scene has.
+/// The components of a stress in a scene.
 pub(super) fn in_scene(stress: Stress, plane: Option<PlaneState>) -> Vec<f64> {
     let [xx, yy, zz, xy, xz, yz] = stress;
     match plane {

@@ -1,4 +1,4 @@
-//! Meanings of the keywords of a deck: read, not needed for the answer, or refused, with what to do instead.
+//! Classification of a deck's keywords: read, irrelevant to the solution, or refused with advice.
 
 use std::collections::HashMap;
 
@@ -66,7 +66,7 @@ const READ: [&str; 54] = [
     "EL PRINT",
 ];
 
-/// Keywords that don't matter to the answer.
+/// Keywords without effect on the solution.
 const NOT_NEEDED: [&str; 37] = [
     "CONDUCTIVITY",
     "ELECTRICAL CONDUCTIVITY",
@@ -111,7 +111,7 @@ const NOT_LINEAR: &str = "bodies are linear elastic here";
 const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
-/// Keywords that would change the answer: the message, and what to do instead.
+/// Keywords that would change the solution: the message, and the advice.
 const REFUSED: [(&[&str], &str, &str); 19] = [
     (
         &[
@@ -277,7 +277,7 @@ const REFUSED: [(&[&str], &str, &str); 19] = [
     ),
 ];
 
-/// Gives blocks their keywords and parameters as the tables here spell them: blanks don't tell keywords apart.
+/// Replaces the keywords and parameters of blocks by their spelling in these tables: blanks are insignificant.
 pub(super) fn spell(blocks: &mut [Block]) {
     let letters = |word: &str| word.replace(' ', "");
     let refused = REFUSED.iter().flat_map(|(names, ..)| *names);
@@ -298,10 +298,10 @@ pub(super) enum Meaning {
     NotNeeded,
 }
 
-/// The meaning of a block by its keyword.
+/// The classification of a block by its keyword.
 ///
 /// # Errors
-/// A keyword or a parameter that would change the answer or isn't known, with its line.
+/// A keyword or a parameter that would change the solution or is unknown, with its line.
 pub(super) fn meaning(source: &Source, block: &Block) -> Result<Meaning, InputError> {
     let keyword = block.keyword.as_str();
     if READ.contains(&keyword) {

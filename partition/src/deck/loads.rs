@@ -1,4 +1,4 @@
-//! Supports, forces and temperatures of a step, as the steps before have left them and it changes them.
+//! Supports, forces and temperatures of a step: those of earlier steps, with the changes of the step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,10 +10,11 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Data, Of, Source};
 use crate::name;
 
-/// A load on the volume of elements, of magnitude 1.
+/// A load of magnitude 1 on the volume of elements.
 #[derive(Clone, PartialEq)]
 pub(super) struct BodyLoad {
-    /// Names of the elements and of the kind in the deck, in capitals: another load of both replaces it in a later step.
+    /// Names of the elements and of the kind in the deck, in capitals: a load with the same names replaces it in a
+    /// later step.
     target: String,
     pub(super) label: String,
     pub(super) elements: Vec<u32>,
@@ -31,26 +32,26 @@ pub(super) enum BodyKind {
     Centrifugal([f64; 3], [f64; 3]),
 }
 
-/// All that acts.
+/// All loads and supports.
 #[derive(Default)]
 pub(super) struct Loads {
     pub(super) supports: Table<NodeAxis>,
     pub(super) forces: Table<NodeAxis>,
     /// Pressures on faces of elements.
     pub(super) faces: Table<(u32, usize)>,
-    /// Pressures and tractions on surfaces, by name in capitals; tractions have the number of their direction.
+    /// Pressures and tractions on surfaces, by name in capitals; tractions also by the number of their direction.
     pub(super) surfaces: Table<String>,
     pub(super) tractions: Table<(String, usize)>,
     pub(super) directions: Vec<[f64; 3]>,
-    /// Magnitudes by the number of the load.
+    /// Magnitudes of body loads by their number.
     pub(super) bodies: Table<usize>,
     pub(super) of_bodies: Vec<BodyLoad>,
     pub(super) temperatures: Table<u32>,
-    /// Nodes that stand for reference points.
+    /// Nodes that represent reference points.
     pub(super) references: BTreeMap<u32, Reference>,
-    /// Displacements that are kept as they are once they are held, of pretensions their shortening.
+    /// Displacements fixed at their current value, of pretensions their shortening.
     pub(super) fixed: BTreeSet<NodeAxis>,
-    /// Parts of it that aren't needed, in words.
+    /// Descriptions of irrelevant parts of the input.
     pub(super) notes: BTreeSet<String>,
 }
 
@@ -109,7 +110,7 @@ impl Loads {
         Ok(())
     }
 
-    /// A line of `*DSLOAD`: a surface, `P` or `TRVEC`, the magnitude, and of a traction its direction.
+    /// A line of `*DSLOAD`: a surface, `P` or `TRVEC`, the magnitude, and the direction of a traction.
     pub(super) fn on_surface(
         &mut self,
         places: &mut Places,
@@ -200,7 +201,7 @@ impl BodyKind {
         })
     }
 
-    /// The load with directions of length 1; `None` where one has none.
+    /// The load with unit vectors as directions; `None` if one has length zero.
     fn normalized(self) -> Option<Self> {
         Some(match self {
             Self::Along(axis) => Self::Along(axis),
@@ -210,7 +211,7 @@ impl BodyKind {
     }
 }
 
-/// An item of a line of data, empty where there is none.
+/// An item of a line of data, empty if missing.
 pub(super) fn item<'a>(source: &'a Source, data: &'a Data, place: usize) -> &'a str {
     source.items(data).nth(place).unwrap_or_default()
 }

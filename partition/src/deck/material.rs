@@ -1,4 +1,4 @@
-//! `*MATERIAL` and what stands behind it.
+//! `*MATERIAL` and its subordinate keywords.
 
 use super::axes::numbers;
 use super::elastic::Elastic;
@@ -6,12 +6,12 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Source};
 use crate::name;
 
-/// A material on its way.
+/// A material being read.
 pub(super) struct Material {
     pub(super) name: String,
     place: LinePlace,
     elastic: Option<Elastic>,
-    /// Coefficient of expansion; 0 without.
+    /// Coefficient of thermal expansion, 0 by default.
     pub(super) expansion: f64,
     density: Option<f64>,
 }
@@ -30,7 +30,7 @@ impl Material {
         })
     }
 
-    /// Takes what `*ELASTIC`, `*EXPANSION` or `*DENSITY` says.
+    /// Reads `*ELASTIC`, `*EXPANSION` or `*DENSITY`.
     pub(super) fn take(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
         match block.keyword.as_str() {
             "ELASTIC" => self.elastic = Some(Elastic::read(source, block)?),
@@ -52,7 +52,7 @@ impl Material {
         })
     }
 
-    /// The density, which a load `label` in line `at` needs.
+    /// The density, required by a load `label` in line `at`.
     pub(super) fn density(
         &self,
         source: &Source,
@@ -69,7 +69,7 @@ impl Material {
     }
 }
 
-/// The coefficient of an isotropic expansion.
+/// The coefficient of isotropic thermal expansion.
 fn expansion(source: &Source, block: &Block) -> Result<f64, InputError> {
     let kind = block.parameter("TYPE").unwrap_or("ISO").to_uppercase();
     if kind == "ISO" || kind == "ISOTROPIC" {
@@ -91,7 +91,7 @@ fn expansion(source: &Source, block: &Block) -> Result<f64, InputError> {
     }
 }
 
-/// The number of a table that is the same at all temperatures.
+/// The value of a table that has to be independent of temperature.
 fn constant(source: &Source, block: &Block, what: &str) -> Result<f64, InputError> {
     let mut found = None;
     for data in &block.data {

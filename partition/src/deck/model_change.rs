@@ -1,4 +1,4 @@
-//! `*MODEL CHANGE`: pairs of contact and elements that steps add and remove.
+//! `*MODEL CHANGE`: contact pairs and elements that steps add and remove.
 
 use super::contacts::Pair;
 use super::loads::item;
@@ -9,16 +9,16 @@ use crate::name;
 
 /// Pairs or elements that are added or removed.
 struct Change {
-    /// The step, from 0 on.
+    /// The step, counted from 0.
     step: usize,
     of: Changed,
-    /// True if they are there from then on.
+    /// True if they are added.
     comes: bool,
 }
 
-/// A set that is added or removed.
+/// A pair or a set of elements that is added or removed.
 enum Changed {
-    /// A pair, by its place among all.
+    /// A contact pair, by its index.
     Pair(usize),
     /// Elements, ascending.
     Elements(Vec<u32>),
@@ -29,10 +29,10 @@ enum Changed {
 pub(super) struct Changes(Vec<Change>);
 
 impl Changes {
-    /// Reads a block that stands in a `step`, which has a number where it stands in one.
+    /// Reads a block in a `step`, `None` outside of steps.
     ///
     /// # Errors
-    /// Others than those of pairs and elements, or no such pair; elements that come with a strain.
+    /// Types other than pairs and elements, or a missing pair; elements that are added with strain.
     pub(super) fn read(
         &mut self,
         places: &mut Places,
@@ -100,7 +100,7 @@ impl Changes {
             .any(|change| matches!(change.of, Changed::Elements(_)))
     }
 
-    /// Activation of a pair in each of so many steps.
+    /// Activation of a pair in each step.
     pub(super) fn of_pair(&self, pair: usize, steps: usize) -> Vec<bool> {
         self.course(
             steps,
@@ -108,7 +108,7 @@ impl Changes {
         )
     }
 
-    /// Activation of an element in each of so many steps.
+    /// Activation of an element in each step.
     pub(super) fn of_element(&self, element: u32, steps: usize) -> Vec<bool> {
         self.course(steps, |of| match of {
             Changed::Elements(all) => all.binary_search(&element).is_ok(),
@@ -116,8 +116,8 @@ impl Changes {
         })
     }
 
-    /// Activation, in each of so many steps, of what changes concern: it is there at first unless it comes before
-    /// it goes.
+    /// Activation in each step according to the changes for which `concerns` is true: active at first unless the first
+    /// change is an addition.
     fn course(&self, steps: usize, concerns: impl Fn(&Changed) -> bool) -> Vec<bool> {
         let own: Vec<&Change> = self
             .0

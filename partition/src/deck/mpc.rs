@@ -1,4 +1,4 @@
-//! `*MPC`: equations between nodes that CalculiX has words for, as small displacements have them.
+//! `*MPC`: CalculiX's predefined equations between nodes, linearized for small displacements.
 
 use super::axes::least;
 use super::equations::Equation;
@@ -12,23 +12,23 @@ use crate::name;
 
 type Vector = [f64; 3];
 
-/// A sum of displacements along directions.
+/// A linear form of displacements: nodes with vectors of coefficients.
 type Form = Vec<(u32, Vector)>;
 
-/// The sine of the angle below which nodes lie on a line.
+/// The sine of the angle below which nodes are collinear.
 const ON_A_LINE: f64 = 1e-6;
 
 /// The equations of a block.
 ///
 /// # Errors
-/// Another kind, or nodes that tell no distance, line, plane or axis.
+/// An unknown kind, or nodes that determine no distance, line, plane or axis.
 pub(super) fn read(places: &mut Places, block: &Block) -> Result<Vec<Equation>, InputError> {
     let source = places.source;
     let mut all = Vec::new();
     let mut open: Option<(String, &Data, Vec<u32>)> = None;
     for data in &block.data {
         let kind = item(source, data, 0).to_uppercase();
-        // Nodes go on in lines that begin with one of them, or with none.
+        // The list of nodes continues in lines that begin with a node, or with an empty item.
         let goes_on = kind.is_empty() || kind.starts_with(|c: char| c.is_ascii_digit());
         let first = usize::from(!goes_on || kind.is_empty());
         let mut nodes = Vec::new();
@@ -110,7 +110,7 @@ fn forms(places: &Places, kind: &str, nodes: Vec<u32>) -> Result<Vec<Form>, Stri
             }
             let others = nodes.iter().filter(|node| !corners.contains(node));
             let in_plane = |&node: &u32| {
-                // Its place by those of the corners.
+                // Its position as a combination of those of the corners.
                 let offset = difference(at(node), at(corners[0]));
                 let part = |a, b| dot(cross(a, b), normal) / dot(normal, normal);
                 let [u, v] = [part(offset, t), part(s, offset)];
@@ -130,7 +130,7 @@ fn forms(places: &Places, kind: &str, nodes: Vec<u32>) -> Result<Vec<Form>, Stri
     }
 }
 
-/// Three of some nodes that span a plane: the first, the farthest from it, and the farthest from their line.
+/// Three of the nodes that span a plane: the first one, the one farthest from it, and the one farthest from their line.
 fn corners(nodes: &[u32], at: impl Fn(u32) -> Vector) -> [u32; 3] {
     let farthest = |size: &dyn Fn(u32) -> f64| {
         let others = nodes.iter().copied();
@@ -144,11 +144,12 @@ fn corners(nodes: &[u32], at: impl Fn(u32) -> Vector) -> [u32; 3] {
     [nodes[0], second, third]
 }
 
-/// The mean rotation of nodes about the way from the origin to the last one, whose first degree of freedom it is: Σ (a × r) · (u −
-/// ū)/r² over their number, with r across the axis a from their middle.
+/// The average rotation of nodes about the axis a from the origin to the last node, whose first degree of freedom is
+/// its value: the average of (a × r)·(u − ū)/r², with r the radius vector from the axis parallel to a through their
+/// centre.
 fn mean_rotation(at: impl Fn(u32) -> Vector, mut nodes: Vec<u32>) -> Result<Form, String> {
     let pilot = nodes.pop().unwrap_or_default();
-    // Each stands once for every degree of freedom.
+    // Each node is listed once for every degree of freedom.
     nodes.sort_unstable();
     nodes.dedup();
     let size = length(at(pilot));
@@ -180,13 +181,13 @@ fn mean_rotation(at: impl Fn(u32) -> Vector, mut nodes: Vec<u32>) -> Result<Form
     Ok(form)
 }
 
-/// Two unit vectors across a line and each other; `None` of no length.
+/// Two unit vectors perpendicular to a line and to each other; `None` for a line of length zero.
 fn across(line: Vector) -> Option<[Vector; 2]> {
     let first = unit(cross(line, least(line)))?;
     Some([first, unit(cross(line, first))?])
 }
 
-/// The terms along the axes of the plane or of space.
+/// The terms along the coordinate axes.
 fn terms(form: Form, dim: usize) -> Vec<(NodeAxis, f64)> {
     let parts = form.into_iter().flat_map(|(node, direction)| {
         (direction.into_iter().enumerate().take(dim))

@@ -9,11 +9,11 @@ use super::sections::Section;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Of};
 
-/// The systems of elements.
+/// Local systems of elements.
 struct Distribution {
-    /// That of all others.
+    /// The system of all other elements.
     others: System,
-    /// Elements with theirs.
+    /// Elements with their systems.
     of_elements: Vec<(Vec<u32>, System)>,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Orientations {
     pub(super) all: BTreeMap<String, System>,
     /// Distributions by name in capitals.
     distributions: BTreeMap<String, Distribution>,
-    /// The elements of orientations that name a distribution, and what theirs are called, by name in capitals.
+    /// The elements of orientations with a distribution, each with the name of their system, by name in capitals.
     parts: BTreeMap<String, Vec<(Vec<u32>, String)>>,
 }
 
@@ -60,7 +60,7 @@ impl Orientations {
         Ok(())
     }
 
-    /// The parts of a section whose orientation is another one than that of its other elements.
+    /// The parts of a section whose orientation differs from that of its other elements.
     pub(super) fn parts(&self, section: &Section) -> Vec<Section> {
         let name = section.orientation.as_deref().unwrap_or_default();
         let parts = self.parts.get(name).into_iter().flatten();
@@ -70,7 +70,8 @@ impl Orientations {
 }
 
 impl Distribution {
-    /// A line for each element or set, six coordinates behind it; the first one, without any, is of all others.
+    /// Reads a distribution: each line has an element or a set, followed by six coordinates; the first line, without
+    /// elements, defines the default.
     fn read(places: &mut Places, block: &Block) -> Result<Self, InputError> {
         let source = places.source;
         let mut others = None;

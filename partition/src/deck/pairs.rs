@@ -1,4 +1,4 @@
-//! Pairs of surfaces on their way to contacts and ties of the scene.
+//! Translation of pairs of surfaces to contacts and ties of the scene.
 
 use super::activation::Activation;
 use super::contacts::{Adjust, Pair};
@@ -9,7 +9,8 @@ use super::ties::SceneTie;
 use crate::error::InputError;
 
 impl Content {
-    /// Writes the contacts and ties, of which those of pairs have `names`, and returns which aren't there in all steps.
+    /// Writes the contacts and ties, where those of pairs have `names`, and returns the ones that aren't active in all
+    /// steps.
     pub(super) fn contact(
         &self,
         places: &Places,
@@ -27,7 +28,7 @@ impl Content {
                 let steps: Vec<bool> = (0..count)
                     .map(|k| of.steps.contains(&k) && is_there[k])
                     .collect();
-                // A pair that is never there is a contact all the same.
+                // A pair that is never active becomes a contact all the same.
                 let is_last_chance = of.steps.end == count && name.is_some();
                 if !(steps.contains(&true) || is_last_chance) {
                     continue;
@@ -72,12 +73,12 @@ impl Content {
 }
 
 impl Pair {
-    /// The name of its contact, where another one hasn't got it.
+    /// The name of its contact unless another one has it.
     pub(super) fn plain_name(&self) -> String {
         format!("{} on {}", self.slave, self.master)
     }
 
-    /// Writes its contact, but for the law.
+    /// Writes its contact without the law.
     fn write(
         &self,
         (name, [slave, master]): (&str, &[String; 2]),

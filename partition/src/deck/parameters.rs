@@ -1,10 +1,10 @@
-//! The parameters of keywords that are read.
+//! Parameters of supported keywords.
 
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
-/// Parameters that are read, refused by the reader of the block, or have no effect.
+/// Parameters that are read, refused by the reader of the block, or without effect.
 const PARAMETERS: [(&str, &[&str]); 39] = [
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("CHANGE FRICTION", &["INTERACTION"]),
@@ -162,7 +162,7 @@ const PARAMETERS: [(&str, &[&str]); 39] = [
     ),
 ];
 
-/// Gives parameters their names as they are spelled here: blanks don't tell them apart.
+/// Replaces parameters by their spelling in this table: blanks are insignificant.
 pub(super) fn spell(block: &mut Block) {
     let letters = |word: &str| word.replace(' ', "");
     let known = PARAMETERS.iter().find(|(name, _)| *name == block.keyword);
@@ -175,10 +175,10 @@ pub(super) fn spell(block: &mut Block) {
     });
 }
 
-/// Refuses what a keyword says beside them.
+/// Refuses unknown parameters of a keyword.
 ///
 /// # Errors
-/// A parameter that isn't known, with its line.
+/// An unknown parameter, with its line.
 pub(super) fn check(source: &Source, block: &Block) -> Result<(), InputError> {
     let keyword = block.keyword.as_str();
     let known = PARAMETERS.iter().find(|(name, _)| *name == keyword);

@@ -1,4 +1,4 @@
-//! Nodes and elements of the whole deck that the names and numbers of a block stand for.
+//! Resolution of names and numbers in a block to nodes and elements of the whole deck.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,14 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Deck, LinePlace, Of, Source};
 use crate::name;
 
-/// The part or instance in which a block stands, by its name in capitals.
+/// The part or instance of a block, by its name in capitals.
 enum Scope {
     Whole,
     Part(String),
     Instance(String),
 }
 
-/// The deck's mesh, and where in it the blocks are read.
+/// The deck's mesh, and the current part or instance.
 pub(super) struct Places<'a> {
     pub(super) source: &'a Source,
     pub(super) deck: Deck,
@@ -53,10 +53,10 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The nodes or elements that an item means, each once.
+    /// The nodes or elements of an item, without repetition.
     ///
     /// # Errors
-    /// There are none of that number or name.
+    /// An unknown number or name.
     pub(super) fn members(
         &mut self,
         at: LinePlace,
@@ -95,7 +95,7 @@ impl<'a> Places<'a> {
         Ok(found)
     }
 
-    /// The single node that a parameter names.
+    /// The single node given by a parameter.
     pub(super) fn one_node(&mut self, block: &Block, key: &str) -> Result<u32, InputError> {
         let item = self.source.required(block, key)?;
         match self.members(block.place, Of::Nodes, item)?[..] {
@@ -111,7 +111,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// An error where there is no surface of this name.
+    /// An error if there is no surface of this name.
     pub(super) fn check_surface(&self, at: LinePlace, name: &str) -> Result<(), InputError> {
         let is_there =
             self.deck.surfaces.get(name).is_some() || self.deck.node_surfaces.get(name).is_some();
@@ -123,7 +123,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The dimension of the cells, 0 without.
+    /// The dimension of the cells; 0 without cells.
     pub(super) fn dim(&self) -> usize {
         let elements = 0..self.deck.elements.len();
         let cells = elements.filter(|&element| !self.deck.is_side[element]);
@@ -133,7 +133,7 @@ impl<'a> Places<'a> {
             .unwrap_or_default()
     }
 
-    /// True for every node that a cell has.
+    /// For every node whether it belongs to a cell.
     pub(super) fn with_cells(&self) -> Vec<bool> {
         let dim = self.dim();
         let mut has_cell = vec![false; self.deck.points.len()];

@@ -1,4 +1,4 @@
-//! `*PRE-TENSION SECTION`: bolts whose force or shortening stands at a node of their own.
+//! `*PRE-TENSION SECTION`: bolts whose force or shortening is given at a reference node.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 
-/// A section.
+/// A pretension section.
 struct Section {
     place: LinePlace,
     /// The surface, by name in capitals.
@@ -32,7 +32,7 @@ enum Given {
     Lock,
 }
 
-/// A section in the words of the scene.
+/// A pretension section in the syntax of the scene.
 pub(super) struct ScenePretension {
     name: String,
     on: String,
@@ -42,7 +42,7 @@ pub(super) struct ScenePretension {
 }
 
 impl Pretensions {
-    /// Reads a section.
+    /// Reads a pretension section.
     pub(super) fn read(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         if block.parameter("ELEMENT").is_some() {
@@ -69,10 +69,10 @@ impl Pretensions {
         Ok(())
     }
 
-    /// The nodes of sections beside others that stand for something.
+    /// Adds the nodes of pretension sections to the other reference nodes.
     ///
     /// # Errors
-    /// A node that stands for two things.
+    /// A node that represents two reference points.
     pub(super) fn references(
         &self,
         places: &Places,
@@ -91,11 +91,11 @@ impl Pretensions {
         Ok(references)
     }
 
-    /// The sections with the groups of their faces and what the steps say, per thickness of plane sections, under names that
-    /// are none of `names`.
+    /// The sections with the groups of their faces and their loads or displacements in steps, per thickness of plane
+    /// sections, under names that aren't in `names`.
     ///
     /// # Errors
-    /// A surface of nodes, a node of a body, force and shortening in turn.
+    /// A node-based surface, a node of a body, alternating force and shortening.
     pub(super) fn in_scene(
         &self,
         groups: &mut Groups,
@@ -140,7 +140,7 @@ impl Section {
         steps: &Steps,
         thickness: f64,
     ) -> Result<Vec<Given>, InputError> {
-        // A positive force pulls where the direction points away from the elements of the surface.
+        // A positive force is tensile if the direction points away from the elements of the surface.
         let sense = match groups.points_outward(&self.surface, self.direction) {
             true => 1.0,
             false => -1.0,

@@ -1,5 +1,5 @@
-//! `*NODE PRINT` and `*EL PRINT`: the tables that a deck asks for, with the sets that they are of, for the program that
-//! writes them of a result.
+//! `*NODE PRINT` and `*EL PRINT`: the tables requested by a deck, with their sets, for the program that writes them
+//! from a result.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Of, Source};
 use crate::name;
 
-/// The quantities that can be printed of nodes and of elements.
+/// The quantities available for nodes and for elements.
 const OF_NODES: [&str; 2] = ["U", "RF"];
 const OF_ELEMENTS: [&str; 3] = ["S", "E", "EVOL"];
 
@@ -25,9 +25,9 @@ pub struct Prints {
     pub nodes: BTreeMap<String, Vec<i64>>,
     /// Numbers of the elements of sets, by name.
     pub elements: BTreeMap<String, Vec<i64>>,
-    /// The nodes of these elements.
+    /// The elements of these sets with their nodes.
     pub cells: BTreeMap<i64, Cell>,
-    /// Numbers of the reference nodes of couplings, in the order of those of the scene.
+    /// Numbers of the reference nodes of couplings, in the order of the couplings in the scene.
     pub references: Vec<i64>,
 }
 
@@ -38,20 +38,20 @@ pub struct Table {
     pub label: String,
     /// Name of the set.
     pub set: String,
-    /// Sum written besides ("YES"), alone ("ONLY"), or not ("NO").
+    /// Totals: written in addition ("YES"), exclusively ("ONLY"), or not ("NO").
     pub totals: String,
 }
 
-/// An element that is printed.
+/// An element in a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cell {
     /// Numbers of its nodes.
     pub nodes: Vec<i64>,
-    /// True if its type is one of reduced integration, which has fewer points.
+    /// True for a type with reduced integration, which has fewer integration points.
     pub is_reduced: bool,
 }
 
-/// A block that asks for tables.
+/// A request for tables.
 struct Request {
     /// Number of the step, from 0.
     step: usize,
@@ -59,23 +59,23 @@ struct Request {
     tables: Vec<Table>,
 }
 
-/// The blocks of a deck that ask for tables.
+/// The requests of a deck.
 #[derive(Default)]
 pub(super) struct Requests {
     all: Vec<Request>,
     nodes: BTreeMap<String, Vec<u32>>,
     elements: BTreeMap<String, Vec<u32>>,
-    /// Local axes asked for, by some of the prints of nodes and of elements.
+    /// True if nodal tables, or element tables, are requested in local axes.
     has_local: [bool; 2],
-    /// The quantities that aren't printed, in words.
+    /// Descriptions of unavailable quantities.
     pub(super) left_out: BTreeSet<String>,
 }
 
 impl Requests {
-    /// Reads a block in a step, by its number from 0; outside of steps there is none.
+    /// Reads a request in a step, by its number from 0; `None` outside of steps.
     ///
     /// # Errors
-    /// A block without a step, a set that isn't there, totals that are none.
+    /// A request outside of steps, a missing set, an invalid value of totals.
     pub(super) fn read(
         &mut self,
         places: &mut Places,
@@ -132,7 +132,7 @@ impl Requests {
         Ok(())
     }
 
-    /// Takes the members of the set of a block, of nodes those that cells have, and reference nodes.
+    /// Records the members of a request's set; for nodes only those of cells, and reference nodes.
     fn take_set(
         &mut self,
         places: &mut Places,
@@ -184,7 +184,7 @@ impl Requests {
         labels
     }
 
-    /// Notes that tables along axes of nodes or of materials aren't printed, where there are some.
+    /// Notes that tables in local axes of nodes or of materials aren't available, if any are requested.
     pub(super) fn note_axes(&mut self, of_nodes: bool, of_materials: bool) {
         let keywords = ["*NODE PRINT", "*EL PRINT"].into_iter().zip(self.has_local);
         for ((keyword, asks), has_axes) in keywords.zip([of_nodes, of_materials]) {
@@ -194,7 +194,7 @@ impl Requests {
         }
     }
 
-    /// The tables at the end of every one of so many steps: those of nodes, or of elements, count until a step has others.
+    /// The tables at the end of every step: nodal and element requests each stay valid until a step replaces them.
     pub(super) fn tables(
         &mut self,
         places: &Places,

@@ -1,10 +1,10 @@
-//! Nodes that stand for reference points, and what acts on them.
+//! Nodes that represent reference points, with their loads.
 
 use std::collections::BTreeMap;
 
 use crate::scene::coupling::COMPONENTS;
 
-/// A node and a local axis from 0; of a reference node its rotations come behind its axes.
+/// A node and a local axis from 0; for a reference node, rotations follow the axes.
 pub(super) type NodeAxis = (u32, usize);
 
 /// Translations and rotations of a reference node.
@@ -13,18 +13,18 @@ pub(super) const FREEDOMS: usize = COMPONENTS.len();
 /// The degrees of freedom of a reference node in the plane: along x and y, and about z.
 const IN_THE_PLANE: [usize; 3] = [0, 1, 5];
 
-/// The meaning of a degree of freedom of a node that stands for a reference point.
+/// The components that the degrees of freedom of a reference node represent.
 #[derive(Clone, Copy)]
 pub(super) struct Reference {
     /// The reference node.
     pub(super) node: u32,
-    /// Component that is the node's first degree of freedom: 3 of a node for rotations.
+    /// Component that is the node's first degree of freedom: 3 for a node that represents rotations.
     pub(super) first: usize,
     /// The components that are coupled.
     pub(super) coupled: [bool; FREEDOMS],
 }
 
-/// The loads on a reference node at the end of a step, and the displacements that are prescribed there.
+/// The loads on a reference node at the end of a step, and its prescribed displacements.
 #[derive(Clone, Default)]
 pub(super) struct AtReference {
     pub(super) load: [f64; FREEDOMS],
@@ -32,7 +32,7 @@ pub(super) struct AtReference {
 }
 
 impl Reference {
-    /// That of the node of a pretension, whose first degree of freedom is the force or the shortening.
+    /// The reference point of a pretension's node, whose first degree of freedom is the force or the shortening.
     pub(super) fn of_pretension(node: u32) -> Self {
         Self {
             node,
@@ -41,13 +41,13 @@ impl Reference {
         }
     }
 
-    /// True if it is that of a pretension: what else is coupled has more than one component.
+    /// True for a pretension: couplings have more than one component.
     pub(super) fn is_of_pretension(&self) -> bool {
         self.coupled.iter().filter(|&&coupled| coupled).count() == 1
     }
 
-    /// The reference node and its component that is a degree of freedom, from 0 on; `None` where it isn't one in `dim`
-    /// dimensions or isn't coupled.
+    /// The reference node and its component for a degree of freedom, from 0 on; `None` if there is none in `dim`
+    /// dimensions or it isn't coupled.
     pub(super) fn component(&self, freedom: usize, dim: usize) -> Option<NodeAxis> {
         let component = self.first + freedom;
         let is_coupled = self.coupled.get(component) == Some(&true);

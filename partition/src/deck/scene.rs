@@ -1,4 +1,4 @@
-//! The scene that means the same as a deck.
+//! The scene equivalent to a deck.
 
 use std::collections::BTreeMap;
 
@@ -18,13 +18,14 @@ use crate::mesh::abaqus::Source;
 use crate::name;
 use crate::scene::material::PlaneState;
 
-/// Name of the mesh file of a scene that is written.
+/// Name of the mesh file of the written scene.
 pub(super) const MESH: &str = "mesh.msh";
 
-/// A modulus below which lengths are taken for millimetres: it decides what messages and pictures call the units.
+/// A modulus below which lengths are assumed to be in millimetres: it only determines the units named in messages and
+/// pictures.
 const OF_MILLIMETRES: f64 = 1e8;
 
-/// The text of the scene, and the thickness by which its forces are divided; sets that it needs are added to the deck.
+/// The text of the scene, and the thickness by which its forces are divided; required sets are added to the deck.
 pub(super) fn text(
     places: &mut Places,
     content: &Content,
@@ -75,7 +76,7 @@ pub(super) fn text(
     Ok((document.text(), thickness))
 }
 
-/// The plane state that the types of elements say; `None` in space.
+/// The plane state, from the types of elements; `None` in space.
 fn plane(places: &Places) -> Result<Option<PlaneState>, InputError> {
     if places.dim() != 2 {
         return Ok(None);
@@ -123,7 +124,7 @@ impl Content {
         })
     }
 
-    /// Writes the units and the materials; returns what that of each body is called.
+    /// Writes the units and the materials; returns the name of each body's material.
     fn materials(
         &self,
         source: &Source,
@@ -238,7 +239,7 @@ impl Content {
         Ok(force)
     }
 
-    /// Writes a load step: all that it has in place of the scene's loads.
+    /// Writes a load step, whose lists replace those of the scene.
     fn step(
         &self,
         source: &Source,
@@ -261,7 +262,7 @@ impl Content {
                 .iter()
                 .any(|load| load.list == list && load.values[number].is_some());
             if of_list.peek().is_some() && !acts {
-                // Those of the scene are replaced by none.
+                // Loads of the scene are replaced by an empty list.
                 document.key(list, "[]");
             }
         }
@@ -272,7 +273,7 @@ impl Content {
         Ok(())
     }
 
-    /// The forces and temperatures of bodies in a load step, written into it.
+    /// Writes the forces and temperatures of bodies in a load step.
     fn step_of_bodies(
         &self,
         source: &Source,

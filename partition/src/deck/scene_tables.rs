@@ -1,4 +1,4 @@
-//! The tables of a deck's scene: what it has on groups of the mesh, under names of their own, before it is written.
+//! The tables of a deck's scene: its content on named groups of the mesh, before it is written.
 
 use super::activation::Activation;
 use super::conditions::{self, SceneEquation};
@@ -15,15 +15,15 @@ use super::springs::SceneSpring;
 use super::ties::SceneTie;
 use crate::error::InputError;
 
-/// The tables of a scene, but for its materials.
+/// The tables of a scene, except materials.
 pub(super) struct SceneTables {
     pub(super) bodies: Vec<Body>,
-    /// The name of each body, which is that of its group.
+    /// The name of each body, equal to that of its group.
     pub(super) names: Vec<String>,
     pub(super) loads: Vec<OnGroup>,
     /// The sides of each pair of surfaces.
     pub(super) sides: Vec<[String; 2]>,
-    /// The name of each pair of surfaces.
+    /// The name of the contact of each pair.
     pub(super) pairs: Vec<String>,
     pub(super) ties: Vec<SceneTie>,
     equations: Vec<SceneEquation>,
@@ -31,16 +31,15 @@ pub(super) struct SceneTables {
     couplings: Vec<SceneCoupling>,
     sectors: Vec<SceneCyclic>,
     bolts: Vec<ScenePretension>,
-    /// The names of conditions that are taken.
+    /// Names in use.
     pub(super) taken: Names,
 }
 
 impl SceneTables {
-    /// The tables of what a deck holds, of plane scenes with forces per `thickness`; sets that they need are added to the
-    /// deck.
+    /// The tables of a deck's content, with forces per `thickness` in the plane; required sets are added to the deck.
     ///
     /// # Errors
-    /// Conditions that a scene can't say.
+    /// Constraints that a scene can't express.
     pub(super) fn new(
         places: &mut Places,
         content: &Content,
@@ -73,7 +72,7 @@ impl SceneTables {
             .collect();
         let (steps, systems) = (&content.steps, &content.steps.systems);
         Ok(Self {
-            // Fields are made in this order, on which names depend.
+            // The names depend on the order of these fields.
             equations: conditions::in_scene(&content.conditions, &mut groups, &mut taken),
             springs: (content.springs).in_scene(&mut groups, thickness, systems, &mut taken)?,
             couplings: content.couplings.in_scene(
@@ -94,14 +93,14 @@ impl SceneTables {
         })
     }
 
-    /// The steps of equations and bodies that aren't there in all.
+    /// The steps of equations and bodies that aren't active in all.
     pub(super) fn activations(&self) -> impl Iterator<Item = Activation> {
         let equations = self.equations.iter().filter_map(SceneEquation::activation);
         let bodies = self.bodies.iter().zip(&self.names);
         equations.chain(bodies.filter_map(|(body, name)| body.activation(name)))
     }
 
-    /// The conditions between groups, but for contacts and ties, written behind what is there.
+    /// Appends the constraints between groups, except contacts and ties.
     pub(super) fn write_conditions(&self, document: &mut Document) {
         for coupling in &self.couplings {
             coupling.write(document);
@@ -120,7 +119,7 @@ impl SceneTables {
         }
     }
 
-    /// The values of these conditions in a step, written behind it.
+    /// Appends the values of these constraints in a step.
     pub(super) fn write_step(&self, number: usize, document: &mut Document) {
         conditions::write_step(&self.equations, number, document);
         for coupling in &self.couplings {

@@ -1,4 +1,4 @@
-//! `*SOLID SECTION`: bodies, of elements with one material that the same loads act on in all steps.
+//! `*SOLID SECTION`: bodies, sets of elements with one material and the same loads in all steps.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -20,7 +20,7 @@ pub(super) struct Section {
     /// Names in capitals.
     pub(super) material: String,
     pub(super) orientation: Option<String>,
-    /// Thickness of plane elements; 1 where it isn't given.
+    /// Thickness of plane elements; 1 by default.
     pub(super) thickness: f64,
     pub(super) place: LinePlace,
 }
@@ -47,7 +47,7 @@ impl Section {
         })
     }
 
-    /// The same section of those of its elements that are some of `elements`, with another orientation.
+    /// The section restricted to `elements`, with another orientation.
     pub(super) fn turned(&self, elements: &[u32], orientation: &str) -> Self {
         let own = self.elements.iter().copied();
         Self {
@@ -62,20 +62,20 @@ impl Section {
 pub(super) struct Body {
     pub(super) cells: Vec<u32>,
     pub(super) section: usize,
-    /// The loads that act on it in some step.
+    /// The loads that act on it in any step.
     pub(super) loads: BTreeSet<usize>,
-    /// The temperature in every step, above that at the beginning.
+    /// The temperature in every step, relative to the initial one.
     pub(super) warmth: Vec<f64>,
     /// True if its elements have a reduced integration.
     pub(super) is_reduced: bool,
-    /// Their stress before anything acts.
+    /// Their initial stress.
     pub(super) initial: [f64; 6],
     /// Activation of the elements in every step.
     steps: Vec<bool>,
 }
 
 impl Body {
-    /// The steps in which a body is active, unless it is in all.
+    /// The steps in which a body is active; `None` if it is active in all.
     pub(super) fn activation(&self, name: &str) -> Option<Activation> {
         self.steps.contains(&false).then(|| Activation {
             name: name.to_owned(),
@@ -84,7 +84,7 @@ impl Body {
     }
 }
 
-/// Classes of elements, which become finer with every property that tells them apart.
+/// Classes of elements, refined by one property after the other.
 struct Classes(Vec<Option<u32>>);
 
 impl Classes {
@@ -99,7 +99,7 @@ impl Classes {
         }
     }
 
-    /// The `loads` that act on each element in any of the steps, by which elements of a class are told apart.
+    /// Splits classes by the `loads` that act on each element in any of the steps.
     fn refine_by_loads(
         &mut self,
         loads: &Loads,
@@ -135,7 +135,7 @@ impl Classes {
 /// The bodies of a deck.
 ///
 /// # Errors
-/// An element without a section; temperatures that differ within an element that expands.
+/// An element without a section; temperatures that vary within an element with thermal expansion.
 pub(super) fn bodies(
     places: &Places,
     sections: &[Section],
@@ -193,7 +193,7 @@ pub(super) fn bodies(
 /// The section of every element that is a cell, by its number.
 ///
 /// # Errors
-/// A cell without one.
+/// A cell without a section.
 fn sections_of_elements(
     places: &Places,
     sections: &[Section],
@@ -221,7 +221,7 @@ fn sections_of_elements(
     Ok(section_of)
 }
 
-/// The temperature of an element above that at the beginning.
+/// The temperature of an element relative to the initial one.
 fn warmth_of(
     places: &Places,
     element: u32,
@@ -251,7 +251,7 @@ fn warmth_of(
 /// The thickness of the plane sections.
 ///
 /// # Errors
-/// They have several.
+/// Several thicknesses.
 pub(super) fn thickness(places: &Places, sections: &[Section]) -> Result<f64, InputError> {
     let first = sections.first().map_or(1.0, |section| section.thickness);
     match sections.iter().find(|section| section.thickness != first) {

@@ -1,5 +1,5 @@
-//! `*SPRING` of elements of type SPRING1, springs between nodes and the ground, and of SPRING2 and SPRINGA, springs between two
-//! nodes along an axis or the line between them.
+//! `*SPRING` with elements of type SPRING1, springs between nodes and the ground, and of SPRING2 and SPRINGA, springs
+//! between two nodes along an axis or the line between them.
 
 use std::collections::BTreeMap;
 
@@ -12,26 +12,26 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, LinePlace, Of};
 use crate::name;
 
-/// The type of elements that are springs to the ground.
+/// The type of springs to the ground.
 const TO_GROUND: &str = "SPRING1";
 
-/// The type of those between two nodes along an axis.
+/// The type of springs between two nodes along an axis.
 const ALONG_AXIS: &str = "SPRING2";
 
-/// The type of those between two nodes along the line between them.
+/// The type of springs between two nodes along their line.
 const ALONG_LINE: &str = "SPRINGA";
 
-/// Parameters of `*SPRING` that are something else than a stiffness along an axis.
+/// Parameters of `*SPRING` for other than a constant stiffness along an axis.
 const REFUSED: [&str; 3] = ["NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"];
 
-/// Elements of one block that are springs.
+/// Spring elements of one block.
 struct Elements {
     place: LinePlace,
     /// Type of the elements in capitals.
     kind: String,
     /// Their set, by name in capitals.
     set: String,
-    /// Each with its number in the deck; a spring to the ground has one end.
+    /// The ends of each element with its number in the deck; a spring to the ground has one end.
     ends: Vec<(i64, Vec<u32>)>,
 }
 
@@ -40,7 +40,7 @@ struct Property {
     place: LinePlace,
     /// Set by name in capitals.
     set: String,
-    /// `None` along the line between the ends.
+    /// `None` for the line between the ends.
     axis: Option<usize>,
     stiffness: f64,
 }
@@ -52,8 +52,8 @@ pub(super) struct Springs {
     properties: Vec<Property>,
 }
 
-/// Springs in the words of the scene: the group of their nodes, or those of both ends and a name, and their stiffness along the
-/// axes, or the line.
+/// Springs in the syntax of the scene: the group of their nodes, or the groups of both ends and a name, and their
+/// stiffness along the axes, or the line.
 pub(super) struct SceneSpring {
     on: Vec<String>,
     name: String,
@@ -107,7 +107,7 @@ impl Springs {
         Ok(())
     }
 
-    /// `*SPRING`: a degree of freedom, and behind it a stiffness.
+    /// `*SPRING`: a degree of freedom, followed by a stiffness.
     pub(super) fn property(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         if let Some(key) = REFUSED.iter().find(|key| block.parameter(key).is_some()) {
@@ -118,7 +118,7 @@ impl Springs {
         let set = source.required(block, "ELSET")?.to_uppercase();
         let of = self.elements.iter().find(|of| of.set == set);
         let kind = of.map_or(TO_GROUND, |of| &of.kind);
-        // Before the stiffness along a line there is a line that may be empty.
+        // For springs along a line, the first line of data may be empty.
         let rows = block.data.len();
         if let (ALONG_LINE, Some(row)) = (kind, block.data.last().filter(|_| rows <= 2)) {
             let stiffness = self.stiffness(places, row)?;
@@ -174,11 +174,11 @@ impl Springs {
         }
     }
 
-    /// The springs with the groups of their nodes, which none of `systems` turns, under names that are none of `names`; per
-    /// `thickness` of plane sections.
+    /// The springs with the groups of their nodes, which may have none of the local `systems`, under names that aren't
+    /// in `names`; per `thickness` of plane sections.
     ///
     /// # Errors
-    /// Elements without a stiffness, a stiffness without elements, nodes of no body or with axes of their own.
+    /// Elements without a stiffness, a stiffness without elements, nodes without cells or with local axes.
     pub(super) fn in_scene(
         &self,
         groups: &mut Groups,
@@ -228,9 +228,9 @@ impl Springs {
     }
 }
 
-/// Springs to the ground by their stiffness.
+/// Springs to the ground, grouped by their stiffness.
 fn to_ground(groups: &mut Groups, at_nodes: BTreeMap<u32, [f64; 3]>) -> Vec<SceneSpring> {
-    // Bits of numbers that aren't negative are in the order of these.
+    // The bits of nonnegative numbers have the order of the numbers.
     let mut alike: BTreeMap<[u64; 3], Vec<u32>> = BTreeMap::new();
     for (node, stiffness) in at_nodes {
         let bits = stiffness.map(|k| (k + 0.0).to_bits());
@@ -253,7 +253,7 @@ impl Property {
     /// Checks the ends of a spring.
     ///
     /// # Errors
-    /// A node of no body, or with axes of its own.
+    /// A node without cells, or with local axes.
     fn check(
         &self,
         groups: &Groups,

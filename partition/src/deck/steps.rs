@@ -1,4 +1,4 @@
-//! `*STEP`: what acts at the end of each, along the axes of the scene.
+//! `*STEP`: loads and supports at the end of each step, along the axes of the scene.
 
 use std::collections::BTreeMap;
 
@@ -12,17 +12,17 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 use crate::name;
 
-/// Displacements of nodes along the axes of the scene.
+/// Prescribed displacements of nodes along the axes of the scene.
 type Held = BTreeMap<u32, [Option<f64>; 3]>;
 
 /// Loads and supports at the end of a step.
 pub(super) struct LoadStep {
     pub(super) name: Option<String>,
     pub(super) place: LinePlace,
-    /// Time since the deck's beginning.
+    /// Total time.
     pub(super) time: f64,
     pub(super) supports: Held,
-    /// The displacements prescribed along local axes that are none of the scene.
+    /// The displacements prescribed along local axes other than the scene's.
     pub(super) turned: BTreeMap<NodeAxis, f64>,
     pub(super) forces: BTreeMap<u32, [f64; 3]>,
     pub(super) faces: BTreeMap<(u32, usize), f64>,
@@ -34,7 +34,7 @@ pub(super) struct LoadStep {
     pub(super) references: BTreeMap<u32, AtReference>,
 }
 
-/// The steps of a deck, and what the step that is read adds to them.
+/// The steps of a deck, and the step being read.
 #[derive(Default)]
 pub(super) struct Steps {
     pub(super) loads: Loads,
@@ -42,13 +42,13 @@ pub(super) struct Steps {
     pub(super) amplitudes: Amplitudes,
     /// Local systems of nodes.
     pub(super) systems: BTreeMap<u32, System>,
-    /// The first load that comes in another way than in proportion to the time of its step.
+    /// The first load that isn't proportional to the time of its step.
     pub(super) bend: Option<LinePlace>,
     open: Option<Open>,
     total_time: f64,
 }
 
-/// A step that isn't at its end.
+/// A step being read.
 struct Open {
     name: Option<String>,
     place: LinePlace,
@@ -57,12 +57,12 @@ struct Open {
 }
 
 impl Steps {
-    /// True if a step is read.
+    /// True while a step is read.
     pub(super) fn is_open(&self) -> bool {
         self.open.is_some()
     }
 
-    /// The number of the step that is read, from 0.
+    /// The number of the step being read, from 0.
     pub(super) fn number(&self) -> Option<usize> {
         self.is_open().then_some(self.done.len())
     }
@@ -155,7 +155,7 @@ impl Steps {
         self.add(places, block, &origin)
     }
 
-    /// Adds a block; with `OP=NEW` what came before of its kind ends.
+    /// Adds a block; with `OP=NEW` earlier loads of its kind end.
     fn add(
         &mut self,
         places: &mut Places,
@@ -266,14 +266,14 @@ impl Steps {
     }
 }
 
-/// Nodes with axes of their own.
+/// Nodes with local axes.
 struct Local<'a> {
     places: &'a Places<'a>,
     systems: &'a BTreeMap<u32, System>,
 }
 
 impl Local<'_> {
-    /// Displacements along the scene's axes, and those along local axes that are none of them.
+    /// Displacements along the scene's axes, and those along other local axes.
     fn supports(&self, values: &BTreeMap<NodeAxis, f64>) -> (Held, BTreeMap<NodeAxis, f64>) {
         let dim = self.places.dim();
         let mut by_node = Held::new();

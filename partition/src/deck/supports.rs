@@ -1,4 +1,4 @@
-//! `*BOUNDARY`, and the concentrated forces that are written alike, `*CLOAD`.
+//! `*BOUNDARY`, and concentrated forces, `*CLOAD`, which have the same syntax.
 
 use super::loads::{Loads, item};
 use super::place::Places;
@@ -8,7 +8,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, Of};
 use crate::name;
 
-/// Words for supports, and the axes along and about which they hold.
+/// Names of supports, and the axes along and about which they hold.
 const WORDS: [(&str, &[usize]); 8] = [
     ("ENCASTRE", &[0, 1, 2, 3, 4, 5]),
     ("PINNED", &[0, 1, 2]),
@@ -20,7 +20,7 @@ const WORDS: [(&str, &[usize]); 8] = [
     ("ZASYMM", &[0, 1, 5]),
 ];
 
-/// Parameters of `*BOUNDARY` that say something else than displacements of nodes.
+/// Parameters of `*BOUNDARY` for other than displacements of nodes.
 const REFUSED: [&str; 6] = [
     "USER",
     "SUBMODEL",
@@ -34,7 +34,7 @@ const REFUSED: [&str; 6] = [
 const SPACE: usize = 3;
 const ROTATIONS: i64 = 6;
 
-/// The part of a support that isn't needed.
+/// Description of the irrelevant part of a support.
 const NO_ROTATIONS: &str = "*BOUNDARY (degrees of freedom 4 to 6, which nodes of solids haven't)";
 
 impl Loads {
@@ -85,7 +85,7 @@ impl Loads {
         Ok(())
     }
 
-    /// `*BOUNDARY, FIXED`: what a node is held at is what it has reached, of a pretension its shortening.
+    /// `*BOUNDARY, FIXED`: a node is held at its current displacement, a pretension at its current shortening.
     ///
     /// # Errors
     /// Displacements that the same block ends, a reference node of a coupling.
@@ -102,7 +102,7 @@ impl Loads {
             (Some(false), _) if !is_held => "of the reference node of a coupling",
             (None, Some(op)) if op.eq_ignore_ascii_case("NEW") => "and OP=NEW",
             _ => {
-                // Supports that hold already stay as they are.
+                // Supports that are active already don't change.
                 if of_pretension == Some(true) || !is_held {
                     self.fixed.insert(key);
                     self.supports.set(key, 0.0, origin);
@@ -118,7 +118,7 @@ impl Loads {
     /// Prescribes a displacement.
     ///
     /// # Errors
-    /// One of a node that is fixed where it was.
+    /// A displacement of a fixed node.
     fn prescribe(
         &mut self,
         places: &Places,
@@ -138,11 +138,11 @@ impl Loads {
         Ok(())
     }
 
-    /// The component that a degree of freedom of a node is, from 0 on; `None` where it has none: of a node of solids a
-    /// rotation, in the plane what leads out of it.
+    /// The component of a node's degree of freedom, from 0 on; `None` for a rotation of a solid's node, and for
+    /// displacements out of a plane model.
     ///
     /// # Errors
-    /// A reference node that isn't coupled by it.
+    /// A reference node without this coupled component.
     fn component(
         &self,
         places: &Places,

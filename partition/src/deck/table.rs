@@ -1,4 +1,4 @@
-//! Loads of one kind, by place: as steps add to them, replace them and let them go on.
+//! Loads of one kind by key, where steps add, replace or keep them.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::mesh::abaqus::LinePlace;
 /// Amplitudes by name in capitals.
 pub(super) type Amplitudes = BTreeMap<String, Amplitude>;
 
-/// A line of data of a step: where it stands, its step, counted from 1, and the name of its amplitude in capitals.
+/// The origin of a value: its line, its step, counted from 1, and the name of its amplitude in capitals.
 #[derive(Clone)]
 pub(super) struct Origin {
     pub(super) place: LinePlace,
@@ -16,14 +16,14 @@ pub(super) struct Origin {
     pub(super) amplitude: Option<String>,
 }
 
-/// Values at one place that add up.
+/// The values of one key, which add up.
 #[derive(Clone)]
 struct Entry {
     origin: Origin,
     values: Vec<(f64, Option<String>)>,
 }
 
-/// Values by place.
+/// Values by key.
 #[derive(Clone)]
 pub(super) struct Table<K>(BTreeMap<K, Entry>);
 
@@ -34,14 +34,14 @@ impl<K> Default for Table<K> {
 }
 
 impl<K: Ord + Clone> Table<K> {
-    /// Gives a place its value, in place of any other.
+    /// Sets the value of a key, replacing any other.
     pub(super) fn set(&mut self, key: K, value: f64, origin: &Origin) {
         let values = vec![(value, origin.amplitude.clone())];
         let origin = origin.clone();
         self.0.insert(key, Entry { origin, values });
     }
 
-    /// Adds to what the same step gave a place, and replaces what steps before it did.
+    /// Adds a value to those of the same step, and replaces those of earlier steps.
     pub(super) fn add(&mut self, key: K, value: f64, origin: &Origin) {
         match self.0.get_mut(&key) {
             Some(entry) if entry.origin.step == origin.step => {
@@ -51,18 +51,18 @@ impl<K: Ord + Clone> Table<K> {
         }
     }
 
-    /// Forgets what came before a step.
+    /// Removes the values of earlier steps.
     pub(super) fn begin(&mut self, step: usize) {
         self.forget(step, |_| true);
     }
 
-    /// Forgets what came before a step at places that a load of it `replaces`.
+    /// Removes the values of earlier steps whose key a load of this step `replaces`.
     pub(super) fn forget(&mut self, step: usize, replaces: impl Fn(&K) -> bool) {
         self.0
             .retain(|key, entry| entry.origin.step == step || !replaces(key));
     }
 
-    /// The values at a moment, and where they come from.
+    /// The values at a time.
     pub(super) fn at(&self, amplitudes: &Amplitudes, moment: Moment) -> BTreeMap<K, f64> {
         let values = self.0.iter();
         values
@@ -76,7 +76,7 @@ impl<K: Ord + Clone> Table<K> {
             .collect()
     }
 
-    /// The first value whose amplitude isn't linear between two moments of a step.
+    /// The first value whose amplitude isn't linear between two times of a step.
     pub(super) fn bend(
         &self,
         amplitudes: &Amplitudes,
@@ -92,7 +92,7 @@ impl<K: Ord + Clone> Table<K> {
         bent.map(|entry| entry.origin.place)
     }
 
-    /// Holds what amplitudes over the time of a step are at its end.
+    /// Freezes amplitudes in step time at their value at the end of the step.
     pub(super) fn hold(&mut self, amplitudes: &Amplitudes, end: Moment) {
         for entry in self.0.values_mut() {
             for (value, name) in &mut entry.values {
@@ -105,7 +105,7 @@ impl<K: Ord + Clone> Table<K> {
         }
     }
 
-    /// Place of the line that gives the value of a key.
+    /// The line that gives the value of a key.
     pub(super) fn place(&self, key: &K) -> Option<LinePlace> {
         self.0.get(key).map(|entry| entry.origin.place)
     }

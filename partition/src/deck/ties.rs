@@ -7,7 +7,7 @@ use super::place::Places;
 use crate::error::InputError;
 use crate::mesh::abaqus::Block;
 
-/// Parameters of `*TIE` that make something else of it than a tie of two sides.
+/// Parameters of `*TIE` for other than a tie of two sides.
 const REFUSED: [&str; 3] = ["MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"];
 
 /// A tie of two surfaces, by name in capitals.
@@ -23,7 +23,7 @@ struct Tie {
 #[derive(Default)]
 pub(super) struct Ties(Vec<Tie>);
 
-/// A tie in the words of the scene: its name, its sides, and what its table says beside them.
+/// A tie in the syntax of the scene: its name, its sides, and further keys of its table.
 pub(super) struct SceneTie {
     pub(super) name: String,
     pub(super) sides: [String; 2],
@@ -60,7 +60,7 @@ impl Ties {
         Ok(())
     }
 
-    /// The ties, with the groups that their surfaces make.
+    /// The ties, with the groups of their surfaces.
     pub(super) fn in_scene(&self, groups: &mut Groups) -> Vec<SceneTie> {
         let tie = |tie: &Tie| SceneTie {
             name: tie.name.clone(),
@@ -73,7 +73,7 @@ impl Ties {
 }
 
 impl SceneTie {
-    /// Writes the tie under a `name` that no other has.
+    /// Writes the tie under a unique `name`.
     pub(super) fn write(&self, name: &str, document: &mut Document) {
         let [slave, master] = &self.sides;
         document.table("[[tie]]");

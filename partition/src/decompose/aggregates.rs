@@ -1,5 +1,5 @@
-//! Aggregates of cells, which are dissected in their place: cuts run between aggregates, and are made shorter among the
-//! cells near them, so that most cells aren't looked at again at every cut.
+//! Aggregates of cells as the vertices of dissection: cuts run between aggregates and are then shortened among the
+//! cells near them, so that most cells aren't visited at every cut.
 
 mod near;
 
@@ -13,20 +13,20 @@ use crate::lists::Lists;
 /// Cells of an aggregate.
 const AGGREGATE: usize = 8;
 
-/// No vertex yet.
+/// Marks an aggregate without a vertex.
 const NONE: u32 = u32::MAX;
 
 /// All cells of a mesh.
 pub(super) struct Cells {
     graph: Graph,
-    /// Number of every cell's aggregate in the set that it is in now.
+    /// Number of the aggregate that every cell is in at present.
     aggregate: Vec<AtomicU32>,
 }
 
-/// A set of aggregates, each of which hangs together across facets.
+/// A set of aggregates, each connected across facets.
 pub(super) struct Aggregates<'a> {
     all: &'a Cells,
-    /// Vertices are the aggregates.
+    /// The graph with the aggregates as vertices.
     pub graph: Graph,
     /// The cells of every aggregate.
     pub cells: Lists<u32>,
@@ -38,7 +38,7 @@ impl Cells {
         Self { graph, aggregate }
     }
 
-    /// All of them in aggregates.
+    /// The set of all cells in aggregates.
     pub fn aggregates(&self) -> Aggregates<'_> {
         let (of, count) = self.graph.aggregates(AGGREGATE, Edge::is_facet);
         let cells = Lists::new(count, of.iter().copied().zip(0..));
@@ -56,8 +56,8 @@ impl<'a> Aggregates<'a> {
         Self { all, graph, cells }
     }
 
-    /// The aggregate of a cell and its place there; `None` where the cell isn't in this set: then its number is that of
-    /// an aggregate in another one, which may be changing now.
+    /// The aggregate of a cell and the cell's index in it; `None` if the cell isn't in this set: then its number is
+    /// that of an aggregate in another set, which another thread may be changing.
     fn find(&self, cell: u32) -> Option<(usize, usize)> {
         let aggregate = self.all.aggregate[cell as usize].load(Ordering::Relaxed) as usize;
         if aggregate >= self.graph.len() {
@@ -67,7 +67,7 @@ impl<'a> Aggregates<'a> {
         Some((aggregate, place))
     }
 
-    /// The sides of a cut between aggregates, once it is as short as it gets near there.
+    /// The sides of a cut between aggregates, after shortening it among the cells near it.
     pub fn halves(self, left: &[bool], aim: Aim) -> [Self; 2] {
         let near = self.near(left, aim);
         let mut vertex_of_aggregate = vec![NONE; self.graph.len()];
@@ -126,8 +126,8 @@ impl<'a> Aggregates<'a> {
         graphs.map(|graph| Self::new(self.all, graph, cells.next().unwrap_or_default()))
     }
 
-    /// The graph of one side, made of `aggregates` or of those of their cells that are there; `vertex_at` tells the vertex
-    /// that a cell is in, if it is on this side.
+    /// The graph of one side, whose vertices are `aggregates` or the cells near the cut on that side; `vertex_at`
+    /// returns the vertex of a cell if it is on this side.
     fn half(
         &self,
         places: &[Region],
@@ -201,7 +201,7 @@ mod tests {
         },
     };
 
-    /// Squares in rows, and contacts between two of these.
+    /// The graph of a grid of squares, with contacts between two of the rows.
     fn squares(rows: u32, columns: u32) -> Graph {
         let at = |row: u32, column: u32| row * columns + column;
         let mut edges = Vec::new();
@@ -237,7 +237,7 @@ mod tests {
         }
     }
 
-    /// Cuts a set and its halves several times, and tells `check` of each of them, and of its cells' own graph.
+    /// Cuts a set and its halves several times, and passes each of them with the graph of its cells to `check`.
     fn cut(set: Aggregates, times: usize, check: &mut impl FnMut(&Aggregates, Graph)) {
         let in_set = |cell| set.find(cell).is_some();
         let left: Vec<bool> = set.all.graph.ids.iter().map(|&cell| in_set(cell)).collect();

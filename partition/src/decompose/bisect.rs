@@ -1,32 +1,32 @@
-//! One cut of a graph in two.
+//! Bisection of a graph.
 
 use super::flow::{Region, cheapest_cuts};
 use super::graph::Graph;
 use super::metis;
 use crate::flops::{Front, condensation};
 
-/// Graphs of up to so many vertices are cut in all ways, and the best is taken.
+/// Number of vertices up to which all bisections are tried, and the best is taken.
 const EXHAUSTIVE: usize = 8;
 
-/// Graphs of more vertices are cut by aggregates of them first.
+/// Number of vertices above which a graph is first cut between aggregates.
 pub(super) const LARGE: usize = 8000;
 
-/// Vertices of an aggregate.
+/// Number of vertices of an aggregate.
 const AGGREGATE: usize = 8;
 
-/// The golden ratio's fraction.
+/// Fractional part of the golden ratio.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The aim of a cut.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
-    /// The part of the dofs that should be on the left.
+    /// The desired share of dofs on the left.
     pub share: f64,
-    /// Largest deviation from it.
+    /// Largest deviation from the share.
     pub slack: f64,
-    /// Cost of that deviation, as a part of the flops under the cut.
+    /// Cost of that deviation, relative to the flops under the cut.
     pub price: f64,
-    /// True if METIS is asked, too.
+    /// True if METIS proposes a cut, too.
     pub with_metis: bool,
     /// Effort of the search.
     pub effort: Effort,
@@ -35,24 +35,25 @@ pub(super) struct Aim {
 /// Effort of the search for a cut.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Number of directions in which cuts of a set are tried.
+    /// Number of directions across which cuts of a set are tried.
     pub directions: usize,
-    /// Vertices by which a direction is judged, at most.
+    /// Largest number of vertices in the sample that evaluates a direction.
     pub sample: usize,
-    /// Layers of aggregates on each side of a cut among which it is made shorter.
+    /// Layers of aggregates on each side of a cut within which the cut is shortened.
     pub layers: u32,
 }
 
-/// A cut, the better the lower its score.
+/// A cut with its score; lower is better.
 struct Cut {
     left: Vec<bool>,
     score: f64,
 }
 
-/// Cuts a connected graph of two vertices at least so that the front that merges both sides, and what is
-/// under it, cost little. Returns whether each vertex is on the left.
+/// Bisects a connected graph of at least two vertices at low cost of the front that merges both sides and of the
+/// subtrees under it. Returns for each vertex whether it is on the left.
 ///
-/// A large graph is cut by aggregates of its vertices first, and the cut is made shorter among those around it.
+/// A large graph is first cut between aggregates of its vertices, and the cut is then shortened among the vertices near
+/// it.
 pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
     let count = graph.len();
     let in_halves = || (0..count).map(|i| i < count.div_ceil(2)).collect();
@@ -78,7 +79,7 @@ pub(super) fn bisect(graph: &Graph, aim: Aim) -> Vec<bool> {
     best(graph, candidates, aim).unwrap_or_else(in_halves)
 }
 
-/// The best of several cuts; `None` where a side of each is empty.
+/// The best of several cuts; `None` if each has an empty side.
 pub(super) fn best(graph: &Graph, candidates: Vec<Vec<bool>>, aim: Aim) -> Option<Vec<bool>> {
     let cuts = candidates
         .into_iter()
@@ -87,7 +88,7 @@ pub(super) fn best(graph: &Graph, candidates: Vec<Vec<bool>>, aim: Aim) -> Optio
     best.map(|cut| cut.left)
 }
 
-/// A cut between aggregates, and the cheapest ones near it.
+/// A cut between aggregates, and the cheapest cuts near it.
 fn refined(
     graph: &Graph,
     coarse: &Graph,
@@ -110,7 +111,8 @@ fn refined(
     cuts
 }
 
-/// The band between the sides: some layers of vertices next to a cut, so few that neither side loses more than may be.
+/// The band between the sides: layers of vertices next to a cut, limited so that neither side can lose more than the
+/// aim allows.
 pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Region> {
     let most = aim.slack * graph.size();
     let mut distance = vec![u32::MAX; graph.len()];
@@ -149,7 +151,7 @@ pub(super) fn band(graph: &Graph, left: &[bool], aim: Aim) -> Vec<Region> {
 }
 
 impl Cut {
-    /// Judges a cut; `None` where a side is empty.
+    /// Evaluates a cut; `None` if a side is empty.
     fn new(graph: &Graph, left: Vec<bool>, aim: Aim) -> Option<Self> {
         let mut dofs = [0.0; 2];
         let mut outside = [0; 2];
@@ -196,8 +198,8 @@ fn geometric(graph: &Graph, aim: Aim) -> Vec<Vec<bool>> {
     tried.flat_map(|(_, slab)| slab.cuts(graph)).collect()
 }
 
-/// Vertices out of so many, at most `most`, spread evenly: at multiples of the golden ratio, as equal strides along
-/// a curve through a regular mesh would find its points in few rows.
+/// At most `most` of `len` vertices, spread evenly: at multiples of the golden ratio, as equal strides through a
+/// regular mesh would pick its vertices from few rows.
 fn sample(len: usize, most: usize) -> Vec<usize> {
     if len <= most {
         return (0..len).collect();
@@ -232,15 +234,15 @@ fn directions(graph: &Graph, sample: &[usize]) -> Vec<[f32; 3]> {
     }
     let axes = spread.symmetric_eigen().eigenvectors;
     let in_space = axes.column_iter().map(|axis| [axis[0], axis[1], axis[2]]);
-    // In the plane one of them points out of it.
+    // In the plane one principal axis points out of it.
     directions.extend(in_space.filter(|axis| dim == 3 || axis[2].abs() < 0.5));
     directions
 }
 
-/// Vertices between two lines, or planes, across a direction.
+/// Vertices between two parallel lines, or planes, across a direction.
 struct Slab {
     direction: [f32; 3],
-    /// Start of the range, the place where both sides have their share, and end.
+    /// Start of the range, position at which both sides have their share, and end.
     bounds: [f32; 3],
 }
 
@@ -264,7 +266,7 @@ impl Slab {
         Self { direction, bounds }
     }
 
-    /// Cost of the straight cut through its middle, as a sample of the vertices tells.
+    /// Cost of the straight cut at that position, estimated from a sample of the vertices.
     fn price(&self, graph: &Graph, sample: &[usize]) -> u64 {
         let is_left = |vertex| along(self.direction, graph.centres[vertex]) < self.bounds[1];
         let across = sample.iter().flat_map(|&vertex| {
@@ -275,7 +277,7 @@ impl Slab {
         across.map(|edge| u64::from(edge.weight())).sum()
     }
 
-    /// The cheapest cuts within it.
+    /// The cheapest cuts within the slab.
     fn cuts(&self, graph: &Graph) -> [Vec<bool>; 2] {
         let place = |&centre: &[f32; 3]| match along(self.direction, centre) {
             place if place < self.bounds[0] => Region::Left,

@@ -1,4 +1,4 @@
-//! Cuts a model along a decomposition.
+//! Splits a model along a decomposition.
 
 mod bodies;
 mod groups;
@@ -23,9 +23,9 @@ use crate::quantity::{LoadForce, NodalShares, NodeWeight};
 impl Problem {
     /// Gives every subdomain its slice of `model`.
     ///
-    /// Nodes keep the mesh's order within a subdomain, and on Γ. The force at a shared node goes
-    /// to the lowest of its subdomains, its supports to all of them. Subdomains that share a node
-    /// with a contact condition, or that a condition links, are one group.
+    /// Nodes keep the mesh's order within a subdomain, and on Γ. The force at a shared node goes to the lowest of its
+    /// subdomains, its supports to all of them. Subdomains that share a node with a contact constraint, or that a
+    /// constraint links, form one group.
     ///
     /// # Errors
     /// A decomposition that doesn't belong to the model, or a subdomain that lies in two bodies.
@@ -87,7 +87,7 @@ impl Problem {
     }
 }
 
-/// The load steps, with what isn't there in each.
+/// The load steps, with the bodies and contacts that are absent in each.
 fn load_steps(model: &Model, bodies: &Bodies) -> Vec<LoadStep> {
     (model.steps.iter())
         .map(|step| LoadStep {
@@ -114,7 +114,7 @@ fn summary(contact: &model::Contact) -> ContactSummary {
     }
 }
 
-/// A subdomain without nodes and cells in a scene of so many load steps.
+/// A subdomain without nodes and cells in a scene with `steps` load steps.
 fn empty(index: usize, steps: usize) -> Subdomain {
     Subdomain {
         index,
@@ -189,7 +189,7 @@ fn cut(
     Ok(subdomains)
 }
 
-/// Gives every subdomain its supports, and the forces at its nodes that no lower one has.
+/// Gives every subdomain its supports, and the forces at nodes of which it is the lowest subdomain.
 fn give_loads(model: &Model, owners: &Owners, subdomains: &mut [Subdomain]) {
     for (i, support) in model.supports.iter().enumerate() {
         for &(owner, node) in owners.of.of(support.node as usize) {
@@ -212,7 +212,7 @@ fn give_loads(model: &Model, owners: &Owners, subdomains: &mut [Subdomain]) {
     }
 }
 
-/// Gives every subdomain the weights and forces at its nodes that no lower one has.
+/// Gives every subdomain the weights and forces at nodes of which it is the lowest subdomain.
 fn give_shares(all: &NodalShares, owners: &Owners, subdomains: &mut [Subdomain]) {
     let first = |node: u32| owners.of.of(node as usize).first().copied();
     for weight in &all.weights {
@@ -233,7 +233,7 @@ fn give_shares(all: &NodalShares, owners: &Owners, subdomains: &mut [Subdomain])
     }
 }
 
-/// Gives every subdomain its part of the initial stresses.
+/// Gives every subdomain its part of the initial stress.
 fn give_initial_stress(
     model: &Model,
     decomposition: &Decomposition,
@@ -243,7 +243,7 @@ fn give_initial_stress(
     if model.initial_stress.cells.is_empty() {
         return;
     }
-    // The first of the materials that a subdomain has around its nodes.
+    // The first material of the cells around each node of a subdomain.
     let sizes = subdomains.iter().map(|s| s.points.len());
     let mut material: Vec<Vec<u32>> = sizes.map(|size| vec![u32::MAX; size]).collect();
     for (subdomain, first) in subdomains.iter().zip(&mut material) {

@@ -1,17 +1,17 @@
-//! Recursive bisection: the tree of the cuts.
+//! Nested dissection: the tree of recursive bisections.
 
 use super::aggregates::{Aggregates, Cells};
 use super::bisect::{Aim, Effort, LARGE, bisect};
 use super::graph::Graph;
 use crate::problem::Hierarchy;
 
-/// Vertices, or aggregates of them, of all graphs that METIS is asked to cut; it takes some microseconds for each.
+/// Total number of vertices, or aggregates, of all graphs passed to METIS, which takes some microseconds for each.
 const METIS_VERTICES: usize = 300_000;
 
-/// Graphs of more vertices are dissected by aggregates of them.
+/// Number of vertices above which aggregates are dissected.
 const AGGREGATEED: usize = 40_000;
 
-/// Effort of the search for cuts, and for those of small sets of aggregates, of which there are many.
+/// Effort of the search for cuts; the second one is for small sets of aggregates, of which there are many.
 const CAREFUL: Effort = Effort {
     directions: 4,
     sample: 1024,
@@ -23,45 +23,46 @@ const QUICK: Effort = Effort {
     layers: 3,
 };
 
-/// Largest growth of the largest of a number of sets by a cut through pieces, over that with pieces left whole.
+/// Ratio of the largest set with a cut through pieces to that with pieces kept whole, above which pieces are kept
+/// whole.
 const CROOKED: f64 = 1.2;
 
-/// Levels that many ranks can work on side by side.
+/// Number of levels that many ranks can process in parallel.
 const PARALLEL_LEVELS: usize = 4;
 
-/// Largest deviation of a side from its share of the dofs, and the cost of that deviation as a part of the flops under a
-/// cut: where the user says how many subdomains there should be, on levels with work for many ranks, and below.
+/// Largest deviation of a side from its share of the dofs, and the cost of that deviation relative to the flops under a
+/// cut: for a prescribed number of subdomains, on levels with work for many ranks, and below.
 const EXACT: (f64, f64) = (0.03, 1.0);
 const ABOVE: (f64, f64) = (0.08, 0.1);
 const BELOW: (f64, f64) = (0.15, 0.02);
 
-/// Dofs from which on both sides of a cut are dissected at the same time.
+/// Number of dofs above which both sides of a cut are dissected in parallel.
 const PARALLEL: f64 = 50_000.0;
 
-/// Vertices below which what a cut leaves apart from the rest of a side goes to the other one; in larger sets
-/// later cuts see to it.
+/// Number of vertices below which fragments that a cut disconnects from a side move to the other side; in larger sets
+/// later cuts take care of them.
 const TIDIED: usize = 50_000;
 
-/// The end of a dissection.
+/// The condition at which a dissection ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Wanted {
-    /// Sets of at most so many dofs, or single vertices.
+    /// Sets of at most this many dofs, or single vertices.
     Dofs(f64),
-    /// Exactly so many sets that are connected across facets.
+    /// Exactly this many sets that are connected across facets.
     Sets(usize),
 }
 
 /// A set of vertices with all cuts through it.
 #[derive(Clone, Debug)]
 pub(super) enum Branch {
-    /// A set that isn't cut any more, by the ids of its vertices.
+    /// A set that isn't cut further, by the ids of its vertices.
     Leaf(Vec<u32>),
-    /// The sides of a cut, and whether anything lies across it; or the pieces of a set.
+    /// The sides of a cut, and whether edges cross it; or the pieces of a set.
     Inner(Vec<Branch>, bool),
 }
 
 impl Branch {
-    /// Number of its leaves.
+    /// Number of leaves.
     pub fn leaves(&self) -> usize {
         match self {
             Self::Leaf(_) => 1,
@@ -69,8 +70,8 @@ impl Branch {
         }
     }
 
-    /// The same tree by numbers; `number` tells that of a leaf, and is asked depth first. What nothing ties
-    /// to each other has roots of its own.
+    /// The tree by numbers; `number` returns that of a leaf, and is called depth first. Unconnected sides at the top
+    /// become separate roots.
     pub fn hierarchy(&self, mut number: impl FnMut(&[u32]) -> u32) -> Hierarchy {
         let mut parent = vec![None; self.leaves()];
         self.hang(true, &mut number, &mut parent);
@@ -80,7 +81,7 @@ impl Branch {
         }
     }
 
-    /// Numbers its descendants, and returns the nodes that are adjacent: itself, or its sides.
+    /// Numbers the descendants, and returns the children of the next node above: the branch itself, or its sides.
     fn hang(
         &self,
         is_top: bool,
@@ -108,8 +109,8 @@ impl Branch {
     }
 }
 
-/// Dissects a graph of one vertex at least. Of [`Wanted::Sets`] there are at least as many as pieces, and at most
-/// as many as vertices.
+/// Dissects a graph of at least one vertex. For [`Wanted::Sets`] the number lies between those of pieces and of
+/// vertices.
 pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
     match wanted {
         Wanted::Dofs(most) if most > 0.0 && graph.len() > AGGREGATEED => {
@@ -125,11 +126,11 @@ pub(super) fn dissect(graph: Graph, wanted: Wanted) -> Branch {
     }
 }
 
-/// The set that is dissected.
+/// The set to be dissected.
 enum Set<'a> {
     /// Vertices of a graph.
     Vertices(Graph),
-    /// Aggregates of them, where there are many.
+    /// Aggregates of vertices, for large graphs.
     Aggregates(Aggregates<'a>),
 }
 
@@ -149,7 +150,7 @@ impl Set<'_> {
         }
     }
 
-    /// The ids of what a vertex of its graph stands for.
+    /// The ids that a vertex of its graph stands for.
     fn ids(&self, vertex: usize) -> &[u32] {
         match self {
             Self::Vertices(graph) => &graph.ids[vertex..=vertex],
@@ -215,7 +216,7 @@ fn branch(set: Set, wanted: Wanted, level: usize, for_metis: usize) -> Branch {
     Branch::Inner(sides, is_joined)
 }
 
-/// Requirements on the halves of a graph, from those on the whole.
+/// The end conditions of both halves of a graph, from that of the whole.
 fn wanted_of_halves(wanted: Wanted, of_a: &Graph, of_b: &Graph) -> [Wanted; 2] {
     match wanted {
         Wanted::Sets(count) => {
@@ -231,7 +232,7 @@ fn wanted_of_halves(wanted: Wanted, of_a: &Graph, of_b: &Graph) -> [Wanted; 2] {
     }
 }
 
-/// The pieces of a set that isn't cut any more.
+/// The pieces of a set that isn't cut further.
 fn leaf(set: &Set) -> Branch {
     let graph = set.graph();
     let (piece, count) = graph.pieces();
@@ -248,8 +249,8 @@ fn leaf(set: &Set) -> Branch {
     Branch::Inner(leaves, is_tied || parts < count)
 }
 
-/// The sides of a cut: parts of the graph that nothing ties to each other, pieces that are tied only by
-/// contacts, or what [`bisect`] finds.
+/// The sides of a cut: disconnected parts of the graph, pieces that are linked only by contacts, or the result of
+/// [`bisect`].
 fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     let (part, count) = graph.parts(|_, _| true);
     if count > 1 {
@@ -283,8 +284,7 @@ fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     }
 }
 
-/// Number of the `count` sets that each of several pieces gets: one, and then always one more the piece whose sets are
-/// the largest.
+/// Distribution of `count` sets among pieces: one each, and every further one to the piece with the largest sets.
 fn allotted(sizes: &[f64], count: usize) -> Vec<usize> {
     let mut shares = vec![1; sizes.len()];
     for _ in sizes.len()..count {
@@ -297,13 +297,13 @@ fn allotted(sizes: &[f64], count: usize) -> Vec<usize> {
     shares
 }
 
-/// The sides of a cut that leaves the parts with equal labels whole.
+/// The sides of a cut that doesn't split vertices of equal labels.
 fn whole(graph: &Graph, labels: &[u32], count: usize, aim: Aim) -> Vec<bool> {
     let left = bisect(&graph.contracted(labels, count), aim);
     labels.iter().map(|&label| left[label as usize]).collect()
 }
 
-/// The same cut, but such that what is left of a piece of the graph on either side is one piece itself.
+/// The cut, changed so that each piece of the graph stays connected on either side.
 fn tidied(graph: &Graph, mut left: Vec<bool>) -> Vec<bool> {
     let (piece, count) = graph.pieces();
     for side in [true, false] {

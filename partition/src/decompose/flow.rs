@@ -1,8 +1,8 @@
-//! The cheapest cut between two sides of a graph: a maximal flow from one to the other (Dinic 1970).
+//! The minimum cut between two sides of a graph, by a maximum flow from one to the other (Dinic 1970).
 
 use super::graph::Graph;
 
-/// Side that a vertex has to be on.
+/// Region of a vertex: fixed on a side, or free between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Region {
     Left,
@@ -10,19 +10,19 @@ pub(super) enum Region {
     Right,
 }
 
-/// An edge of the network as one of its ends sees it.
+/// An edge of the network, stored at one of its ends.
 #[derive(Clone, Copy)]
 struct Arc {
     to: u32,
-    /// The number of the edge as its other end sees it.
+    /// The index of the same edge at its other end.
     reverse: u32,
-    /// The capacity that is left.
+    /// Residual capacity.
     capacity: u32,
 }
 
 /// The vertices between the sides.
 struct Network {
-    /// Start of the arcs of every vertex, and the end of the last one's.
+    /// Start of the arcs of every vertex, and the end of the last.
     starts: Vec<u32>,
     arcs: Vec<Arc>,
     /// Residual capacity from the left side to every vertex, and from there to the right side.
@@ -30,11 +30,11 @@ struct Network {
     demand: Vec<u32>,
 }
 
-/// Distance of vertices that the search didn't reach.
+/// Marks the distance of vertices that the search didn't reach.
 const FAR: u32 = u32::MAX;
 
-/// The cheapest cuts of the edges between what is `Left` and what is `Right`: whether each vertex is on the
-/// left, for the cut that lies next to the left side, and for the one next to the right side.
+/// The minimum cuts between the `Left` and the `Right` region: for each vertex whether it is on the left, in the cut
+/// nearest to the left side and in that nearest to the right side.
 pub(super) fn cheapest_cuts(graph: &Graph, places: &[Region]) -> [Vec<bool>; 2] {
     let between: Vec<u32> = (0..graph.len() as u32)
         .filter(|&vertex| places[vertex as usize] == Region::Between)
@@ -64,8 +64,7 @@ impl Network {
             supply: vec![0; between.len()],
             demand: vec![0; between.len()],
         };
-        // The lists of edges ascend, so that the arcs to smaller vertices come in the order in which these
-        // are looked at here.
+        // The lists of edges ascend, so that arcs to smaller vertices appear in the order of this loop.
         let mut next = Vec::with_capacity(between.len());
         for (at, &vertex) in between.iter().enumerate() {
             next.push(network.arcs.len() as u32);
@@ -105,7 +104,7 @@ impl Network {
         self.starts[vertex] as usize..self.starts[vertex + 1] as usize
     }
 
-    /// The vertices that can be reached from those that `starts`, along arcs or, `backwards`, against them.
+    /// The vertices reachable from those for which `starts` is true, along arcs or, with `backwards`, against them.
     fn reached(&self, starts: impl Fn(&Self, usize) -> bool, backwards: bool) -> Vec<bool> {
         let mut reached: Vec<bool> = (0..self.supply.len()).map(|v| starts(self, v)).collect();
         let mut stack: Vec<usize> = (0..reached.len()).filter(|&v| reached[v]).collect();
@@ -165,8 +164,8 @@ impl Network {
         true
     }
 
-    /// Lets flow what can from one source along levels; `next` has the first arc of every vertex that may
-    /// still lead on.
+    /// Pushes a blocking flow from one source along the levels; `next` has the first arc of every vertex that may still
+    /// lead to the sink.
     fn push_from(
         &mut self,
         source: usize,

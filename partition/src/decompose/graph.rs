@@ -1,17 +1,17 @@
-//! The graph that is dissected: its vertices are cells, or the subdomains that a scene prescribes; its edges
-//! are facets, and contact points that tie the cells on both sides to each other.
+//! The graph to be dissected: its vertices are cells, or the subdomains prescribed by a scene; its edges are facets,
+//! and contact points that tie the cells on both sides to each other.
 
 use super::ties::{NODE, hinges, ties};
 use crate::lists::Lists;
 use crate::mesh::Mesh;
 use crate::model::Model;
 
-/// An edge as one of its ends sees it.
+/// An edge, stored at one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Edge {
     /// The vertex at its other end.
     pub to: u32,
-    /// Cost of cutting it, and whether it is a facet in the lowest bit.
+    /// Cost of cutting it; the lowest bit tells a facet from a contact.
     packed: u32,
 }
 
@@ -29,33 +29,33 @@ impl Edge {
         Self { to, ..self }
     }
 
-    /// One edge in place of this one and another.
+    /// One edge that replaces this one and another to the same vertex.
     pub fn joined(self, other: &Self) -> Self {
         let is_facet = self.is_facet() || other.is_facet();
         Self::new(self.to, self.weight() + other.weight(), is_facet)
     }
 
-    /// Cost of cutting it: [`NODE`] for every node that both sides share then.
+    /// Cost of cutting it: [`NODE`] for every node that both sides would share.
     pub fn weight(self) -> u32 {
         self.packed >> 1
     }
 
-    /// True if it is a facet, and no contact.
+    /// True for a facet, false for a contact.
     pub fn is_facet(self) -> bool {
         self.packed & 1 == 1
     }
 }
 
-/// Cells or subdomains, and how they hang together.
+/// The dual graph of cells, or of subdomains.
 #[derive(Clone, Debug)]
 pub(super) struct Graph {
     /// Dimension of space, and the number of dofs of a node.
     pub dim: usize,
     /// The number of the cell, or of the subdomain, of each vertex.
     pub ids: Vec<u32>,
-    /// Dofs of every vertex; nodes are shared out among the cells around them.
+    /// Dofs of every vertex; each node is divided among the cells around it.
     pub dofs: Vec<f32>,
-    /// Centre of every vertex, from the middle of the mesh.
+    /// Centre of every vertex, relative to the middle of the mesh.
     pub centres: Vec<[f32; 3]>,
     /// Weight of the edges from every vertex to vertices that are not in this graph.
     pub outside: Vec<u32>,
@@ -64,7 +64,7 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// A graph with room for as many vertices, of which it has only the numbers yet.
+    /// An empty graph with room for `count` vertices.
     pub fn with_capacity(dim: usize, count: usize) -> Self {
         Self {
             dim,
@@ -107,7 +107,7 @@ impl Graph {
         self.dofs.iter().map(|&dofs| f64::from(dofs)).sum()
     }
 
-    /// Dofs of all vertices of each of `count` labels.
+    /// Total dofs of the vertices of each of `count` labels.
     pub fn sizes_of(&self, labels: &[u32], count: usize) -> Vec<f64> {
         let mut sizes = vec![0.0; count];
         for (&label, &dofs) in labels.iter().zip(&self.dofs) {
@@ -116,7 +116,7 @@ impl Graph {
         sizes
     }
 
-    /// Dofs of every piece.
+    /// Total dofs of every piece.
     pub fn sizes_of_pieces(&self) -> Vec<f64> {
         let (piece, count) = self.pieces();
         self.sizes_of(&piece, count)
@@ -127,12 +127,12 @@ impl Graph {
         self.edges.of(vertex)
     }
 
-    /// Dofs of nodes that edges of so much weight stand for.
+    /// Number of dofs of the nodes that this `weight` of edges represents.
     pub fn dofs_of(&self, weight: u64) -> f64 {
         (self.dim as u64 * weight) as f64 / f64::from(NODE)
     }
 
-    /// The graphs of the vertices that are on the left and of those that aren't.
+    /// The graphs of the vertices on the left and of the others.
     pub fn halves(self, left: &[bool]) -> [Self; 2] {
         let mut counts = [0; 2];
         let mut place = Vec::with_capacity(self.len());
@@ -171,8 +171,7 @@ impl Graph {
         })
     }
 
-    /// The graph that has one vertex for all vertices of the same label, and the label as its id; labels
-    /// are `0..count`.
+    /// The graph with one vertex for all vertices of a label, and the label as its id; labels are `0..count`.
     pub fn contracted(&self, labels: &[u32], count: usize) -> Self {
         let mut dofs = vec![0.0; count];
         let mut centres = vec![[0.0; 3]; count];
@@ -224,7 +223,7 @@ impl Graph {
         }
     }
 
-    /// Dofs and centre of some vertices.
+    /// Total dofs and centre of some vertices.
     pub fn middle(&self, vertices: &[u32]) -> (f32, [f32; 3]) {
         let (mut dofs, mut centre) = (0.0, [0.0; 3]);
         for &vertex in vertices {
@@ -235,8 +234,8 @@ impl Graph {
         (dofs, centre.map(|c| c / dofs))
     }
 
-    /// Aggregates of about `size` vertices each that hang together by edges that `joins`: that of every vertex, and their
-    /// number.
+    /// Aggregates of about `size` vertices each, connected by edges for which `joins` is true: that of every vertex,
+    /// and their number.
     pub fn aggregates(&self, size: usize, joins: impl Fn(Edge) -> bool) -> (Vec<u32>, usize) {
         let mut of = vec![u32::MAX; self.len()];
         let mut count = 0;
@@ -259,7 +258,7 @@ impl Graph {
                 }
                 at += 1;
             }
-            // A part that is left between others joins one of them.
+            // A remnant between other aggregates joins one of them.
             if members.len() < size / 2 {
                 let others = members.iter().flat_map(|&vertex| self.edges(vertex));
                 let other = others
@@ -276,8 +275,8 @@ impl Graph {
         (of, count as usize)
     }
 
-    /// Connected component of every vertex by edges that `holds`, numbered in the order of first vertices, and the
-    /// number of components.
+    /// Connected component of every vertex by edges for which `holds` is true, numbered in the order of first vertices,
+    /// and the number of components.
     pub fn parts(&self, holds: impl Fn(usize, &Edge) -> bool) -> (Vec<u32>, usize) {
         let mut of = vec![u32::MAX; self.len()];
         let mut count = 0;
@@ -302,7 +301,7 @@ impl Graph {
         (of, count as usize)
     }
 
-    /// The parts that hang together across facets.
+    /// The components connected across facets.
     pub fn pieces(&self) -> (Vec<u32>, usize) {
         self.parts(|_, edge| edge.is_facet())
     }
@@ -362,8 +361,8 @@ fn edges_of(model: &Model) -> Lists<Edge> {
     edges
 }
 
-/// Cost of cutting a facet of a cell: its nodes, each shared with the facets around it on the surface of the cut,
-/// those on an edge with one, those at a corner with five triangles or three quadrilaterals, or with one line.
+/// Cost of cutting a facet of a cell: the weight of its nodes, each divided by the number of facets around it on a cut
+/// surface: six triangles, four quadrilaterals or two lines at a corner, two facets on an edge.
 fn facet_weight(model: &Model, cell: usize) -> u32 {
     let facets = model.mesh.cells.kind(cell).facets();
     let Some((facet, _)) = facets.first() else {

@@ -7,20 +7,20 @@ use metis::option::{Seed, UFactor};
 
 use super::graph::Graph;
 
-/// METIS draws from the C library's one generator: two calls at once would disturb each other.
+/// METIS draws from the C library's global generator, which concurrent calls would disturb.
 static GENERATOR: Mutex<()> = Mutex::new(());
 
-/// Largest sum of weights that METIS is given; its integers have 32 bits.
+/// Largest sum of weights passed to METIS, whose integers have 32 bits.
 const LARGEST_SUM: f64 = (1 << 30) as f64;
 
-/// The weight of a dof, where the sum allows.
+/// The weight of a dof, if the sum allows it.
 const WEIGHT_OF_DOF: f64 = 16.0;
 
 /// Largest excess weight of a side, in thousandths.
 const SLACK: i32 = 60;
 
-/// Cuts a graph in two so that the edges across weigh little and `share` of its dofs are on the left: whether
-/// each vertex is. The same for the same graph; `None` where METIS gives up.
+/// Bisects a graph with a small weight of the cut edges and `share` of the dofs on the left: for each vertex whether it
+/// is on the left. Deterministic; `None` if METIS fails.
 pub(super) fn bisection(graph: &Graph, share: f64) -> Option<Vec<bool>> {
     let index = |x: usize| Idx::try_from(x).ok();
     let mut offsets = Vec::with_capacity(graph.len() + 1);

@@ -1,16 +1,16 @@
-//! Summary of a decomposition.
+//! Summary of a decomposition for the user.
 
 use std::fmt;
 
 use crate::hierarchy::work::Work;
 use crate::problem::{ContactKind, Problem};
 
-/// Sizes and balance of a problem; its `Display` is what the partition tool prints.
+/// Sizes and balance of a problem; the partition tool prints its `Display`.
 #[derive(Clone, Copy, Debug)]
 pub struct Summary<'a>(&'a Problem);
 
 impl Problem {
-    /// Sizes and balance.
+    /// The summary of the problem.
     pub fn summary(&self) -> Summary<'_> {
         Summary(self)
     }
@@ -27,14 +27,14 @@ impl Summary<'_> {
         sizes
     }
 
-    /// Cells of the largest subdomain over the mean.
+    /// Number of cells of the largest subdomain over the average.
     pub fn imbalance(&self) -> f64 {
         let cells = self.0.catalog.subdomains.iter().map(|s| s.cells);
         let (count, largest) = (cells.len(), cells.clone().max());
         largest.unwrap_or(0) as f64 * count as f64 / cells.sum::<usize>().max(1) as f64
     }
 
-    /// The discretization of each contact, as its points show.
+    /// The discretization of each contact, as determined from its points.
     fn pairings(&self) -> Vec<&'static str> {
         let mut pairings = vec![""; self.0.catalog.contacts.len()];
         for point in &self.0.catalog.points {
@@ -50,7 +50,7 @@ impl Summary<'_> {
         pairings
     }
 
-    /// Number of subdomains of contact groups, in words.
+    /// Number of subdomains of contact groups, in plain words.
     fn sizes_of_groups(&self) -> String {
         let sizes = self.groups();
         let words = [

@@ -1,17 +1,17 @@
-//! Ties between cells that share no facet: contact points, and nodes at which pieces hang together.
+//! Links between cells without a common facet: contact points, and nodes at which pieces of the mesh are joined.
 
 use crate::contact_point::Law;
 use crate::lists::Lists;
 use crate::model::Model;
 
-/// Weight of a node that a cut lets both sides share.
+/// Weight of a node that both sides of a cut share.
 pub(super) const NODE: u32 = 256;
 
-/// Nodes that a contact point with friction adds to the front that merges its sides: one of each side. Without, sides
-/// are joined along the normal alone: one of the unknowns of a node takes the place of what they share.
+/// Nodes that a contact point with friction adds to the front that merges its sides: one of each side. Without
+/// friction, sides are joined only along the normal: one unknown of a node replaces the shared ones.
 const NODES_OF_POINT: u32 = 2;
 
-/// Pairs of cells of two pieces of the mesh that share a node but no facet, and the weight of that.
+/// Pairs of cells of two pieces of the mesh that share a node but no facet, and the weight of that link.
 pub(super) fn hinges(model: &Model) -> Vec<(u32, u32, u32)> {
     let piece = model.topology.pieces();
     let mut ties = Vec::new();
@@ -34,7 +34,7 @@ pub(super) fn hinges(model: &Model) -> Vec<(u32, u32, u32)> {
 
 /// The pairs of cells that contact points tie to each other, and the weights of these ties.
 ///
-/// A point ties each cell that has a facet at its nodes on side a to each that has one at those on side b.
+/// A point ties each cell with a facet at its nodes on side a to each cell with one at its nodes on side b.
 pub(super) fn ties(model: &Model) -> Vec<(u32, u32, u32)> {
     let mesh = &model.mesh;
     let points = || model.contacts.iter().flat_map(|contact| &contact.points);

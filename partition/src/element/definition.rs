@@ -1,4 +1,4 @@
-//! The definition of a reference element: the domain that it fills, nodes, shape functions, facets and rules.
+//! The definition of a reference element: its domain, nodes, shape functions, facets and quadrature rules.
 
 use super::kind::ElementKind;
 
@@ -41,7 +41,7 @@ impl Domain {
         }
     }
 
-    /// The corners whose linear shape functions aren't 0 at a point.
+    /// The corners with nonzero linear shape functions at a point.
     pub(super) fn corners_near(self, xi: [f64; 3]) -> Vec<usize> {
         let linear = match self {
             Self::Point => ElementKind::Point1,
@@ -70,9 +70,9 @@ impl Domain {
         }
     }
 
-    /// The point that a point of the unit square or cube stands for; a triangle is the square with one of
-    /// its edges collapsed, (s, t) → (s, t(1 − s)), a tetrahedron the cube with two faces collapsed,
-    /// (s, t, r) → (s, t(1 − s), r(1 − s)(1 − t)).
+    /// The map from the unit square or cube onto the domain; a triangle is the square with one of its edges collapsed,
+    /// (s, t) → (s, t(1 − s)), a tetrahedron the cube with two faces collapsed, (s, t, r) → (s, t(1 − s), r(1 − s)(1 −
+    /// t)).
     pub(super) fn of_unit_cube(self, [s, t, r]: [f64; 3]) -> [f64; 3] {
         match self {
             Self::Triangle => [s, t * (1.0 - s), 0.0],
@@ -83,49 +83,48 @@ impl Domain {
     }
 }
 
-/// The definition of a kind, from which all else of it follows.
+/// The definition of a kind, which determines all other data.
 #[derive(Debug)]
 pub struct Definition {
-    /// Name in words.
+    /// Name in plain words.
     pub name: &'static str,
     /// The domain that it fills.
     pub domain: Domain,
-    /// Reference coordinates of its nodes, in the order of VTK: corners first, counter-clockwise,
-    /// the first one at the domain's first; nodes on edges; nodes in the middles of faces; of the cell.
+    /// Reference coordinates of its nodes, in the order of VTK: corners first, counter-clockwise, the first one at the
+    /// domain's first; then nodes on edges, in the middles of faces, and in the middle of the cell.
     pub node_coordinates: &'static [[f64; 3]],
     /// N_i(ξ), one for each node.
     pub shape: fn([f64; 3]) -> Vec<f64>,
     /// ∂N_i/∂ξ_j, one for each node; 0 beyond its dimension.
     pub gradients: fn([f64; 3]) -> Vec<[f64; 3]>,
-    /// Kind and local nodes of every facet. In the plane the cell lies to their left, and facet i begins
-    /// at corner i; in space they run counter-clockwise seen from outside.
+    /// Kind and local nodes of every facet. In the plane the cell lies on their left, and facet i begins at corner i;
+    /// in space they run counter-clockwise seen from outside.
     pub facets: &'static [(ElementKind, &'static [usize])],
-    /// The order of its nodes that turns it inside out.
+    /// The permutation of its nodes that reverses its orientation.
     pub reversed: &'static [usize],
     /// VTK's number of the cell type.
     pub vtk: u8,
-    /// The rules by which it is integrated; facets have none.
+    /// The quadrature rules of a cell; facets have none.
     pub rules: Option<CellRules>,
 }
 
-/// The rules by which a cell is integrated: degrees up to which they are exact, on the square and
-/// the cube in each direction.
+/// The quadrature rules of a cell: their degrees of exactness, on the square and the cube in each direction.
 #[derive(Clone, Copy, Debug)]
 pub struct CellRules {
-    /// Order of ∫ Bᵀ C B: exact for ∫ ∇N_i, and with it the patch test, on cells of any shape with curved edges, and
+    /// Degree for ∫ Bᵀ C B: exact for ∫ ∇N_i, and so for the patch test, on cells of any shape with curved edges, and
     /// for the stiffness of cells with an affine map.
     pub stiffness: usize,
-    /// Order of the points where stresses are more accurate than elsewhere, or make patches that are (Barlow, Int. J.
+    /// Degree of the rule at whose points stresses are superconvergent, or suitable for patch recovery (Barlow, Int. J.
     /// Numer. Meth. Eng. 10, 1976; Zienkiewicz and Zhu 1992).
     pub stress: usize,
-    /// Order of ∫ N_i b for a constant load, in a cell of any shape.
+    /// Degree for ∫ N_i b with a constant load, in a cell of any shape.
     pub constant_load: usize,
-    /// Order of the same for a cubic load, in a cell with straight edges and nodes in their middle.
+    /// Degree for the same integral with a cubic load, in a cell with straight edges and their nodes in the middle.
     pub cubic_load: usize,
 }
 
 impl Definition {
-    /// True if its nodes lie at its corners alone.
+    /// True if all its nodes are corners.
     pub(super) fn is_linear(&self) -> bool {
         self.node_coordinates.len() == self.domain.corners()
     }

@@ -1,4 +1,4 @@
-//! x(ξ) = Σ N_i(ξ) x_i, the map of a reference element to its place in space, and what follows from it.
+//! The map x(ξ) = Σ N_i(ξ) x_i from a reference element into space, and quantities derived from it.
 
 use super::definition::Domain;
 use super::reference::ReferenceElement;
@@ -27,14 +27,14 @@ pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// A vector of the space that has these `components`; the others are zero.
+/// A vector in space with these `components`; the others are zero.
 pub fn padded(components: &[f64]) -> [f64; 3] {
     let mut vector = [0.0; 3];
     vector[..components.len()].copy_from_slice(components);
     vector
 }
 
-/// A point or vector in words, without the components that space of `dim` dimensions lacks: `(1, 2)`.
+/// A point or vector as text, with `dim` components: `(1, 2)`.
 pub fn shown(vector: [f64; 3], dim: usize) -> String {
     let components = vector.iter().take(dim).map(f64::to_string);
     format!("({})", components.collect::<Vec<_>>().join(", "))
@@ -45,7 +45,7 @@ pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// a/|a|; `None` where a has no length.
+/// a/|a|; `None` for the zero vector.
 pub fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let size = length(a);
     (size > 0.0).then(|| a.map(|c| c / size))
@@ -60,8 +60,8 @@ impl ReferenceElement {
             .fold([0.0; 3], |sum, (value, &x)| advance(sum, value, x))
     }
 
-    /// det ∂x/∂ξ of a cell that fills its space: positive where it is positively oriented, and
-    /// dx = det·dξ (m^dim).
+    /// det ∂x/∂ξ of a cell whose dimension is that of space: positive for positive orientation, and dx = det·dξ
+    /// (m^dim).
     pub fn jacobian(&self, at: &[[f64; 3]], xi: [f64; 3]) -> f64 {
         self.determinant(&self.gradients(xi), at)
     }
@@ -72,7 +72,7 @@ impl ReferenceElement {
             let [r, s, t] = tangents(gradients, at);
             return dot(cross(r, s), t);
         }
-        // One for every point of every cell: without the components that the plane lacks.
+        // This is evaluated at every point of every cell, so that components out of the plane are left out.
         let mut j = [[0.0; 2]; 2];
         for (gradient, x) in gradients.iter().zip(at) {
             for (row, x) in j.iter_mut().zip(x) {
@@ -87,10 +87,10 @@ impl ReferenceElement {
         }
     }
 
-    /// ∫ det ∂x/∂ξ dξ of a cell that fills its space: its area or volume, with the sign of its orientation
+    /// ∫ det ∂x/∂ξ dξ of a cell whose dimension is that of space: its area or volume, with the sign of its orientation
     /// (m², m³).
     pub fn measure(&self, at: &[[f64; 3]]) -> f64 {
-        // One for every cell of a mesh: without a rule where the map is affine.
+        // This is evaluated for every cell of a mesh, so that no rule is used where the map is affine.
         match (self.domain(), at) {
             (Domain::Triangle, [a, b, c]) => {
                 let (t, s) = (difference(*b, *a), difference(*c, *a));
@@ -108,8 +108,8 @@ impl ReferenceElement {
             .sum()
     }
 
-    /// n dS/dξ of a facet whose nodes run as [`facets`](Self::facets) does: its unit outward normal times the
-    /// measure that a unit of the reference facet has in space.
+    /// n dS/dξ of a facet whose nodes are ordered like in [`facets`](Self::facets): its unit outward normal times the
+    /// measure in space per unit of the reference facet.
     pub fn area_vector(&self, at: &[[f64; 3]], xi: [f64; 3]) -> [f64; 3] {
         let [t, s, _] = tangents(&self.gradients(xi), at);
         match self.dim() {
@@ -119,10 +119,10 @@ impl ReferenceElement {
         }
     }
 
-    /// Points whose convex hull holds a line or face, its corners among them (m).
+    /// Points whose convex hull contains a line or face, including its corners (m).
     pub fn hull(&self, at: &[[f64; 3]]) -> Vec<[f64; 3]> {
         match (self.domain(), at) {
-            // The middle one of Bernstein's coefficients.
+            // The middle Bernstein coefficient.
             (Domain::Line, &[p, q, m]) => vec![p, q, bernstein(p, m, q)],
             (Domain::Triangle, &[a, b, c, ab, bc, ca]) => {
                 vec![
@@ -150,8 +150,8 @@ impl ReferenceElement {
         }
     }
 
-    /// Intersection of the line x + s·`direction` (a unit vector) with the inside of a facet: s (m), in the plane the one
-    /// nearest to x where there are two. `None` where it passes by, or along it.
+    /// Intersection of the line x + s·`direction` (a unit vector) with the inside of a facet: s (m), in the plane the
+    /// one nearest to x where there are two. `None` where the line misses the facet or is parallel to it.
     pub fn crossing(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let aside = |p: [f64; 3]| {
             let offset = difference(p, x);
@@ -182,7 +182,7 @@ impl ReferenceElement {
         }
     }
 
-    /// The crossing of a line and a face, borders included, by Newton's method from its middle.
+    /// The intersection of a line and a face, including its border, by Newton's method from its centre.
     fn crossing_of_face(&self, at: &[[f64; 3]], x: [f64; 3], direction: [f64; 3]) -> Option<f64> {
         let mut xi = match self.domain() {
             Domain::Triangle => [1.0 / 3.0, 1.0 / 3.0, 0.0],
@@ -217,14 +217,14 @@ impl ReferenceElement {
     }
 }
 
-/// Steps after which Newton's method isn't on its way to a point of a face.
+/// Number of steps after which Newton's method isn't converging to a point of a face.
 const NEWTON_STEPS: usize = 20;
-/// Reference coordinates up to which the border of a face belongs to it.
+/// Distance in reference coordinates up to which points beyond the border of a face belong to it.
 const BORDER: f64 = 1e-9;
-/// Sine of the angle between a line and a face up to which it runs along it.
+/// Sine of the angle up to which a line is parallel to a face.
 const PARALLEL: f64 = 1e-9;
 
-/// Bernstein's middle coefficient of a quadratic with these values at the ends and in the middle.
+/// The middle Bernstein coefficient of a quadratic with these values at the ends and in the middle.
 fn bernstein(p: [f64; 3], m: [f64; 3], q: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| 2.0 * m[i] - 0.5 * (p[i] + q[i]))
 }
@@ -240,7 +240,7 @@ fn tangents(gradients: &[[f64; 3]], at: &[[f64; 3]]) -> [[f64; 3]; 3] {
     tangents
 }
 
-/// The real roots of a·x² + b·x + c, without cancellation, and none where it is constant.
+/// The real roots of a·x² + b·x + c, without cancellation; none for a constant.
 fn roots(a: f64, b: f64, c: f64) -> impl Iterator<Item = f64> {
     let square = b * b - 4.0 * a * c;
     let sum = -0.5 * (b + square.sqrt().copysign(b));

@@ -63,7 +63,7 @@ const fn faces(kind: ElementKind, count: usize) -> [(ElementKind, &'static [usiz
     faces
 }
 
-/// A value for each of the first `count` nodes, from where it is.
+/// A value for each of the first `count` nodes, as a function of its coordinates.
 fn each<T>(count: usize, value: impl Fn([f64; 3]) -> T) -> Vec<T> {
     NODES[..count].iter().map(|&node| value(node)).collect()
 }
@@ -145,8 +145,8 @@ fn quadratic(node: [f64; 3], xi: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| lagrange(node[axis], xi[axis]))
 }
 
-/// The factors of the serendipity function of a node on an edge, which lies along the axis where its
-/// coordinate is 0.
+/// The factors of the serendipity function of a node on an edge, which is parallel to the axis where its coordinate is
+/// 0.
 fn on_edge(a: f64, x: f64) -> f64 {
     match a == 0.0 {
         true => lagrange(a, x),

@@ -1,13 +1,13 @@
-//! det ∂x/∂ξ > 0: whether the map of a cell is one to one, everywhere and not at some points.
+//! det ∂x/∂ξ > 0: a check that the map of a cell is one-to-one in the whole cell, not only at some points.
 
 use super::definition::Domain;
 use super::geometry::{difference, length};
 use super::reference::ReferenceElement;
 
-/// Halvings in each direction after which a Jacobian that still may vanish counts as one that does.
+/// Number of bisections in each direction after which a Jacobian that may vanish counts as vanishing.
 const HALVINGS: usize = 12;
 
-/// A place at which the map of a cell turns over or degenerates.
+/// A point at which the map of a cell folds or degenerates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fold {
     /// det ∂x/∂ξ there (m^dim).
@@ -19,13 +19,12 @@ pub struct Fold {
 }
 
 impl ReferenceElement {
-    /// A place at which det ∂x/∂ξ of a cell that fills its space isn't above `floor`; `None` where it is
-    /// above it in the whole cell.
+    /// A point at which det ∂x/∂ξ of a cell whose dimension is that of space isn't above `floor`; `None` if it is above
+    /// it in the whole cell.
     ///
-    /// On the unit square or cube the determinant is a polynomial, that of a triangle or tetrahedron by way
-    /// of the collapse (s, t) → (s, t(1 − s)). Its coefficients in Bernstein's basis bound it from both sides
-    /// (Johnen, Remacle and Geuzaine, J. Comput. Phys. 233, 2013); where they don't decide, the square is
-    /// halved.
+    /// On the unit square or cube the determinant is a polynomial, on a triangle or tetrahedron after the collapse (s,
+    /// t) → (s, t(1 − s)). Its Bernstein coefficients bound it from both sides (Johnen, Remacle and Geuzaine, J.
+    /// Comput. Phys. 233, 2013); where they aren't conclusive, the square is bisected.
     pub fn fold(&self, at: &[[f64; 3]], floor: f64) -> Option<Fold> {
         let is_simplex = matches!(self.domain(), Domain::Triangle | Domain::Tetrahedron);
         if is_simplex && self.is_linear() {
@@ -50,10 +49,10 @@ impl ReferenceElement {
 }
 
 impl ReferenceElement {
-    /// True if a cell that [folds](Self::fold) can be computed with all the same: a hexahedron of 8 nodes, whose faces
-    /// needn't cross each other where its Jacobian changes sign at a corner, with a Jacobian above `floor` wherever
-    /// its stiffness is integrated. Linear displacements then are exact, as everywhere. One with two nodes at the same
-    /// place is no hexahedron.
+    /// True if a cell that [folds](Self::fold) is acceptable all the same: a hexahedron of 8 nodes, whose faces may be
+    /// disjoint although its Jacobian changes sign at a corner, with a Jacobian above `floor` at all quadrature points
+    /// of its stiffness. Linear displacements are then exact as in other cells. Hexahedra with coincident nodes are
+    /// excluded.
     pub fn bears_fold(&self, at: &[[f64; 3]], floor: f64) -> bool {
         let mut points = self.stiffness_points().iter();
         let mut is_sound = || points.all(|point| self.determinant(&point.gradients, at) > floor);
@@ -62,7 +61,7 @@ impl ReferenceElement {
     }
 }
 
-/// A part of the unit square or cube with Bernstein's coefficients of the Jacobian over it.
+/// A part of the unit square or cube with the Bernstein coefficients of the Jacobian on it.
 #[derive(Clone)]
 struct Piece {
     coefficients: Vec<f64>,
@@ -74,7 +73,7 @@ struct Piece {
 }
 
 impl Piece {
-    /// The coefficients over the whole from the values on the lattice.
+    /// The coefficients on the whole domain from the values on the lattice.
     fn whole(element: &ReferenceElement, at: &[[f64; 3]]) -> Self {
         let lattice = element.lattice();
         let values = lattice.gradients.iter();
@@ -101,7 +100,7 @@ impl Piece {
         piece
     }
 
-    /// Changes the rows of coefficients along an axis, one after the other.
+    /// Transforms all rows of coefficients along an axis.
     fn change_rows(&mut self, axis: usize, mut change: impl FnMut(&mut [f64])) {
         let count = self.degree + 1;
         let stride = count.pow(axis as u32);
@@ -122,7 +121,7 @@ impl Piece {
     fn find(self, element: &ReferenceElement, floor: f64) -> Option<[f64; 3]> {
         let mut open = vec![self];
         while let Some(piece) = open.pop() {
-            // So that NaN isn't above anything.
+            // This form is also false for NaN.
             if piece.coefficients.iter().all(|&c| c > floor) {
                 continue;
             }
@@ -136,8 +135,7 @@ impl Piece {
         None
     }
 
-    /// The least of the Jacobian's values at the corners, where coefficients are values, and its
-    /// place.
+    /// The smallest value of the Jacobian at the corners, where coefficients are values, and its position.
     fn least_corner(&self) -> (f64, [f64; 3]) {
         let count = self.degree + 1;
         let mut least = (f64::INFINITY, self.low);
@@ -156,7 +154,7 @@ impl Piece {
         least
     }
 
-    /// Both halves, cut across one direction after the other, by de Casteljau's scheme.
+    /// Both halves, bisecting the directions in turn, by de Casteljau's algorithm.
     fn halves(mut self) -> [Self; 2] {
         let axis = self.halvings % self.dim;
         let middle = 0.5 * (self.low[axis] + self.high[axis]);
@@ -204,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_fold_between_the_nodes_and_off_the_quadrature_points_is_found() {
-        // A bump of the bottom edge that nearly reaches the opposite corner.
+        // A bulge of the bottom edge that nearly reaches the opposite corner.
         let kind = ElementKind::Triangle6;
         let mut at = kind.node_coordinates().to_vec();
         at[3][1] = 0.3;

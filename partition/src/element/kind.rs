@@ -2,16 +2,15 @@
 
 /// The kind of a cell or of a facet.
 ///
-/// Nodes are numbered as VTK does: corners first, counter-clockwise, then a node on each edge, in the
-/// order of the edges, then those in the middles of faces and cells. Edges and faces of quadratic kinds
-/// may be curved.
+/// Nodes are numbered as in VTK: corners first, counter-clockwise, then a node on each edge, in the order of the edges,
+/// then those in the middles of faces and cells. Edges and faces of quadratic kinds may be curved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ElementKind {
     /// A single node.
     Point1,
     /// A straight line of two nodes.
     Line2,
-    /// A quadratic line: two ends, then the node between them.
+    /// A quadratic line: two ends, then the middle node.
     Line3,
     /// A linear triangle of three nodes, counter-clockwise.
     Triangle3,

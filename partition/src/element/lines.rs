@@ -30,7 +30,7 @@ pub static LINE2: ReferenceElement = ReferenceElement::new(Definition {
     rules: None,
 });
 
-/// A quadratic line: two ends, then the node between them.
+/// A quadratic line: two ends, then the middle node.
 pub static LINE3: ReferenceElement = ReferenceElement::new(Definition {
     name: "line of 3 nodes",
     domain: Domain::Line,
@@ -50,7 +50,7 @@ pub static LINE3: ReferenceElement = ReferenceElement::new(Definition {
 const ENDS: &[(super::ElementKind, &[usize])] = &[(Point1, &[0]), (Point1, &[1])];
 const ENDS_AND_MIDDLE: [f64; 3] = [-1.0, 1.0, 0.0];
 
-/// The quadratic that is 1 at `a` and 0 at the others of −1, 0, 1.
+/// The quadratic Lagrange polynomial that is 1 at `a` and 0 at the others of −1, 0, 1.
 pub fn lagrange(a: f64, x: f64) -> f64 {
     match a == 0.0 {
         true => (1.0 - x) * (1.0 + x),
@@ -58,7 +58,7 @@ pub fn lagrange(a: f64, x: f64) -> f64 {
     }
 }
 
-/// Derivative.
+/// Its derivative.
 pub fn lagrange_slope(a: f64, x: f64) -> f64 {
     match a == 0.0 {
         true => -2.0 * x,

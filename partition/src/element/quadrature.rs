@@ -11,8 +11,7 @@ pub use super::tables::TabulatedPoint;
 pub type Quadrature = Vec<([f64; 3], f64)>;
 
 impl ReferenceElement {
-    /// A rule that is exact for polynomials up to `degree`, on the square and the cube in
-    /// each direction.
+    /// A rule that is exact for polynomials up to `degree`, on the square and the cube in each direction.
     pub fn quadrature(&self, degree: usize) -> Quadrature {
         // On the line and in each direction of the square and the cube.
         let line = || gauss_legendre(degree / 2 + 1);
@@ -137,7 +136,7 @@ fn tetrahedron(degree: usize) -> Quadrature {
     }
 }
 
-/// The points of a rule on the line in three directions, with the products of their weights.
+/// The tensor product of a rule on the line in three directions.
 fn triple_products(line: &[(f64, f64)]) -> Quadrature {
     let pairs = products(line);
     pairs
@@ -145,15 +144,15 @@ fn triple_products(line: &[(f64, f64)]) -> Quadrature {
         .collect()
 }
 
-/// Pairs of the points of a rule on the line, with the products of their weights.
+/// The tensor product of a rule on the line in two directions.
 fn products(line: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
     let with =
         |&(s, weight): &(f64, f64)| line.iter().map(move |&(t, other)| (s, t, weight * other));
     line.iter().flat_map(with)
 }
 
-/// Points and weights of Gauss and Legendre on [−1, 1], exact to degree 2·`count` − 1: the roots
-/// of the Legendre polynomial by Newton's method.
+/// Points and weights of Gauss-Legendre quadrature on [−1, 1], exact to degree 2·`count` − 1: the roots of the Legendre
+/// polynomial by Newton's method.
 fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
     let mut points = vec![(0.0, 0.0); count];
     for i in 0..count.div_ceil(2) {

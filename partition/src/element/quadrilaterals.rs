@@ -25,7 +25,7 @@ const CURVED_EDGES: &[(ElementKind, &[usize])] = &[
     (Line3, &[3, 0, 7]),
 ];
 
-/// A value for each of the first `count` nodes, from where it is.
+/// A value for each of the first `count` nodes, as a function of its coordinates.
 fn each<T>(count: usize, value: impl Fn([f64; 2]) -> T) -> Vec<T> {
     let nodes = NODES[..count].iter();
     nodes.map(|&[a, b, _]| value([a, b])).collect()

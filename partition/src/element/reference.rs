@@ -1,4 +1,4 @@
-//! A reference element: what a kind of cell or facet is, and what follows from its definition.
+//! A reference element: its definition, and data derived from it.
 
 use std::sync::OnceLock;
 
@@ -6,7 +6,7 @@ use super::definition::{CellRules, Definition, Domain};
 use super::kind::ElementKind;
 use super::tables::{Lattice, TabulatedPoint};
 
-/// The degree that the stiffness around an axis needs: in linear triangles, too, the strain of the hoop varies.
+/// The degree for the stiffness around an axis: the hoop strain varies even in linear triangles.
 const AROUND_AXIS: usize = 2;
 
 /// A reference element.
@@ -16,7 +16,7 @@ pub struct ReferenceElement {
     tables: OnceLock<Tables>,
 }
 
-/// Data that follow from a definition, made when first asked for.
+/// Data derived from a definition, computed on first use.
 #[derive(Debug)]
 struct Tables {
     along: Vec<usize>,
@@ -29,7 +29,7 @@ struct Tables {
 }
 
 impl ReferenceElement {
-    /// The element that is defined so.
+    /// The element with a definition.
     pub const fn new(definition: Definition) -> Self {
         Self {
             definition,
@@ -37,7 +37,7 @@ impl ReferenceElement {
         }
     }
 
-    /// Name in words.
+    /// Name in plain words.
     pub fn name(&self) -> &'static str {
         self.definition.name
     }
@@ -67,7 +67,7 @@ impl ReferenceElement {
         self.definition.vtk
     }
 
-    /// True if its nodes lie at its corners alone.
+    /// True if all its nodes are corners.
     pub fn is_linear(&self) -> bool {
         self.definition.is_linear()
     }
@@ -88,55 +88,55 @@ impl ReferenceElement {
         (self.definition.gradients)(xi)
     }
 
-    /// Facets of a cell: kind and local nodes, in the plane with the cell to their left, in space
-    /// counter-clockwise seen from outside.
+    /// Facets of a cell: kind and local nodes, in the plane with the cell on their left, in space counter-clockwise
+    /// seen from outside.
     pub fn facets(&self) -> &'static [(ElementKind, &'static [usize])] {
         self.definition.facets
     }
 
-    /// The rules by which a cell is integrated.
+    /// The quadrature rules of a cell.
     pub fn rules(&self) -> Option<CellRules> {
         self.definition.rules
     }
 
-    /// The order of local nodes that turns the element inside out.
+    /// The permutation of local nodes that reverses the orientation.
     pub fn reversed(&self) -> &'static [usize] {
         self.definition.reversed
     }
 
-    /// The local nodes of a line from its start to its end; those of other kinds as they are.
+    /// The local nodes of a line from its start to its end; of other kinds in their order.
     pub fn along(&self) -> &[usize] {
         &self.tables().along
     }
 
-    /// The corners that a local node lies between: itself, the ends of its edge, the corners of its face or all.
+    /// The corners around a local node: itself, the ends of its edge, the corners of its face or all.
     pub fn corners_around(&self, node: usize) -> &[usize] {
         &self.tables().corners_around[node]
     }
 
-    /// The edges at a corner of a cell, the other end and the node between, if there is one: in the plane the one
-    /// after the corner and the one before it, in space all three.
+    /// The edges at a corner of a cell, as the other end and the middle node, if any: in the plane the edge after the
+    /// corner and the one before it, in space all three.
     pub fn edges_at(&self, corner: usize) -> &[(usize, Option<usize>)] {
         &self.tables().edges_at[corner]
     }
 
-    /// The points at which a cell's stiffness is integrated; facets have none.
+    /// The quadrature points of a cell's stiffness; facets have none.
     pub fn stiffness_points(&self) -> &[TabulatedPoint] {
         &self.tables().stiffness
     }
 
-    /// The points of the stiffness where the cell goes all around an axis.
+    /// The quadrature points of the stiffness around an axis.
     pub fn points_around_axis(&self) -> &[TabulatedPoint] {
         &self.tables().around_axis
     }
 
-    /// The points of a cell at which stresses are taken for their recovery; facets have none.
+    /// The points of a cell at which stresses are evaluated for recovery; facets have none.
     pub fn stress_points(&self) -> &[TabulatedPoint] {
         &self.tables().stress
     }
 
-    /// The points at which the stiffness of an 8-node quadrilateral or a 20-node hexahedron is integrated where it is
-    /// reduced: those where its stresses are better than elsewhere. Other kinds have none.
+    /// The quadrature points of the stiffness with reduced integration, for 8-node quadrilaterals and 20-node
+    /// hexahedra: the superconvergent points of stresses. `None` for other kinds.
     pub fn reduced_points(&self) -> Option<&[TabulatedPoint]> {
         matches!((self.dim(), self.nodes()), (2, 8) | (3, 20)).then(|| self.stress_points())
     }
@@ -189,7 +189,7 @@ impl ReferenceElement {
         let mut found: Vec<(usize, Option<usize>)> = Vec::new();
         for line in lines.filter(|line| line.len() > 1) {
             let middle = line.get(2).copied();
-            // In space each edge is one of two faces, in the other direction.
+            // In space each edge belongs to two faces, with opposite directions.
             match (line[0] == corner, line[1] == corner) {
                 (true, _) => found.insert(0, (line[1], middle)),
                 (_, true) if self.dim() == 2 => found.push((line[0], middle)),

@@ -1,10 +1,11 @@
-//! Tables of a reference element: shape functions at points of rules, gradients where its Jacobian is sampled.
+//! Tables of a reference element: shape functions at quadrature points, gradients at the sampling points of the
+//! Jacobian.
 
 use nalgebra::DMatrix;
 
 use super::definition::{Definition, Domain};
 
-/// Shape functions of a reference element at a point of a rule.
+/// Shape functions of a reference element at a quadrature point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabulatedPoint {
     /// Reference coordinates.
@@ -17,19 +18,19 @@ pub struct TabulatedPoint {
     pub gradients: Vec<[f64; 3]>,
 }
 
-/// Sampling points of the Jacobian: places that cut each direction of the unit square or cube into equal parts,
-/// as many as it has degrees there.
+/// Sampling points of the Jacobian, which divide each direction of the unit square or cube into as many equal parts as
+/// the Jacobian's degree there.
 #[derive(Debug)]
 pub(super) struct Lattice {
     pub degree: usize,
-    /// Gradients of the shape functions at the places, the first direction fastest.
+    /// Gradients of the shape functions at these points, the first direction fastest.
     pub gradients: Vec<Vec<[f64; 3]>>,
-    /// Bernstein's coefficients on a line from the values at its places.
+    /// The matrix from values at the points of a line to Bernstein coefficients.
     pub to_bernstein: DMatrix<f64>,
 }
 
 impl Lattice {
-    /// The places for a cell with this definition.
+    /// The sampling points for a cell with this definition.
     pub fn new(element: &Definition) -> Self {
         let degree: usize = match (element.domain, element.is_linear()) {
             (Domain::Cube, true) => 2,

@@ -1,4 +1,4 @@
-//! Meshes made of mapped unit cubes.
+//! Meshes of mapped unit cubes.
 
 use std::collections::HashMap;
 
@@ -15,27 +15,26 @@ pub(super) struct Cube {
     body: String,
     /// Position of a point of the unit cube (m).
     map: Map,
-    /// Cells along each axis before they are refined.
+    /// Number of cells along each axis before refinement.
     cells: [usize; 3],
-    /// True if edges of quadratic cells follow the map; else they are straight, with the node in
-    /// their middle.
+    /// True if edges of quadratic cells follow the map; otherwise they are straight, with the node in the middle.
     is_curved: bool,
-    /// Groups of the faces at the start and the end of each axis. A face without a group is glued to the face
-    /// without a group that has the same corners; a face with a group, such as that of a contact, never is.
-    /// For tetrahedra both have to run the same ways.
+    /// Groups of the faces at the start and the end of each axis. A face without a group is glued to the face without a
+    /// group that has the same corners; a face with a group, such as that of a contact, never is. For tetrahedra the
+    /// axes of both faces have to have the same directions.
     sides: [[Option<String>; 2]; 3],
 }
 
 /// Position of a point of the unit cube (m).
 type Map = Box<dyn Fn([f64; 3]) -> [f64; 3]>;
 
-/// A place in a cube, in halves of cells.
+/// A grid point of a cube, in halves of cells.
 type Place = [usize; 3];
 
-/// A face: its axis, and whether it is at the end of it.
+/// A face: its axis, and true at the end of the axis.
 type Face = (usize, usize);
 
-/// The place at a part of the way over lines between cells, whose cells take equal parts of the way.
+/// The coordinate at a fraction of the cells between grid lines.
 pub(super) fn along(lines: &[f64], part: f64) -> f64 {
     let place = part * (lines.len() - 1) as f64;
     let cell = (place as usize).min(lines.len() - 2);
@@ -68,7 +67,7 @@ impl Cube {
         }
     }
 
-    /// The node at a place of the cube with so many cells.
+    /// The position of the node at a grid point of the cube with this number of cells.
     fn point(&self, place: Place, cells: [usize; 3], kind: ElementKind) -> [f64; 3] {
         let at = |place: Place| {
             (self.map)([0, 1, 2].map(|axis| place[axis] as f64 / (2 * cells[axis]) as f64))
@@ -78,7 +77,7 @@ impl Cube {
         }
         let between: Vec<usize> = (0..3).filter(|&axis| place[axis] % 2 == 1).collect();
         let corners: Vec<Place> = match kind.domain() {
-            // Edges of tetrahedra lead forward along all of their axes.
+            // Edges of tetrahedra ascend along all axes.
             Domain::Tetrahedron => {
                 let end = |towards: usize| {
                     [0, 1, 2].map(|axis| place[axis] + towards * (place[axis] % 2))
@@ -102,19 +101,19 @@ impl Cube {
     }
 }
 
-/// A cube in its mesh.
+/// A cube within its mesh.
 struct Placed {
     cells: [usize; 3],
-    /// The places of its nodes, and their numbers among the nodes of all cubes.
+    /// The grid points of its nodes, and their numbers among the nodes of all cubes.
     nodes: HashMap<Place, usize>,
     /// The nodes of its cells.
     elements: Vec<Vec<Place>>,
 }
 
-/// Checks that a mesh of the cubes can be made.
+/// Checks that the cubes can be meshed.
 ///
 /// # Errors
-/// A refinement too large to be made, cells of the plane.
+/// A refinement that is too large, cells of the plane.
 fn check(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<(), InputError> {
     if kind.dim() != 3 {
         return Err(InputError::new(format!(
@@ -137,10 +136,10 @@ fn check(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<(), InputErro
     Ok(())
 }
 
-/// Meshes the cubes with cells of `kind` cut into eight `refine` times.
+/// Meshes the cubes with cells of `kind`, each divided into eight `refine` times.
 ///
 /// # Errors
-/// A refinement too large to be made, cells of the plane.
+/// A refinement that is too large, cells of the plane.
 pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
     check(cubes, refine, kind)?;
     let mut points = Vec::new();
@@ -183,7 +182,7 @@ pub(super) fn mesh(cubes: &[Cube], refine: u32, kind: ElementKind) -> Result<Mes
     mesh.orient_cells()?;
     let topology = Topology::new(&mesh);
     for (name, kind, nodes) in sides {
-        // In the corner of a crack's tip a triangle has no nodes but those of the tip: it is none of the crack.
+        // A triangle in the corner of a crack's tip has nodes of the tip only, and isn't part of the crack.
         if topology.cells_at(&nodes).len() == 1 {
             let facet = mesh.facets.len() as u32;
             group(&mut mesh, name, 2).members.push(facet);
@@ -202,7 +201,7 @@ fn named(cube: &Cube) -> impl Iterator<Item = (Face, &str)> {
     })
 }
 
-/// True if a place is on a face.
+/// True if a grid point is on a face.
 fn is_on(place: Place, (axis, end): Face, cells: [usize; 3]) -> bool {
     place[axis] == end * 2 * cells[axis]
 }
@@ -232,10 +231,10 @@ fn place(cube: &Cube, refine: u32, kind: ElementKind, points: &mut Vec<[f64; 3]>
     }
 }
 
-/// The cells that fill the one at `start`: itself, or the six tetrahedra around its diagonal.
+/// The cells that fill the one at `start`: a single one, or six tetrahedra around its diagonal.
 fn elements_of(start: Place, kind: ElementKind) -> Vec<Vec<Place>> {
     let nodes = kind.node_coordinates().iter();
-    // Coordinates are −1, 0, 1, or parts 0, ½, 1 of the ways to three corners.
+    // Reference coordinates are −1, 0, 1, or the barycentric fractions 0, ½, 1 of three corners.
     if kind.domain() == Domain::Cube {
         let place = |xi: &[f64; 3]| [0, 1, 2].map(|axis| start[axis] + (xi[axis] + 1.0) as usize);
         return vec![nodes.map(place).collect()];
@@ -252,7 +251,7 @@ fn elements_of(start: Place, kind: ElementKind) -> Vec<Vec<Place>> {
         let place = |xi: &[f64; 3]| {
             let mut place = start;
             for (step, &axis) in order.iter().enumerate() {
-                // The corners beyond this step along the path have gone it.
+                // All later corners of the path include this step.
                 place[axis] += (2.0 * xi[step..].iter().sum::<f64>()) as usize;
             }
             place
@@ -262,7 +261,7 @@ fn elements_of(start: Place, kind: ElementKind) -> Vec<Vec<Place>> {
     orders.map(tetrahedron).into()
 }
 
-/// First node that every node of every cube is glued to.
+/// The first node that every node of every cube is glued to.
 fn glue(cubes: &[Cube], placed: &[Placed], points: &[[f64; 3]], kind: ElementKind) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..points.len()).collect();
     let size = points
@@ -304,7 +303,7 @@ fn glue(cubes: &[Cube], placed: &[Placed], points: &[[f64; 3]], kind: ElementKin
     (0..points.len()).map(|node| root(&parent, node)).collect()
 }
 
-/// Glues the nodes in the middle of edges whose ends are glued: those across the corner of a crack's tip.
+/// Glues the middle nodes of edges whose ends are glued: those across the corner of a crack's tip.
 fn close_edges(placed: &[Placed], parent: &mut [usize], kind: ElementKind) {
     let mut known: HashMap<[usize; 2], usize> = HashMap::new();
     for placed in placed {

@@ -4,15 +4,14 @@ use std::collections::HashMap;
 
 use crate::element::{ElementKind, Elements};
 
-/// Division of the unit square before it is refined.
+/// Division of the unit square before refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
-    /// Columns and rows of rectangles, each cut along its shorter diagonal where it isn't to
-    /// become a quadrilateral.
+    /// Columns and rows of rectangles, each divided along its shorter diagonal unless quadrilaterals are wanted.
     Grid(usize, usize),
-    /// One row of triangles whose top has twice as many segments as its bottom, which has so many.
+    /// One row of triangles with this number of segments at the bottom, and twice as many at the top.
     Refining(usize),
-    /// One row of triangles whose bottom has twice as many segments as its top, which has so many.
+    /// One row of triangles with this number of segments at the top, and twice as many at the bottom.
     Coarsening(usize),
 }
 
@@ -38,8 +37,8 @@ pub(super) struct UnitSquare {
 }
 
 impl UnitSquare {
-    /// Divides the unit square into linear cells, rectangles into quadrilaterals where `kind` is
-    /// one; else `map` tells which diagonal is the shorter one.
+    /// Divides the unit square into linear cells, with quadrilaterals from rectangles if `kind` is one; otherwise `map`
+    /// determines the shorter diagonal.
     pub(super) fn new(
         pattern: Pattern,
         kind: ElementKind,
@@ -83,7 +82,7 @@ impl UnitSquare {
         square
     }
 
-    /// Cuts every linear cell into four by the midpoints of its edges.
+    /// Divides every linear cell into four at the midpoints of its edges.
     pub(super) fn refine(&mut self) {
         let mut middles = Middles::default();
         let coarse = std::mem::take(&mut self.cells);
@@ -101,8 +100,8 @@ impl UnitSquare {
         self.add_to_sides(&mut middles);
     }
 
-    /// Gives every linear cell a node in the middle of every edge, and quadrilaterals one in their
-    /// centre where they become `kind` of nine nodes.
+    /// Adds a node in the middle of every edge of linear cells, and one in the centre of quadrilaterals if `kind` has
+    /// nine nodes.
     pub(super) fn raise(&mut self, kind: ElementKind) {
         let mut middles = Middles::default();
         let linear = std::mem::take(&mut self.cells);
@@ -121,7 +120,7 @@ impl UnitSquare {
         self.add_to_sides(&mut middles);
     }
 
-    /// Puts the midpoints of the edges along the sides between their ends.
+    /// Inserts the midpoints of edges into the sides.
     fn add_to_sides(&mut self, middles: &mut Middles) {
         for side in &mut self.sides {
             let mut refined = vec![side[0]];
@@ -155,8 +154,7 @@ impl UnitSquare {
         (first..self.points.len() as u32).collect()
     }
 
-    /// Cuts a quadrilateral along its shorter diagonal, along the first one or the other where
-    /// both are equally long.
+    /// Divides a quadrilateral along its shorter diagonal; of equally long ones, `first` selects the first.
     fn split(&mut self, quad: [u32; 4], first: bool, map: &dyn Fn([f64; 2]) -> [f64; 2]) {
         const EQUAL: f64 = 1e-6;
         let [a, b, c, d] = quad;
@@ -186,14 +184,14 @@ impl UnitSquare {
     }
 }
 
-/// The nodes in the middle of edges.
+/// The middle nodes of edges.
 #[derive(Default)]
 struct Middles {
     nodes: HashMap<(u32, u32), u32>,
 }
 
 impl Middles {
-    /// The node between two, which is appended to `points` the first time.
+    /// The middle node of two nodes, appended to `points` on first use.
     fn between(&mut self, points: &mut Vec<[f64; 2]>, a: u32, b: u32) -> u32 {
         *self.nodes.entry((a.min(b), a.max(b))).or_insert_with(|| {
             let (p, q) = (points[a as usize], points[b as usize]);
@@ -202,7 +200,7 @@ impl Middles {
         })
     }
 
-    /// The nodes in the middle of the edges of a cell, in their order.
+    /// The middle nodes of a cell's edges, in their order.
     fn of_edges(&mut self, points: &mut Vec<[f64; 2]>, corners: &[u32]) -> Vec<u32> {
         let next = corners.iter().cycle().skip(1);
         let edges = corners.iter().zip(next);

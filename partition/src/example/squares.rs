@@ -1,26 +1,26 @@
-//! Meshes made of mapped unit squares.
+//! Meshes of mapped unit squares.
 
 use super::pattern::{Pattern, UnitSquare};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::mesh::{Group, Mesh};
 
-/// The largest mesh that is made.
+/// Largest number of cells of a mesh.
 pub(super) const MOST_CELLS: usize = 100_000_000;
 
-/// Distance at which ends of sides count as the same point, relative to the largest coordinate.
+/// Distance, relative to the largest coordinate, up to which ends of sides coincide.
 pub(super) const SAME: f64 = 1e-9;
 
 /// The image of the unit square, a piece of one body.
 pub(super) struct Square {
     /// Group of its cells.
     body: String,
-    /// Position of a point of the unit square (m); keeps orientation.
+    /// Position of a point of the unit square (m); preserves orientation.
     map: Map,
     /// Division of the unit square.
     pattern: Pattern,
-    /// True if edges of quadratic cells follow the map; else they are straight, with the node in
-    /// their middle, as a map that only grades the mesh wants them.
+    /// True if edges of quadratic cells follow the map; otherwise they are straight, with the node in the middle, which
+    /// is right for a map that only grades the mesh.
     is_curved: bool,
     /// Groups of bottom, right, top and left. A side without a group is glued to the side without
     /// a group that has the same ends; a side with a group, such as that of a contact, never is.
@@ -67,17 +67,17 @@ pub(super) fn quadrilateral(corners: [[f64; 2]; 4]) -> impl Fn([f64; 2]) -> [f64
     }
 }
 
-/// A square in its mesh.
+/// A square within its mesh.
 struct Placed {
     unit: UnitSquare,
     points: Vec<[f64; 2]>,
     first: usize,
 }
 
-/// Meshes the squares with cells of `kind` cut into four `refine` times.
+/// Meshes the squares with cells of `kind`, each divided into four `refine` times.
 ///
 /// # Errors
-/// A refinement too large to be made.
+/// A refinement that is too large.
 pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result<Mesh, InputError> {
     if kind.dim() != 2 {
         return Err(InputError::new(format!(
@@ -139,7 +139,7 @@ pub(super) fn mesh(squares: &[Square], refine: u32, kind: ElementKind) -> Result
     Ok(mesh)
 }
 
-/// The group of that name.
+/// The group with a name, created if missing.
 pub(super) fn group<'a>(mesh: &'a mut Mesh, name: &str, dim: usize) -> &'a mut Group {
     let group = mesh.groups.entry(name.to_owned()).or_default();
     group.dim = dim;
@@ -172,7 +172,7 @@ fn place(squares: &[Square], refine: u32, kind: ElementKind) -> Vec<Placed> {
     placed
 }
 
-/// Puts the nodes on edges of quadratic cells in their middle, and those in a cell in its centre.
+/// Moves the nodes on edges of quadratic cells to the middle of the edge, and those inside a cell to its centre.
 fn straighten(cells: &Elements, points: &mut [[f64; 2]]) {
     for (kind, nodes) in cells.iter().filter(|(kind, _)| !kind.is_linear()) {
         let (corners, others) = nodes.split_at(kind.corners());
@@ -189,7 +189,7 @@ fn straighten(cells: &Elements, points: &mut [[f64; 2]]) {
     }
 }
 
-/// First node that every node of every square is glued to.
+/// The first node that every node of every square is glued to.
 fn glue(squares: &[Square], placed: &[Placed]) -> Vec<usize> {
     let count = placed.iter().map(|p| p.points.len()).sum();
     let mut parent: Vec<usize> = (0..count).collect();
@@ -227,7 +227,7 @@ fn glue(squares: &[Square], placed: &[Placed]) -> Vec<usize> {
     (0..count).map(|node| root(&parent, node)).collect()
 }
 
-/// The first of those that a node is glued to.
+/// The representative of the nodes that a node is glued to.
 pub(super) fn root(parent: &[usize], mut node: usize) -> usize {
     while parent[node] != node {
         node = parent[node];

@@ -1,8 +1,9 @@
-//! Choice of the operator that answers for contact conditions in least time: a dense matrix of all of them, the tree
-//! of fronts, or iterations between clusters.
+//! Choice of the operator that solves for given contact statuses in the least time: a dense matrix of all contact
+//! constraints, the tree of fronts, or iterations between clusters.
 //!
-//! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs, and of
-//! pins in plates with friction: they say which is faster there, and about where one becomes the other elsewhere.
+//! The constants are fitted to the times of two blocks of tetrahedra in contact, with 50 thousand to a million dofs,
+//! and of pins in plates with friction: there they predict the faster operator, elsewhere roughly the size at which
+//! another one becomes faster.
 
 use std::collections::BTreeMap;
 
@@ -11,34 +12,35 @@ use super::tree::Tree;
 use crate::id::TreeNodeId;
 use crate::problem::Catalog;
 
-/// Flops that the dense contact problem takes, over the cube of its size: it is condensed some nine times onto what touches.
+/// Flops of the dense contact problem over the cube of its size: it is condensed onto the closed contacts some nine
+/// times.
 const AT_ONCE: f64 = 3.0;
-/// Times that what is above contacts takes with friction, over those without: each of some 20 steps of Newton's method
-/// eliminates it again, and solves for slip forces by up to 40 products. Fitted roughly to one pin in a plate (1878 conditions,
-/// 20 thousand dofs), which took 6.8 s of CPU in the tree and 1.2 s with the dense matrix.
+/// Ratio of the time for the fronts above contacts with friction to that without: each of some 20 steps of Newton's
+/// method eliminates them again, and solves for slip forces by up to 40 products. Fitted roughly to one pin in a plate
+/// (1878 constraints, 20 thousand dofs), which took 6.8 s of CPU in the tree and 1.2 s with the dense matrix.
 const WITH_FRICTION: f64 = 4.0;
-/// Contact conditions up to which they are solved for at once, whatever that takes: that is more robust where bodies
-/// are held by next to nothing.
+/// Number of contact constraints up to which the dense matrix is used whatever its cost: it is more robust where bodies
+/// are hardly held.
 const FEW_CONDITIONS: usize = 600;
-/// Contact conditions with friction up to which they are solved for at once: active sets that come back find a way
-/// out there alone.
+/// Number of contact constraints with friction up to which the dense matrix is used: only this operator escapes from
+/// active sets that recur.
 const FEW_WITH_FRICTION: usize = 3000;
-/// Iterations that an active set takes in all, about.
+/// Approximate number of iterations for an active set in total.
 const ITERATIONS: f64 = 60.0;
-/// Flops that an entry of S of a cluster takes in an iteration: it and its factor are read from memory.
+/// Flops of an iteration for each entry of a cluster's S: the entry and its factor are read from memory.
 const PER_ENTRY: f64 = 24.0;
-/// Flops of the part of a cluster in the preconditioner, over the cube of its size.
+/// Flops of a cluster's part of the preconditioner, over the cube of the cluster's size.
 const PER_CUBE: f64 = 0.3;
-/// Flops that the coarse problem takes, over the square of its size, in space.
+/// Flops of the coarse problem, over the square of its size, in space.
 const PER_COARSE_PAIR: f64 = 12.0;
 
-/// Estimated flops that a cluster with so many unknowns on its boundary takes where iterations run between clusters.
+/// Estimated flops, with iterations between clusters, of a cluster with `size` unknowns on its boundary.
 pub fn iteration_flops(size: f64) -> f64 {
     PER_CUBE * size.powi(3) + ITERATIONS * PER_ENTRY * size * size
 }
 
-/// Estimated number of coarse unknowns between the clusters of a tree: of the nodes that the same clusters share, their
-/// rigid motions.
+/// Estimated number of coarse unknowns between the clusters of a tree: the rigid motions of each class of nodes shared
+/// by the same clusters.
 pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
     let mut clusters: BTreeMap<u32, Vec<TreeNodeId>> = BTreeMap::new();
     for &c in &tree.clusters {
@@ -55,39 +57,40 @@ pub fn coarse_dofs(tree: &Tree, dim: usize) -> usize {
     of_class.sum()
 }
 
-/// The operator for given statuses of contact conditions.
+/// The operator that solves for given statuses of contact constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
-    /// A dense matrix of all conditions.
+    /// A dense matrix of all contact constraints.
     Dense,
-    /// Fronts up to the roots of the hierarchy, those above changed statuses eliminated again.
+    /// Fronts up to the roots of the hierarchy; those above changed statuses are eliminated again.
     Tree,
-    /// Fronts up to clusters, and iterations between these.
+    /// Fronts up to clusters, and iterations between clusters.
     Clusters,
 }
 
-/// The operators that are known to solve a problem, by estimated times: arithmetic, and what goes with it, in flops.
+/// The operators that are known to solve a problem, with estimated times, in flops: arithmetic and its overhead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatorTimes {
-    /// Each with its time, the fastest first.
+    /// Operators with their times, the fastest first.
     pub all: Vec<(Operator, f64)>,
-    /// The time of the coarse problem, a part of that of iterations.
+    /// The part of the iterations' time that the coarse problem takes.
     pub coarse: f64,
-    /// The choice that is left for want of memory.
+    /// The operator that is used only if memory is short.
     last_resort: Option<Operator>,
-    /// Reasons for which other operators are left out.
+    /// Reasons for excluding the other operators.
     left_out: Vec<String>,
-    /// Number of contact conditions, tangential ones among them.
+    /// Number of contact constraints, tangential ones included.
     conditions: usize,
 }
 
 impl OperatorTimes {
-    /// The times of a problem. Few conditions have a dense matrix; iterations are for scenes in space without friction whose
-    /// contact is node by node and whose clusters are known.
+    /// The times of a problem. The dense matrix is for few constraints; iterations are for scenes in space without
+    /// friction, with node-to-node contact and known clusters.
     ///
-    /// With friction or mortar iterations are left out, because conditions tie many unknowns of several clusters to each
-    /// other there: on 2 ranks they took 5 to 7 times as long as the dense matrix on two boxes of 28 thousand dofs, and
-    /// didn't converge in 209 s on a pin in a plate of 20 thousand dofs, which the dense matrix solved in 9 s.
+    /// Iterations are excluded with friction and with mortar, because there constraints tie many unknowns of several
+    /// clusters to each other: on 2 ranks iterations took 5 to 7 times as long as the dense matrix on two boxes of 28
+    /// thousand dofs, and didn't converge in 209 s on a pin in a plate of 20 thousand dofs, which the dense matrix
+    /// solved in 9 s.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let has_friction = catalog.has_friction();
@@ -166,19 +169,19 @@ impl OperatorTimes {
             .map_or(Operator::Dense, |(operator, _)| *operator)
     }
 
-    /// All operators, the fastest first; iterations that aren't known to get there as fast last, as they take least memory.
+    /// All operators, the fastest first; iterations with unknown convergence come last, as they take the least memory.
     pub fn operators(&self) -> impl Iterator<Item = Operator> + '_ {
         let known = self.all.iter().map(|(operator, _)| *operator);
         known.chain(self.last_resort)
     }
 
-    /// The operators but iterations, the fastest first.
+    /// All operators except iterations, the fastest first.
     pub fn direct(&self) -> impl Iterator<Item = Operator> + '_ {
         let all = self.all.iter().map(|(operator, _)| *operator);
         all.filter(|operator| *operator != Operator::Clusters)
     }
 
-    /// The name of an operator in words.
+    /// The name of an operator in plain words.
     pub fn name(&self, operator: Operator) -> String {
         match (operator, self.conditions) {
             (Operator::Dense, 0) => "factors up to the roots".into(),
@@ -188,7 +191,7 @@ impl OperatorTimes {
         }
     }
 
-    /// Reason for `chosen` in words: its time against those of others, and why others are left out.
+    /// Reason for `chosen` in plain words: its time compared with that of others, and why others are excluded.
     pub fn reason(&self, chosen: Operator) -> String {
         let (own, others): (Vec<_>, Vec<_>) = self
             .all

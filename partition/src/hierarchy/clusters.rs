@@ -1,17 +1,17 @@
-//! Clusters: the nodes of the hierarchy between which an iterative interface solver works.
+//! Clusters: the subtrees of the hierarchy between which an iterative interface solver works.
 //!
-//! They follow from sizes alone, never from ranks.
+//! They follow from sizes only, never from the number of ranks.
 
 use crate::problem::Catalog;
 
-/// Most dofs of a cluster where the user doesn't say how many there should be.
+/// Largest number of dofs of a cluster where the user gives no number of clusters.
 const DOFS: usize = 24_000;
-/// Most dofs of a cluster in space, where it shares a larger part of its unknowns with others.
+/// The same bound in space, where a cluster shares a larger part of its unknowns with others.
 const DOFS_IN_SPACE: usize = 5_000;
 
 impl Catalog {
-    /// Chooses the clusters: from the roots on the largest one is split, until there are `count`, or none that can be
-    /// split is larger than suits.
+    /// Chooses the clusters: starting with the roots, splits the largest one until there are `count`, or, without
+    /// `count`, until none that can be split exceeds the bound.
     pub fn choose_clusters(&mut self, count: Option<usize>) {
         let parents = &self.hierarchy.parent;
         let mut dofs = vec![0; parents.len()];

@@ -1,14 +1,14 @@
-//! The cost of the nodes of the tree: their fronts, and estimates of flops and time.
+//! Cost of the tree's nodes: their fronts, and estimates of flops and time.
 
 use super::tree::Tree;
 use crate::flops::{Front, condensation};
 use crate::id::TreeNodeId;
 
-/// Active sets that it takes, about.
+/// Approximate number of active sets until convergence.
 pub const ACTIVE_SETS: f64 = 8.0;
 
 impl Tree {
-    /// The unknowns that node v eliminates and keeps, of a subdomain `dim` at each of its nodes.
+    /// The unknowns that node v eliminates and keeps, with `dim` unknowns at each node of a subdomain.
     pub fn front(&self, v: TreeNodeId, dim: usize) -> Front {
         let node = &self.nodes[v];
         let [eliminated, kept] = node.dofs;
@@ -20,7 +20,7 @@ impl Tree {
         Front { eliminated, kept }
     }
 
-    /// The front of node v where every active set is fixed, so that no jump of what is under the node is kept.
+    /// The front of node v with a fixed active set, where no normal jump under the node is kept.
     pub fn active_set_front(&self, v: TreeNodeId, dim: usize) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
         Front {
@@ -29,7 +29,7 @@ impl Tree {
         }
     }
 
-    /// The front of node v, which keeps all normal jumps under it unless active sets are fixed.
+    /// The front of node v, which keeps all normal jumps under it unless the active set is fixed.
     pub fn front_of(&self, v: TreeNodeId, dim: usize, has_active_set: bool) -> Front {
         let (front, node) = (self.front(v, dim), &self.nodes[v]);
         match has_active_set {
@@ -41,8 +41,8 @@ impl Tree {
         }
     }
 
-    /// Estimated time of node v, in flops: its arithmetic, and what goes with it; over all active sets where these are
-    /// fixed.
+    /// Estimated time of node v, in flops: its arithmetic and overhead, over all active sets if these are fixed one by
+    /// one.
     pub fn time(&self, v: TreeNodeId, dim: usize, has_active_set: bool) -> f64 {
         let front = self.front_of(v, dim, has_active_set);
         match self.block(v).is_some() {
@@ -52,7 +52,7 @@ impl Tree {
         }
     }
 
-    /// Estimated flops of condensing a subdomain, or of merging what lies under an inner node.
+    /// Estimated flops for condensing a subdomain, or for merging the children of an inner node.
     pub fn flops(&self, v: TreeNodeId, dim: usize) -> f64 {
         let front = self.front(v, dim);
         match self.block(v).is_some() {

@@ -1,4 +1,4 @@
-//! The nodes of Γ and the contact points on them, as the catalog names them.
+//! The nodes of Γ and the contact points on them, by the numbers of the catalog.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -10,39 +10,41 @@ use crate::problem::{Catalog, SubdomainNode};
 
 /// The nodes of Γ, by number.
 pub(super) struct Interface {
-    /// The subdomains of each, ascending.
+    /// The subdomains of each node, ascending.
     pub subdomains: Lists<u32>,
     /// The nodes of Γ of every subdomain.
     pub numbers: Lists<u32>,
-    /// The nodes of Γ that one subdomain has, and contact points name.
+    /// Nodes of Γ that belong to a single subdomain and to contact points.
     pub unshared: Vec<UnsharedNode>,
-    /// The nodes of Γ of every contact point, entry by entry.
+    /// The nodes of Γ of every contact point, in the order of its entries.
     pub of_points: Vec<Vec<u32>>,
 }
 
-/// A node of Γ that one subdomain has and contact points name.
+/// A node of Γ that belongs to a single subdomain and to contact points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnsharedNode {
     /// The node.
     pub at: SubdomainNode,
-    /// The number on Γ.
+    /// Its number on Γ.
     pub number: u32,
-    /// The normal of all points that name it, if they have one, no friction and no tie: where it has no supports, its
-    /// displacement along this normal alone is on Γ, and the rest belongs to the interior of the subdomain.
+    /// The common normal of all points at the node, if they have one and neither friction nor ties: without supports,
+    /// only its displacement along this normal is on Γ, and the tangential ones belong to the interior of the
+    /// subdomain.
     pub slides: Option<[f64; 3]>,
 }
 
-/// Sine of the angle between normals up to which they are one: what is left of it is less than what a row of B counts.
+/// Sine of the angle up to which normals count as parallel: the remainder is below the smallest significant entry of a
+/// row of B.
 const PARALLEL: f64 = 2e-15;
-/// Least relative weight of a pivot node that other contact points share.
+/// Smallest relative weight of a pivot node that other contact points share.
 const LEADING: f64 = 0.5;
 
-/// Contact points whose jumps take the place of displacements at once.
+/// Contact points whose jumps replace displacements in one elimination step.
 pub(super) struct System {
-    /// The points, ascending.
+    /// The contact points, ascending.
     pub points: Vec<u32>,
-    /// Other points that have what is replaced, in systems before this one: the node of the tree where this one
-    /// belongs is none under theirs.
+    /// Other points at the displacements that are replaced, all in earlier systems: this system belongs to a tree node
+    /// at or above theirs.
     pub above: Vec<u32>,
 }
 
@@ -89,11 +91,11 @@ impl Interface {
         }
     }
 
-    /// The contact points in an order in which their jumps can take the place of displacements, each in one system.
+    /// The contact points, ordered so that their jumps can replace displacements one system after the other.
     ///
-    /// A point that has a node to itself is a system: no other needs what it replaces there. So is one all of whose
-    /// nodes are shared, but one that counts only with systems before it. Points without such a node are together with
-    /// those that share their nodes and have none either.
+    /// A point with a node of its own is a system, as no other point needs the displacement that it replaces there. So
+    /// is a point that shares all its nodes, but one of them only with earlier systems. The remaining points are
+    /// grouped with those that share their nodes.
     pub fn systems(&self, catalog: &Catalog) -> Vec<System> {
         let on = (0..).zip(&self.of_points);
         let on = on.flat_map(|(j, list)| list.iter().map(move |&number| (number, j)));
@@ -141,7 +143,7 @@ impl Interface {
         systems
     }
 
-    /// The systems of the points that are waiting for each other.
+    /// The systems of the points that depend on each other in a cycle.
     fn stuck(&self, users: &Lists<u32>, is_waiting: &[bool]) -> Vec<System> {
         let mut sets = DisjointSets::new(self.of_points.len());
         for users in users.iter() {

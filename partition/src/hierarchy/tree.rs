@@ -1,10 +1,9 @@
 //! The hierarchy: a tree along which the Schur complements of the subdomains are merged.
 //!
-//! A node of the tree stands for the subdomains under it. It eliminates the nodes of Γ that all
-//! subdomains with them lie under it, but not under one of its children, and keeps those that
-//! subdomains outside have, too. Γ holds the nodes that several subdomains share and all nodes of
-//! contact points: a contact point belongs to the lowest node of the tree under which all that have
-//! one of its nodes lie. There its normal jump takes the place of a displacement.
+//! A node of the tree stands for the subdomains under it. It eliminates the nodes of Γ whose subdomains all lie under
+//! it, but not all under one child, and keeps those that are shared with subdomains outside. Γ holds the nodes shared
+//! by several subdomains and all nodes of contact points: a contact point belongs to the lowest tree node under which
+//! all subdomains with its nodes lie. There its normal jump replaces a displacement.
 //!
 //! The tree follows from the problem file, so that merges are the same on any number of ranks.
 
@@ -19,15 +18,16 @@ use crate::problem::{Catalog, Hierarchy};
 /// The tree.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree {
-    /// The nodes: the subdomains, then the inner ones, children before parents.
+    /// The nodes: first the subdomains, then the inner nodes, children before parents.
     pub nodes: Numbered<TreeNodeId, TreeNode>,
     /// Number of subdomains.
     pub subdomains: usize,
-    /// Number of nodes of Γ: those that several subdomains share, then those that one has and contact points name.
+    /// Number of nodes of Γ: first those shared by several subdomains, then those of a single subdomain with contact
+    /// points.
     pub interface_nodes: usize,
-    /// The second kind, subdomain by subdomain.
+    /// The nodes of the second kind, subdomain by subdomain.
     pub unshared: Vec<UnsharedNode>,
-    /// The nodes between which an iterative interface solver works, ascending; none where the file doesn't say.
+    /// The nodes that are clusters of the iterative interface solver, ascending; none where the file has none.
     pub clusters: Vec<TreeNodeId>,
 }
 
@@ -38,19 +38,19 @@ pub struct TreeNode {
     pub parent: Option<TreeNodeId>,
     /// The nodes that are merged into it, ascending.
     pub children: Vec<TreeNodeId>,
-    /// Mesh nodes of a subdomain, on Γ or not; none of an inner one.
+    /// Number of mesh nodes of a subdomain, on Γ or not; 0 for an inner node.
     pub of_subdomain: usize,
     /// Nodes of Γ that are eliminated here, ascending.
     pub eliminated: Vec<u32>,
-    /// Nodes of Γ that subdomains outside share, ascending.
+    /// Nodes of Γ shared with subdomains outside, ascending.
     pub kept: Vec<u32>,
     /// Unknowns at the nodes that are eliminated, and at those that are kept.
     pub dofs: [usize; 2],
-    /// The contact points that belong to it, by their place in the catalog, ascending.
+    /// The contact points that belong to it, by their index in the catalog, ascending.
     pub points: Vec<u32>,
-    /// Number of conditions of the contact points that belong to it or to a node under it, without those of ties.
+    /// Number of contact constraints that belong to it or to a node under it, without ties.
     pub conditions: usize,
-    /// Number of conditions of the ties that belong to it.
+    /// Number of tied constraints that belong to it.
     pub tied: usize,
 }
 
@@ -60,8 +60,8 @@ impl Tree {
         Self::along(catalog, &catalog.hierarchy)
     }
 
-    /// The tree in which contact groups and what has no contact come together last: each is merged by itself,
-    /// along what the hierarchy of `catalog` is for it.
+    /// The tree that merges each contact group, and the subdomains without contact, separately, along the hierarchy of
+    /// `catalog`, and joins them last.
     pub fn by_group(catalog: &Catalog) -> Self {
         Self::along(catalog, &catalog.hierarchy.by_group(catalog))
     }
@@ -82,7 +82,7 @@ impl Tree {
         tree
     }
 
-    /// Adds the inner nodes. A subdomain that has contact points or nodes of Γ to itself gets one of its own.
+    /// Adds the inner nodes. A subdomain that has contact points or nodes of Γ of its own gets a parent of its own.
     fn grow(&mut self, catalog: &Catalog, hierarchy: &Hierarchy, interface: &Interface) {
         let subdomains = self.subdomains;
         for (node, summary) in self.nodes.iter_mut().zip(&catalog.subdomains) {
@@ -111,7 +111,7 @@ impl Tree {
         self.clusters.sort_unstable();
     }
 
-    /// Puts a new root above all roots that a node of Γ or a contact point links.
+    /// Adds a root above all roots that are linked by a node of Γ or a contact point.
     fn join_roots(&mut self, interface: &Interface) {
         let mut root: Numbered<TreeNodeId, TreeNodeId> = self.nodes.ids().collect();
         for v in self.nodes.ids().rev() {
@@ -152,9 +152,9 @@ impl Tree {
         }
     }
 
-    /// Finds what every node eliminates and keeps, and its contact points.
+    /// Determines the nodes of Γ that every tree node eliminates and keeps, and its contact points.
     fn place(&mut self, catalog: &Catalog, interface: &Interface) {
-        // The lowest node above all subdomains of a node of Γ, not a subdomain itself.
+        // The lowest inner node above all subdomains of a node of Γ.
         let mut ends: Vec<TreeNodeId> = (interface.subdomains.iter())
             .map(|list| {
                 let leaf = |s: u32| TreeNodeId::new(s as usize);
@@ -195,7 +195,8 @@ impl Tree {
         self.count_dofs(catalog, interface);
     }
 
-    /// Finds what inner nodes keep, where nodes of Γ have these `ends`, and how many conditions are under every node.
+    /// Determines the nodes that inner nodes keep, from the `ends` at which nodes of Γ are eliminated, and the number
+    /// of constraints under every node.
     fn sum_up(&mut self, catalog: &Catalog, ends: &[TreeNodeId]) {
         for v in self.nodes.ids() {
             let mut kept: Vec<u32> = Vec::new();
@@ -239,12 +240,12 @@ impl Tree {
         }
     }
 
-    /// The block that node v is, if it is no inner one.
+    /// The block of node v; `None` for an inner node.
     pub fn block(&self, v: TreeNodeId) -> Option<BlockId> {
         (v.index() < self.subdomains).then(|| BlockId::new(v.index()))
     }
 
-    /// The lowest node above both, or one of them.
+    /// The lowest common ancestor of two nodes, which may be one of them.
     pub fn lowest_above(&self, mut v: TreeNodeId, mut w: TreeNodeId) -> TreeNodeId {
         while v != w {
             let lower = if v < w { &mut v } else { &mut w };
@@ -256,12 +257,12 @@ impl Tree {
         v
     }
 
-    /// The nodes that nothing is above.
+    /// The nodes without a parent.
     pub fn roots(&self) -> impl Iterator<Item = TreeNodeId> + '_ {
         (self.nodes.ids()).filter(|&v| self.nodes[v].parent.is_none())
     }
 
-    /// Number of conditions of the contact points that belong to node v, without those of ties.
+    /// Number of contact constraints that belong to node v, without ties.
     pub fn own_conditions(&self, v: TreeNodeId) -> usize {
         let children = self.nodes[v].children.iter();
         let below: usize = children.map(|&child| self.nodes[child].conditions).sum();
@@ -279,7 +280,7 @@ impl Tree {
         sums
     }
 
-    /// The highest nodes for which `is_whole` holds, ascending; leaves do at the latest.
+    /// The highest nodes for which `is_whole` is true, ascending; it has to be true for leaves.
     pub fn highest(&self, is_whole: impl Fn(TreeNodeId) -> bool) -> Vec<TreeNodeId> {
         let whole = |v: TreeNodeId| self.nodes[v].children.is_empty() || is_whole(v);
         let mut inside = self.nodes.like(false);
@@ -313,7 +314,7 @@ impl Tree {
 }
 
 impl Hierarchy {
-    /// One root above a copy of this tree for every contact group and one for subdomains without contact.
+    /// A root above copies of this tree, one for every contact group and one for the subdomains without contact.
     fn by_group(&self, catalog: &Catalog) -> Self {
         let linear = catalog.groups.len();
         let mut classes: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); self.parent.len()];

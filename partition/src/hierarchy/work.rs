@@ -12,19 +12,19 @@ use crate::problem::Catalog;
 pub struct Work {
     /// The front of every inner node.
     pub fronts: Vec<Front>,
-    /// Estimated work under the heaviest child of the heaviest root, over the mean of all its
-    /// children; 1 where there is none.
+    /// Load imbalance at the top: estimated work under the heaviest child of the heaviest root over the average of its
+    /// children; 1 without children.
     pub uneven_halves: f64,
-    /// Best possible speed-up: estimated time of all nodes over that of the costliest way from a leaf to a root.
+    /// Best possible speed-up: estimated time of all nodes over that of the critical path from a leaf to a root.
     pub speed_up: f64,
 }
 
-/// Least gain of doubling the number of ranks.
+/// Least relative gain for which the number of ranks is doubled.
 const GAIN: f64 = 0.2;
 
 impl Work {
-    /// The cost of the hierarchy of `catalog`; the speed-up is that over all active sets where these are fixed, and that
-    /// of iterations between clusters where these take less time.
+    /// The cost of the hierarchy of `catalog`; the speed-up covers all active sets if these are fixed one by one, and
+    /// the iterations between clusters if these take less time.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let operators = OperatorTimes::new(catalog);
@@ -55,8 +55,8 @@ impl Work {
 
     /// The largest useful number of ranks: the next power of 2 would save less than a fifth of the time.
     ///
-    /// With r ranks that don't wait for each other more than the tree makes them, the work outside of the
-    /// costliest way takes 1/r of its time (Brent 1974).
+    /// With r ranks that wait for each other only as the tree requires, the work outside of the critical path takes 1/r
+    /// of its time (Brent 1974).
     pub fn useful_ranks(&self) -> usize {
         let time = |ranks: usize| 1.0 + (self.speed_up - 1.0) / ranks as f64;
         let powers = (0..usize::BITS - 1).map(|power| 1 << power);
@@ -73,7 +73,7 @@ impl Work {
     }
 }
 
-/// Times of all nodes where nothing is merged above clusters, with those of iterations between them.
+/// Times of all nodes if nothing is merged above clusters, iterations between clusters included.
 fn times_to_clusters(tree: &Tree, dim: usize) -> Numbered<TreeNodeId, f64> {
     let mut times = tree.nodes.like(0.0);
     for &cluster in &tree.clusters {
@@ -85,8 +85,8 @@ fn times_to_clusters(tree: &Tree, dim: usize) -> Numbered<TreeNodeId, f64> {
     times
 }
 
-/// `times` are those of all nodes, `coarse` that of a sparse problem behind them: of nested dissection in space, two
-/// thirds lie on one way.
+/// The speed-up from the `times` of all nodes and the time `coarse` of a sparse coarse problem: with nested dissection
+/// in space, two thirds of it lie on the critical path.
 fn speed_up(tree: &Tree, times: &Numbered<TreeNodeId, f64>, coarse: f64) -> f64 {
     let mut all = coarse;
     let mut paths = tree.nodes.like(0.0f64);
@@ -99,7 +99,7 @@ fn speed_up(tree: &Tree, times: &Numbered<TreeNodeId, f64>, coarse: f64) -> f64 
     all / (longest + 2.0 / 3.0 * coarse)
 }
 
-/// `below` has the work of every node with all that is under it.
+/// The load imbalance from `below`, the work of every node including its subtree.
 fn uneven_halves(tree: &Tree, below: &Numbered<TreeNodeId, f64>) -> f64 {
     let heaviest = tree.roots().max_by(|&a, &b| below[a].total_cmp(&below[b]));
     let children = heaviest.map_or(&[][..], |root| &tree.nodes[root].children);

@@ -1,11 +1,11 @@
-//! Input decks of Abaqus and CalculiX, `.inp`: the mesh in them.
+//! Input decks of Abaqus and CalculiX, `.inp`: their mesh.
 //!
-//! Read it so: the elements of the highest dimension are the cells. A set of elements is a group of cells; a
-//! surface is a group of facets, and so are elements of one dimension less; a set of nodes is the group of
-//! those facets of the boundary all of whose nodes are in it, and where these miss one of its nodes, a group of
-//! points. Names are compared without regard to case, and stand as the deck first writes them. The sets of an
-//! instance are called `instance.set`, where no other set has that name just `set`. What isn't mesh is left out,
-//! with a warning; what would change the mesh in a way that isn't read is refused.
+//! The elements of the highest dimension are the cells. A set of elements is a group of cells; a surface is a group of
+//! facets, and so are elements of one dimension less. A set of nodes is the group of those facets of the boundary all
+//! of whose nodes are in it; where these leave out one of its nodes, it is a group of points. Names are
+//! case-insensitive, and keep the spelling of their first occurrence. The sets of an instance are called
+//! `instance.set`, or just `set` if no other set has that name. Content other than the mesh is left out, with a
+//! warning; unsupported content that would change the mesh is refused.
 
 mod assembly;
 mod blocks;
@@ -29,7 +29,7 @@ pub(crate) use self::deck::{Deck, Face};
 pub(crate) use self::import::mesh;
 pub(crate) use self::members::Of;
 
-/// A deck and the files that it includes; the deck alone where it can't be read, which is told who reads it.
+/// A deck and its included files; only the deck if it can't be read, as the error is left to its reader.
 pub fn files(path: &Path) -> Vec<PathBuf> {
     match Source::read(path) {
         Ok(source) => source.paths().map(Path::to_path_buf).collect(),
@@ -37,10 +37,10 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
     }
 }
 
-/// Reads the mesh of a deck, with the files that it includes.
+/// Reads the mesh of a deck and its included files.
 ///
 /// # Errors
-/// The fault of the deck, with file and line.
+/// The error in the deck, with file and line.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
     let source = Source::read(path)?;
     let Whole {

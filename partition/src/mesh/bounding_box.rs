@@ -1,6 +1,6 @@
-//! The box around points, along the axes.
+//! The bounding box of points, along the axes.
 
-/// The box; without points its bounds are the wrong way round.
+/// The box; without points its lower bounds exceed the upper ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingBox {
     /// Least coordinates (m).
@@ -10,7 +10,7 @@ pub struct BoundingBox {
 }
 
 impl BoundingBox {
-    /// The box around nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
@@ -28,7 +28,7 @@ impl BoundingBox {
         all
     }
 
-    /// Makes room for another box.
+    /// Enlarges it to contain another box.
     pub fn include(&mut self, other: &Self) {
         for axis in 0..3 {
             self.low[axis] = self.low[axis].min(other.low[axis]);

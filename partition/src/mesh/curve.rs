@@ -1,14 +1,15 @@
-//! The order of a mesh in memory: neighbours in space are near there, too, whatever order a mesher chose.
+//! The order of a mesh in memory: along a space-filling curve, so that neighbours in space are close in memory,
+//! whatever the mesher's order.
 
 use super::Mesh;
 use crate::element::Elements;
 
-/// Cells of the grid along an axis that tells points apart, as a power of 2: three of them fill a key.
+/// Bits of a coordinate on the grid that orders points: three coordinates fill a key.
 const BITS: u32 = 21;
 
 impl Mesh {
-    /// The same mesh with its cells along Morton's curve, and its nodes in the order in which these come upon them:
-    /// whatever goes through a large mesh takes half the time.
+    /// The same mesh with its cells along Morton's curve, and its nodes in the order of their first cell: loops over a
+    /// large mesh take half the time.
     #[must_use]
     pub fn along_curve(mut self) -> Self {
         let order = self.cells_along_curve();
@@ -90,13 +91,13 @@ impl Mesh {
                 });
             }
         });
-        // The stable sort merges what is in order already.
+        // The stable sort is fast on parts that are sorted already.
         keys.sort();
         keys.into_iter().map(|(_, cell)| cell).collect()
     }
 }
 
-/// Puts two zeros between any two of the lowest [`BITS`] bits.
+/// Inserts two zeros between any two of the lowest [`BITS`] bits.
 fn spread(mut bits: u64) -> u64 {
     for (shift, mask) in [
         (32, 0x001f_0000_0000_ffff),

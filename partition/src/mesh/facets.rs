@@ -1,4 +1,4 @@
-//! The facets of cells, found by their nodes.
+//! The facets of cells, identified by their nodes.
 
 use std::collections::HashMap;
 
@@ -8,14 +8,14 @@ use crate::lists::Lists;
 /// The smallest nodes of a facet, ascending.
 pub(super) type Key = [u32; CORNERS];
 
-/// Corners that a facet has at most. Three of four don't tell it: at the front of a crack the two facets on its
-/// sides may have them in common.
+/// Largest number of corners of a facet. Three of four don't identify it: at the front of a crack the two facets on its
+/// sides may share them.
 const CORNERS: usize = 4;
 
 /// A key without the smallest node.
 pub(super) type Rest = [u32; CORNERS - 1];
 
-/// A facet of a cell: the cell and the facet's place in [`crate::element::reference::ReferenceElement::facets`].
+/// A facet of a cell: the cell and the facet's index in [`crate::element::reference::ReferenceElement::facets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CellFacet {
     /// Cell.
@@ -25,7 +25,7 @@ pub struct CellFacet {
 }
 
 impl CellFacet {
-    /// Nodes, from its start to its end and then those between.
+    /// Nodes, ends or corners first, then those between.
     pub fn nodes(self, cells: &Elements) -> Vec<u32> {
         let cell = self.cell as usize;
         let (_, local) = cells.kind(cell).facets()[self.facet as usize];
@@ -34,8 +34,8 @@ impl CellFacet {
     }
 }
 
-/// The corners of a facet of these nodes, in the plane with the node between them: of a face its corners, as it shares
-/// all nodes of an edge with its neighbours.
+/// The identifying nodes of a facet: in the plane its corners and the middle node, in space only its corners, as all
+/// nodes of an edge are shared with its neighbours.
 pub(super) fn telling(facet: &[u32]) -> &[u32] {
     match facet.len() {
         6 => &facet[..3],
@@ -44,36 +44,36 @@ pub(super) fn telling(facet: &[u32]) -> &[u32] {
     }
 }
 
-/// A facet in the list of those with its smallest node.
+/// A facet in the list of facets with the same smallest node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Entry {
     rest: Rest,
-    /// Number, from 0, among facets of these corners whose further nodes differ: the two sides of a crack may have
-    /// all corners of a facet in common, but not the node in the middle of an edge.
+    /// Number, from 0, among facets with the same corners and different further nodes: the two sides of a crack may
+    /// share all corners of a facet, but not the middle node of an edge.
     sheet: u32,
     pub facet: CellFacet,
 }
 
 impl Entry {
-    /// True if two facets are one.
+    /// True if two facets are identical.
     fn is_same(&self, other: &Self) -> bool {
         self.rest == other.rest && self.sheet == other.sheet
     }
 }
 
-/// A line or a face where cells meet that differ in what lies within it.
+/// A line or a face shared by cells that differ in its inner nodes.
 #[derive(Debug)]
 pub struct Tear {
     /// Two cells at the facet.
     pub cells: [u32; 2],
     /// Corners.
     pub corners: Vec<u32>,
-    /// True if one of the cells has a node in its middle and the other has none; else each has one of its own, as the
-    /// two sides of a crack do.
+    /// True if one of the cells has a middle node and the other has none; otherwise each has a separate one, like the
+    /// two sides of a crack.
     pub hangs: bool,
 }
 
-/// A line or a face of a kind of cells: its local corners and what lies within it.
+/// A line or a face of a kind of cells: its local corners and inner nodes.
 struct Seam {
     corners: Vec<usize>,
     within: Vec<usize>,
@@ -101,12 +101,12 @@ impl Seam {
     }
 }
 
-/// The facets of cells, those of the same nodes beside each other.
+/// The facets of cells, with coincident facets adjacent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facets {
     /// The facets by their smallest node.
     by_node: Lists<Entry>,
-    /// The nodes of those facets that others have the corners of, but not all nodes.
+    /// The nodes of those facets that share all corners, but not all nodes, with others.
     pub(super) nodes: HashMap<CellFacet, Vec<u32>>,
 }
 
@@ -144,7 +144,7 @@ impl Facets {
         facets
     }
 
-    /// Separates facets that have the same corners but not the same nodes between them.
+    /// Distinguishes facets with the same corners but different inner nodes.
     fn tell_sheets(&mut self, cells: &Elements) {
         let sorted = |entry: &Entry| {
             let mut nodes = entry.facet.nodes(cells);
@@ -169,14 +169,14 @@ impl Facets {
         }
     }
 
-    /// The facets of the same nodes, those of a place after the other.
+    /// Groups of coincident facets.
     pub(super) fn places(&self) -> impl Iterator<Item = &[Entry]> + Clone {
         let lists = self.by_node.iter();
         lists.flat_map(|list| list.chunk_by(Entry::is_same))
     }
 
-    /// True if two facets lead from one node to the same other one, several times faster than finding all
-    /// facets: where none do, no two cells lie on the same side of an edge. In space it always may be.
+    /// True if two facets lead from one node to the same other node; several times faster than finding all facets. If
+    /// not, no two cells lie on the same side of an edge. Always true in space.
     pub fn repeat_themselves(cells: &Elements, nodes: usize) -> bool {
         if cells.iter().next().is_some_and(|(kind, _)| kind.dim() == 3) {
             return true;
@@ -191,11 +191,10 @@ impl Facets {
             .any(|to| (1..to.len()).any(|i| to[..i].contains(&to[i])))
     }
 
-    /// Two cells on the same side of a facet that they share, if there are any: one of them is
-    /// turned over, or they overlap.
+    /// Two cells on the same side of a common facet, if any: one of them is inverted, or they overlap.
     pub fn overlap(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
-        // What the order of its nodes begins with: seen from the other side a line starts at the other end, and
-        // the corners of a face follow each other the other way round.
+        // The beginning of the node order: seen from the other side, a line starts at the other end, and the corners of
+        // a face have the opposite order.
         let start = |of: &CellFacet| {
             let cell = of.cell as usize;
             let (facet, local) = cells.kind(cell).facets()[of.facet as usize];
@@ -210,7 +209,7 @@ impl Facets {
             }
         };
         self.places().find_map(|same| {
-            // Of three cells two are on one side.
+            // Of three cells two are on the same side.
             let count = same.len().min(3);
             let mut pairs =
                 (1..count).flat_map(|i| (0..i).map(move |j| [same[j].facet, same[i].facet]));
@@ -218,7 +217,7 @@ impl Facets {
         })
     }
 
-    /// A face of four corners, three of which are a face of another cell.
+    /// A face of four corners, three of which form a face of another cell.
     pub(super) fn halved(&self, cells: &Elements) -> Option<[CellFacet; 2]> {
         let corners = |of: &CellFacet| {
             let kind = cells.kind(of.cell as usize);
@@ -255,8 +254,8 @@ impl Facets {
         &list[start..start + same]
     }
 
-    /// A line or a face whose corners cells share, but not what lies between them, if there is any: first of those where
-    /// one of the cells has a node in its middle that would hang, as the other has none.
+    /// A line or a face whose corners cells share, but not its inner nodes, if any; preferably one with a hanging
+    /// middle node, which one of the cells lacks.
     pub fn torn(cells: &Elements, nodes: usize) -> Option<Tear> {
         if cells.iter().all(|(kind, _)| kind.is_linear()) {
             return None;
@@ -289,7 +288,7 @@ impl Facets {
 pub(super) fn key(nodes: impl Iterator<Item = u32>) -> Key {
     let mut key = [u32::MAX; CORNERS];
     for mut node in nodes {
-        // Each node goes where it belongs and pushes the larger ones on.
+        // Insertion sort: each node is inserted and shifts the larger ones.
         for place in &mut key {
             if node < *place {
                 std::mem::swap(place, &mut node);

@@ -1,14 +1,14 @@
-//! The files of a mesh, in any of the formats that are read.
+//! Mesh files of all supported formats.
 
 use std::path::{Path, PathBuf};
 
 use super::{Mesh, abaqus, gmsh};
 use crate::error::InputError;
 
-/// Reads a mesh: a deck of Abaqus or CalculiX where its name ends with `.inp`, else Gmsh's format.
+/// Reads a mesh: a deck of Abaqus or CalculiX if its name ends with `.inp`, otherwise Gmsh's format.
 ///
 /// # Errors
-/// The fault of the file, and its place.
+/// The error in the file, with its position.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
     match path.extension() {
         Some(ending) if ending.eq_ignore_ascii_case("inp") => abaqus::read(path),
@@ -16,8 +16,7 @@ pub fn read(path: &Path) -> Result<Mesh, InputError> {
     }
 }
 
-/// The files that a mesh is read from, as far as `output`, which is there, may be one of them: that of the mesh, and those
-/// that a deck includes.
+/// The files of a mesh that the existing file `output` may be one of: the mesh, and the files included by a deck.
 pub fn files(path: &Path, output: &Path) -> Vec<PathBuf> {
     match path.extension() {
         Some(ending) if output.exists() && ending.eq_ignore_ascii_case("inp") => {

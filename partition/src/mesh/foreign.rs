@@ -4,28 +4,28 @@ use std::path::Path;
 
 use crate::error::InputError;
 
-/// Command that converts a file into Gmsh's format.
+/// The program that converts a file into Gmsh's format.
 #[derive(Clone, Copy)]
 enum Converter {
     /// Gmsh meshes the geometry.
     Mesher,
-    /// Gmsh fills the surface with cells, once a geometry says what it bounds.
+    /// Gmsh fills the surface with cells, given a geometry of the enclosed volume.
     Filler,
-    /// Gmsh reads the mesh and saves it as its own.
+    /// Gmsh reads the mesh and saves it in its own format.
     Gmsh,
     /// Gmsh can't read it, but the Python package meshio can.
     Meshio,
-    /// The file is none of a mesh: what to do with it.
+    /// The file isn't a mesh: the advice.
     Other(&'static str),
 }
 
-/// The other format that is read.
+/// The other supported format.
 const INP: &str = "a deck of Abaqus or CalculiX whose name ends with .inp";
 
-/// A format: name, endings of files, converter.
+/// A format: name, file extensions, converter.
 type Format = (&'static str, &'static [&'static str], Converter);
 
-/// Formats that the ending of a name tells.
+/// Formats recognized by the extension of a name.
 const FORMATS: [Format; 27] = [
     ("a STEP geometry", &["step", "stp"], Converter::Mesher),
     (
@@ -100,15 +100,15 @@ const FORMATS: [Format; 27] = [
     ),
 ];
 
-/// Formats that the first bytes of a file tell, whatever its name.
+/// Formats recognized by the first bytes of a file, whatever its name.
 const BEGINNINGS: [(&[u8], Format); 3] = [
     (b"$NOD", ("an MSH mesh of version 1", &[], Converter::Gmsh)),
     (b"(", ("a Fluent mesh", &[], Converter::Meshio)),
     (b"solid", ("an STL surface", &[], Converter::Filler)),
 ];
 
-/// The error about a file that isn't Gmsh's and begins with `head`, with the command that converts it where its format
-/// is known.
+/// The error for a file in another format that begins with `head`, with the command that converts it if the format is
+/// known.
 pub(super) fn refusal(path: &Path, head: &[u8]) -> InputError {
     let by_head = || {
         let head = head.trim_ascii_start();

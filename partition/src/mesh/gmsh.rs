@@ -1,13 +1,12 @@
 //! Gmsh's MSH format, versions 4.1 and 2.2, ASCII and binary.
 //!
-//! The reader is the project's own: the crate `mshio` drops node tags wherever they have no gaps,
-//! even out of order, and knows neither names of physical groups nor parametric nodes nor 2.2.
+//! The reader belongs to this project: the crate `mshio` drops node tags without gaps, even unordered ones, and
+//! supports neither names of physical groups nor parametric nodes nor version 2.2.
 //!
-//! Read it so: cells are the elements of the highest dimension. Cells, facets and nodes come in
-//! ascending order of their tags, whatever their order in the file. Nodes that no cell uses are
-//! dropped, and cells outside all physical groups wherever others are in one. A physical group
-//! without a name is called by its number; a name that serves groups of several dimensions gets
-//! the dimension behind it, "7 (curve)" and "7 (surface)".
+//! Cells are the elements of the highest dimension. Cells, facets and nodes are in ascending order of their tags,
+//! whatever their order in the file. Nodes without cells are dropped, and so are cells outside all physical groups if
+//! other cells are in one. A physical group without a name is called by its number; a name used in several dimensions
+//! gets the dimension appended, "7 (curve)" and "7 (surface)".
 
 mod content;
 mod cursor;
@@ -29,14 +28,14 @@ use crate::source;
 
 pub use self::write::{write, write_to};
 
-/// Within how many bytes a mesh says that it is one.
+/// Number of bytes within which a mesh is recognized.
 const HEAD: u64 = 1 << 20;
 
 /// Reads a mesh.
 ///
 /// # Errors
-/// The fault of the file and its place: the line of an ASCII file, section and byte of a binary
-/// one, tags of nodes and elements.
+/// The error in the file and its position: the line of an ASCII file, section and byte of a binary one, tags of nodes
+/// and elements.
 pub fn read(path: &Path) -> Result<Mesh, InputError> {
     read_unnamed(path).map_err(|error| error.in_file(path))
 }
@@ -45,7 +44,7 @@ fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
     let unreadable = |e: std::io::Error| InputError::new(format!("the mesh can't be read: {e}"));
     let mut file = source::open(path, "a mesh in Gmsh's format")?;
     let mut bytes = Vec::new();
-    // What doesn't start as a mesh isn't read to its end, which may be far.
+    // A file that doesn't start as a mesh isn't read to its end, as it may be long.
     (&mut file)
         .take(HEAD)
         .read_to_end(&mut bytes)
@@ -61,7 +60,7 @@ fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
 /// Reads a mesh from the bytes of an MSH file.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn parse(bytes: &[u8]) -> Result<Mesh, InputError> {
     import::mesh(contents(bytes)?)
 }

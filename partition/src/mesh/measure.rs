@@ -1,28 +1,28 @@
-//! Measures of cells, areas or volumes, and which way round a cell's nodes run.
+//! Measures of cells, areas or volumes, and the orientation of cells.
 
 use super::Mesh;
 use crate::element::geometry::{difference, length, shown};
 use crate::error::InputError;
 use crate::magnitude::SMALLEST_AREA;
 
-/// Measure over the square (in space: the cube) of the largest edge below which a cell is flat.
+/// Measure over the square (in space: the cube) of the largest edge below which a cell is degenerate.
 const FLAT: f64 = 1e-13;
 
-/// z that counts as constant, relative to the extent of the mesh.
+/// Range of z, relative to the extent of the mesh, up to which z is constant.
 const PLANE: f64 = 1e-9;
 
 impl Mesh {
-    /// Signed measure of a cell, in m² or m³: negative where its nodes run the wrong way round.
+    /// Signed measure of a cell (m², m³): negative for reversed node order.
     pub fn measure(&self, cell: usize) -> f64 {
         let nodes = self.cells.nodes_of(cell).iter();
         let at: Vec<_> = nodes.map(|&n| self.points[n as usize]).collect();
         self.cells.kind(cell).measure(&at)
     }
 
-    /// Turns cells of negative measure over.
+    /// Reverses cells of negative measure.
     ///
     /// # Errors
-    /// A cell without measure, or whose Jacobian isn't positive everywhere, by its tag.
+    /// A degenerate cell, or one whose Jacobian isn't positive everywhere, by its tag.
     pub(crate) fn orient_cells(&mut self) -> Result<(), InputError> {
         let mut at = Vec::new();
         let mut borne = Vec::new();
@@ -64,15 +64,15 @@ impl Mesh {
         Ok(())
     }
 
-    /// Puts the points of a cell's nodes in place of what `at` holds.
+    /// Replaces the content of `at` by the points of a cell's nodes.
     fn points_of(&self, cell: usize, at: &mut Vec<[f64; 3]>) {
         let nodes = self.cells.nodes_of(cell).iter();
         at.clear();
         at.extend(nodes.map(|&n| self.points[n as usize]));
     }
 
-    /// Checks that the Jacobian of a cell, whose nodes are `at` these points, is above `floor` everywhere; where it isn't
-    /// and that can be borne, it is said.
+    /// Checks that the Jacobian of a cell, whose nodes are `at` these points, is above `floor` everywhere; if it isn't
+    /// but the cell is acceptable, returns a warning.
     fn check_jacobian(
         &self,
         cell: usize,
@@ -111,7 +111,7 @@ impl Mesh {
         }
     }
 
-    /// Sets the components behind the mesh's dimension to zero.
+    /// Sets the components beyond the mesh's dimension to zero.
     ///
     /// # Errors
     /// A node outside the plane of the others.
@@ -139,7 +139,7 @@ impl Mesh {
     }
 }
 
-/// Two of these points that are one.
+/// Two coincident points.
 fn collapsed(at: &[[f64; 3]]) -> Option<[usize; 2]> {
     (1..at.len()).find_map(|b| Some([at[..b].iter().position(|a| *a == at[b])?, b]))
 }

@@ -1,4 +1,4 @@
-//! Neighbours across facets, and connected parts.
+//! Adjacency across facets, and connected components.
 
 use super::Mesh;
 pub use super::facets::CellFacet;
@@ -7,11 +7,11 @@ use crate::error::InputError;
 use crate::lists::Lists;
 
 impl Mesh {
-    /// Checks that cells which share the ends of an edge have no node hang in its middle. What a user should know of
-    /// an edge in whose middle each has a node of its own.
+    /// Checks that no cell's edge has a hanging middle node. Returns a warning of an edge on which each cell has a
+    /// separate middle node.
     ///
     /// # Errors
-    /// Two that don't, by their tags: such as a linear cell beside a quadratic one.
+    /// Two such cells, by their tags: for example a linear cell next to a quadratic one.
     pub(crate) fn check_edges(&self) -> Result<Option<String>, InputError> {
         let Some(tear) = Facets::torn(&self.cells, self.points.len()) else {
             return Ok(None);
@@ -60,10 +60,10 @@ impl Topology {
         Self { facets, neighbours }
     }
 
-    /// Checks that cells share whole facets, no two of them on the same side.
+    /// Checks that cells share whole facets, and that no two cells lie on the same side of a facet.
     ///
     /// # Errors
-    /// Two cells that don't, by their tags.
+    /// Two cells that violate this, by their tags.
     pub fn check_sides(&self, mesh: &Mesh) -> Result<(), InputError> {
         if let Some([a, b]) = self.facets.halved(&mesh.cells) {
             return Err(InputError::new(format!(
@@ -88,8 +88,8 @@ impl Topology {
         )))
     }
 
-    /// The facets of cells that have exactly these nodes, in any order, in space these corners; where the facets of
-    /// these corners differ in what lies between them, those that have all these nodes.
+    /// The facets of cells with exactly these nodes, in any order, or in space with these corners; where facets with
+    /// these corners differ in their inner nodes, those that agree in all nodes.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
         let found = self.facets.of(key(telling(facet_nodes).iter().copied()));
         let has = |facet: &CellFacet| {
@@ -99,7 +99,7 @@ impl Topology {
         found.iter().map(|entry| entry.facet).filter(has).collect()
     }
 
-    /// The facets of one cell only, in the order of their nodes.
+    /// The boundary facets, which belong to a single cell, in the order of their nodes.
     pub fn boundary(&self) -> impl Iterator<Item = CellFacet> + Clone {
         self.facets.places().filter_map(|same| match same {
             [one] => Some(one.facet),
@@ -112,12 +112,12 @@ impl Topology {
         self.neighbours.of(cell)
     }
 
-    /// Number of cells that share a facet with another, counted for every facet.
+    /// Number of pairs of cells that share a facet, counted for every facet.
     pub fn pairs(&self) -> usize {
         self.neighbours.items()
     }
 
-    /// Component of every cell, connected across facets; components are numbered in the order of their first cell.
+    /// Connected component of every cell, across facets; components are numbered in the order of their first cell.
     pub fn pieces(&self) -> Vec<u32> {
         let mut piece = vec![u32::MAX; self.neighbours.len()];
         let mut count = 0;

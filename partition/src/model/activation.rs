@@ -1,5 +1,4 @@
-//! Bodies and contacts that aren't there in a load step. A body that isn't there is left in the mesh, where nothing acts
-//! on it.
+//! Activation and deactivation of bodies and contacts in load steps. An absent body stays in the mesh, without loads.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +8,7 @@ use super::{Contact, Support};
 use crate::error::InputError;
 use crate::scene::Scene;
 
-/// The numbers of the bodies that aren't there, step by step.
+/// The numbers of the absent bodies, step by step.
 pub(super) fn bodies(scene: &Scene) -> Vec<Vec<u32>> {
     let of_step = |names: BTreeSet<&str>| {
         let bodies = (0..).zip(scene.bodies.keys());
@@ -19,7 +18,7 @@ pub(super) fn bodies(scene: &Scene) -> Vec<Vec<u32>> {
     scene.absent().into_iter().map(of_step).collect()
 }
 
-/// The numbers of the contacts that are switched off, step by step; `tables` are the names that the scene has for them.
+/// The numbers of the contacts that are switched off, step by step; `tables` are their names in the scene.
 pub(super) fn contacts(scene: &Scene, tables: &[&str]) -> Vec<Vec<u32>> {
     let of_step = |names: BTreeSet<&str>| {
         let contacts = (0..).zip(tables);
@@ -29,7 +28,7 @@ pub(super) fn contacts(scene: &Scene, tables: &[&str]) -> Vec<Vec<u32>> {
     scene.absent().into_iter().map(of_step).collect()
 }
 
-/// Takes all that acts off the bodies that are `absent`: forces, what supports prescribe, stress without strain.
+/// Removes all loads from the bodies that are `absent`: forces, prescribed displacements, initial stress.
 pub(super) fn unload(
     bodies: &Bodies,
     absent: &[u32],
@@ -71,8 +70,8 @@ pub(super) fn absent_nodes(bodies: &Bodies, absent: &[u32]) -> Vec<bool> {
     is_absent
 }
 
-/// Checks that a body that is added or removed has its nodes to itself, and that no contact point lies on a side of
-/// which a part is there.
+/// Checks that a body that is added or removed shares no node with others, and that no contact point lies on a side
+/// that is present only in part.
 ///
 /// # Errors
 /// The body, or the contact, with the expectation.

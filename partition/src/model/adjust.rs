@@ -1,4 +1,5 @@
-//! Adjustment of ties: nodes are moved onto the other side, so that no gap is left over which forces would act.
+//! Adjustment of ties: nodes are moved onto the other side, so that no gap is left, across which forces would have a
+//! moment.
 
 use super::bodies::Bodies;
 use super::contact::Contacts;
@@ -11,14 +12,14 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::contact::Partner;
 
-/// Times that sides are paired anew where they have been moved to: what is left is squared every time.
+/// Number of times that sides are paired again after moving nodes: each time the remaining gap is squared.
 const PAIRINGS: usize = 4;
-/// Most rounds in which points with nodes in common are moved one after the other.
+/// Largest number of rounds in which points with common nodes are moved one after the other.
 const ROUNDS: usize = 50;
-/// Way of a node, relative to the size of facets, that is none.
+/// Distance of a node, relative to the size of facets, that is round-off.
 const NOTHING: f64 = 1e-14;
 
-/// Moves the nodes of the ties of a scene that ask for it.
+/// Moves the nodes of ties for which the scene requests it.
 ///
 /// # Errors
 /// Sides that don't face each other, or are apart.
@@ -59,8 +60,8 @@ pub(super) fn adjust(
     Ok(())
 }
 
-/// Moves the nodes that have `points`, first of their entries, until the sides of all coincide, Σ weight · position = 0; returns
-/// whether any was farther away than `nothing`.
+/// Moves the nodes of `points`, the first entry of each, until all gaps are closed, Σ weight · position = 0; returns
+/// whether any node was farther away than `nothing`.
 fn close(positions: &mut [[f64; 3]], points: &[ContactPoint<u32>], nothing: f64) -> bool {
     let mut was_apart = false;
     for _ in 0..ROUNDS {

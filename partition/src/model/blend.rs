@@ -1,23 +1,23 @@
-//! Quadratic facets whose corners have no positive ∫ N, so that a pressure pulls there or doesn't push: in space those
-//! without a node in the middle, around an axis those that end on it. With functions of which such a corner takes a
-//! part from the nodes on its edges all forces push.
+//! Modified shape functions for quadratic facets whose corners have ∫ N ≤ 0, so that a pressure there pulls or has no
+//! force: in space facets without a node in the middle, around an axis facets that end on it. Each such corner takes a
+//! part of the shape functions of the nodes on its edges, so that all nodal forces of a pressure push.
 
 use nalgebra::DMatrix;
 
 use crate::element::ElementKind;
 
-/// Share of a corner in the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput.
-/// 34, 2012). On triangles of 6 nodes it may be anything below 1/2, on quadrilaterals of 8 above 1/8, too; with
-/// this the dual functions are the least in the mean.
+/// Share of a corner in the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput. 34,
+/// 2012). Triangles of 6 nodes admit any share below 1/2, quadrilaterals of 8 nodes only shares above 1/8; this one
+/// minimizes the average size of the dual functions.
 pub(super) const TAKEN: f64 = 0.2;
 
-/// True if ∫ N of corners isn't positive.
+/// True if ∫ N ≤ 0 at corners.
 fn has_weightless_corners(kind: ElementKind) -> bool {
     kind.dim() > 1 && kind.nodes() == 2 * kind.corners()
 }
 
-/// The functions of the corners alone: each node on an edge hands half of its own to either end, a node in the
-/// middle hands its own to all.
+/// Functions of the corners only: each node on an edge gives half of its function to either end, a node in the middle
+/// an equal part to all.
 pub(super) fn of_corners(kind: ElementKind) -> DMatrix<f64> {
     let (nodes, corners) = (kind.nodes(), kind.corners());
     let mut basis = DMatrix::identity(corners, nodes);
@@ -38,13 +38,13 @@ pub(super) fn of_corners(kind: ElementKind) -> DMatrix<f64> {
 #[derive(Clone, Debug)]
 pub(super) struct Blending {
     nodes: usize,
-    /// Nodes on edges, each with the corners that take a part.
+    /// Nodes on edges, each with the corners that take a part of its function.
     pub takers: Vec<(usize, Vec<usize>)>,
 }
 
 impl Blending {
-    /// The blend of a facet of a kind, one corner of which may lie on the axis that it goes around: there a line of three
-    /// nodes has ∫ N dS = 0.
+    /// The modification for facets of a kind, one corner of which may lie on the axis of symmetry: there a line of
+    /// three nodes has ∫ N dS = 0.
     pub fn new(kind: ElementKind, on_axis: Option<usize>) -> Self {
         let takers = match (has_weightless_corners(kind), on_axis) {
             (true, _) => {
@@ -62,12 +62,12 @@ impl Blending {
         }
     }
 
-    /// True if no corner takes any.
+    /// True if the shape functions stay unmodified.
     pub fn is_none(&self) -> bool {
         self.takers.is_empty()
     }
 
-    /// The functions with positive integrals, as rows of coefficients of the shape functions.
+    /// The modified functions, with positive integrals, as rows of coefficients of the shape functions.
     pub fn positive(&self) -> DMatrix<f64> {
         let mut basis = DMatrix::identity(self.nodes, self.nodes);
         for (middle, corners) in &self.takers {

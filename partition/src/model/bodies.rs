@@ -14,28 +14,28 @@ use crate::scene::contact::{Contact, Declaration};
 use crate::scene::material::Elasticity;
 use crate::stiffness::Stiffness;
 
-/// Poisson's ratio from which on linear cells lock: too stiff by 7 % in energy at 0.499.
+/// Poisson's ratio above which linear cells lock: too stiff by 7 % in energy at 0.499.
 const LOCKING: f64 = 0.49;
 
 /// Distance from the axis, relative to the bodies' extent, that is round-off.
 const AXIS: f64 = 1e-10;
 
-/// Warning of incompatible modes around an axis.
+/// Warning that incompatible modes aren't available around an axis.
 const WITHOUT_MODES: &str = "elements with incompatible modes are solved without them where plane = \"axisymmetric\", too \
                              stiff in bending; quadratic ones, such as CAX8, aren't";
 
-/// The mesh of the bodies alone, and body and material of its cells.
+/// The mesh of the bodies only, with body and material of its cells.
 pub(super) struct Bodies {
     pub mesh: Mesh,
     pub cell_body: Vec<u32>,
     pub cell_material: Vec<u32>,
-    /// The materials of which cells of another formulation have one of their own, from `first_variant` on.
+    /// The materials, from index `first_variant` on, that are copies of others for cells of another formulation.
     pub variants: Vec<(u32, Formulation)>,
     first_variant: u32,
 }
 
 impl Bodies {
-    /// Gives every cell its body; cells in none are left out, with a warning.
+    /// Assigns every cell to its body; cells in no body are removed, with a warning.
     pub fn new(scene: &Scene, mesh: Mesh, warnings: &mut Vec<String>) -> Result<Self, InputError> {
         let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
         let owner = groups::owners(&mesh, &names, "bodies")?;
@@ -61,7 +61,8 @@ impl Bodies {
         let cell_material: Vec<u32> = (cell_body.iter())
             .map(|&body| material_of_body[body as usize])
             .collect();
-        // A material of its own is where stresses are recovered by themselves: they jump where initial ones do.
+        // A separate material keeps the recovery of stresses from averaging across bodies: stresses jump where initial
+        // stress does.
         let mut own = scene.materials.len() as u32..;
         let material_of_body: Vec<u32> = (scene.bodies.values().zip(material_of_body))
             .map(|(body, material)| match body.has_initial_stress() {
@@ -92,10 +93,10 @@ impl Bodies {
 }
 
 impl Bodies {
-    /// Gives cells of another formulation materials of their own, behind all others.
+    /// Gives cells of another formulation separate materials, after all others.
     ///
     /// # Errors
-    /// A body of reduced integration none of whose cells has any.
+    /// A body of reduced integration without a cell that supports it.
     fn name_variants(&mut self, scene: &Scene, is_around_axis: bool) -> Result<(), InputError> {
         let mut reduced: Vec<Option<bool>> = (scene.bodies.values())
             .map(|body| (body.integration == Integration::Reduced).then_some(false))
@@ -137,7 +138,7 @@ impl Bodies {
         })
     }
 
-    /// All materials: these, and those of cells of another formulation.
+    /// All materials: the given ones, followed by those of cells of another formulation.
     pub fn with_variants(&self, mut materials: Vec<Material>) -> Vec<Material> {
         for &(material, formulation) in &self.variants {
             let plain = materials[material as usize].clone();
@@ -151,7 +152,7 @@ impl Bodies {
     }
 }
 
-/// The subdomain of every cell, from one group of cells for each.
+/// The subdomain of every cell, given one group of cells for each subdomain.
 pub(super) fn prescribed_subdomains(mesh: &Mesh, names: &Names) -> Result<Vec<u32>, InputError> {
     let list: Vec<&str> = names.iter().collect();
     let owner = groups::owners(mesh, &list, "subdomains")?;
@@ -166,10 +167,10 @@ pub(super) fn prescribed_subdomains(mesh: &Mesh, names: &Names) -> Result<Vec<u3
     Ok(owner.into_iter().flatten().collect())
 }
 
-/// Takes x for the radius: points within round-off of the axis lie on it.
+/// Uses x as the radius: points within round-off of the axis are moved onto it.
 ///
 /// # Errors
-/// A node on its other side, by its body.
+/// A node with a negative radius, with its body.
 fn take_radii(mesh: &mut Mesh, cell_body: &[u32], names: &[&str]) -> Result<(), InputError> {
     let axis = AXIS * BoundingBox::around(&mesh.points).extent();
     for ((_, nodes), &body) in mesh.cells.iter().zip(cell_body) {
@@ -189,7 +190,7 @@ fn take_radii(mesh: &mut Mesh, cell_body: &[u32], names: &[&str]) -> Result<(), 
     Ok(())
 }
 
-/// Warns of linear cells of a material that hardly changes its volume.
+/// Warns of linear cells of a nearly incompressible material.
 fn warn_of_locking(scene: &Scene, mesh: &Mesh, cell_material: &[u32], warnings: &mut Vec<String>) {
     for (index, (name, material)) in (0..).zip(&scene.materials) {
         let Elasticity::Isotropic { poisson, .. } = material else {
@@ -213,8 +214,8 @@ fn warn_of_locking(scene: &Scene, mesh: &Mesh, cell_material: &[u32], warnings: 
     }
 }
 
-/// Materials in the order of their names, then those of bodies with initial stress, with C for the plane state, or for
-/// space.
+/// Materials in the order of their names, followed by those of bodies with initial stress, with C for the plane state,
+/// or for space.
 pub(super) fn materials(scene: &Scene, plane: Option<PlaneState>) -> Vec<Material> {
     let materials = scene.materials.iter();
     let materials = materials.map(|(name, elasticity)| material(name, elasticity, plane));
@@ -254,7 +255,7 @@ fn material(name: &str, elasticity: &Elasticity, plane: Option<PlaneState>) -> M
     }
 }
 
-/// C by Hooke's law, and in plane strain the row of σ_zz.
+/// C by Hooke's law, and in plane strain its row for σ_zz.
 fn isotropic(young: f64, poisson: f64, plane: Option<PlaneState>) -> (Stiffness, [f64; 3]) {
     let shear = young / (2.0 * (1.0 + poisson));
     let lambda = match plane {
@@ -263,7 +264,7 @@ fn isotropic(young: f64, poisson: f64, plane: Option<PlaneState>) -> (Stiffness,
     };
     let axial = lambda + 2.0 * shear;
     let size = PlaneState::components(plane);
-    // Those of the axes come first.
+    // Normal components come first.
     let axes = if size == 3 { 2 } else { 3 };
     let entry = |i: usize, j: usize| match (i < axes, j < axes) {
         (true, true) if i == j => axial,
@@ -277,7 +278,7 @@ fn isotropic(young: f64, poisson: f64, plane: Option<PlaneState>) -> (Stiffness,
     (Stiffness::new(size, &values), [lambda, lambda, 0.0])
 }
 
-/// Groups of cells that are no body, to end a message with; empty where there is none.
+/// Groups of cells that belong to no body, for the end of a message; empty if there is none.
 fn unnamed(mesh: &Mesh, kept: &[bool]) -> String {
     let is_left_out = |group: &Group| {
         group.dim == mesh.dim && group.members.iter().any(|&cell| !kept[cell as usize])
@@ -293,7 +294,7 @@ fn unnamed(mesh: &Mesh, kept: &[bool]) -> String {
     }
 }
 
-/// The groups of facets or points that conditions refer to, in any load step.
+/// The groups of facets or points used in any load step.
 fn used_groups(scene: &Scene) -> BTreeSet<&str> {
     let loaded = scene.loadings().into_iter().flat_map(|loading| {
         (loading.displacement.iter().map(|c| &c.on))
@@ -313,11 +314,11 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
         .collect()
 }
 
-/// The mesh of the cells that are `kept`, with the nodes and facets that they hold together. A
-/// member of a used group mustn't get lost.
+/// The mesh of the cells that are `kept`, with their nodes and the facets all of whose nodes are among these. A used
+/// group has to keep all its members.
 ///
 /// # Errors
-/// The member that would.
+/// The member that would be lost.
 fn restrict(mesh: Mesh, kept: &[bool], used: &BTreeSet<&str>) -> Result<Mesh, String> {
     let mut held = vec![false; mesh.points.len()];
     for ((_, nodes), _) in mesh.cells.iter().zip(kept).filter(|(_, kept)| **kept) {

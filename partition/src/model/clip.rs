@@ -1,4 +1,4 @@
-//! Polygons in a plane, the intersection of two, and facets that are seen as such.
+//! Polygons in a plane: intersection, and visibility of facets projected into it.
 
 /// A point of the plane.
 pub(super) type PlanePoint = [f64; 2];
@@ -24,7 +24,7 @@ pub(super) fn area(polygon: &[PlanePoint]) -> f64 {
     arms.sum()
 }
 
-/// The mean of a polygon's corners.
+/// The average of a polygon's corners.
 pub(super) fn middle(polygon: &[PlanePoint]) -> PlanePoint {
     let part = 1.0 / polygon.len() as f64;
     (polygon.iter()).fold([0.0; 2], |sum, p| {
@@ -32,8 +32,8 @@ pub(super) fn middle(polygon: &[PlanePoint]) -> PlanePoint {
     })
 }
 
-/// Triangles around the middle of a polygon, which stands second: rules for triangles collapse there, and so don't
-/// depend on where the polygon begins.
+/// Triangles around the centre of a polygon, which is the second corner of each: there the quadrature rules for
+/// triangles are collapsed, so that they don't depend on the polygon's first corner.
 pub(super) fn triangles(polygon: &[PlanePoint]) -> impl Iterator<Item = [PlanePoint; 3]> {
     let middle = middle(polygon);
     let next = polygon.iter().cycle().skip(1);
@@ -60,7 +60,7 @@ pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePo
         for p in all {
             let (here, there) = (side(p), side(before));
             if (here >= 0.0) != (there >= 0.0) {
-                // From the inside out in either case, so that neighbours are cut in the same place.
+                // Evaluated from the inside out in either case, so that neighbours are cut at the same point.
                 let (from, to, a, b) = match here >= 0.0 {
                     true => (p, before, here, there),
                     false => (before, p, there, here),
@@ -77,20 +77,20 @@ pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePo
     inside
 }
 
-/// A facet that is seen from another one, as it lies in the plane of that.
+/// A facet projected into the plane of another one.
 pub(super) struct Seen {
-    /// The index.
+    /// Its index.
     pub facet: usize,
-    /// The part of it that is seen.
+    /// Its visible part.
     pub outline: Vec<PlanePoint>,
-    /// Distance along the normal in the middle of that (m).
+    /// Distance along the normal at the centre of that part (m).
     pub gap: f64,
-    /// True if it is the far side of the body that looks.
+    /// True if it is the far side of the observing facet's own body.
     pub is_far_side: bool,
 }
 
 impl Seen {
-    /// True if something else of `all` lies before its middle, or the body that looks does.
+    /// True if another facet of `all`, or the observing facet's own body, lies in front of its centre.
     pub fn is_hidden(&self, all: &[Self]) -> bool {
         let x = middle(&self.outline);
         let hides = |other: &Self| {

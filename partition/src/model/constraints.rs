@@ -1,4 +1,4 @@
-//! The constraints of a model: contacts, and equations between displacements behind them.
+//! The constraints of a model: contacts, followed by equations between displacements.
 
 use super::activation;
 use super::contact::Contacts;
@@ -14,27 +14,27 @@ use crate::error::InputError;
 use crate::scene::Scene;
 use crate::scene::material::PlaneState;
 
-/// Contacts and equations between bodies, and the crack tips that contacts end at.
+/// Contacts and equations between bodies, and the crack tips at which contacts end.
 #[derive(Default)]
 pub(super) struct Constraints<'a> {
-    /// The contacts that were declared or found and have points.
+    /// The contacts, declared or found, that have points.
     pub contacts: Vec<Contact>,
     /// The table of each contact in the scene.
     tables: Vec<&'a str>,
-    /// Equations, in the form of contacts.
+    /// Equations, represented as contacts.
     pub equations: Vec<Contact>,
-    /// Crack tips of the plane, each with a cell that has it.
+    /// Crack tips of a plane mesh, each with a cell that contains it.
     pub tips: Vec<(u32, CrackTip)>,
-    /// The contacts that were found and the crack tips that are passed by, in words.
+    /// Descriptions of contacts found automatically and of crack tips left out.
     pub found: Vec<String>,
 }
 
 impl<'a> Constraints<'a> {
-    /// The contacts that are `declared`, and the equations of the scene and of its sectors.
+    /// The contacts that are `declared`, and the equations of the scene, cyclic symmetry included.
     ///
     /// # Errors
-    /// Sides that don't match, supports that press into each other, contacts with bodies that come later, or equations of
-    /// nodes that aren't there.
+    /// Sides that don't match, supports that press sides into each other, contacts with bodies that are added later, or
+    /// equations of nodes that don't exist.
     pub fn new(
         scene: &Scene,
         on: &LoadedBodies,
@@ -63,7 +63,7 @@ impl<'a> Constraints<'a> {
         Ok(all)
     }
 
-    /// The contacts between their `sides`, behind those that were made before.
+    /// Appends the contacts between their `sides`.
     ///
     /// # Errors
     /// Sides that don't match, or that supports press into each other.
@@ -75,7 +75,7 @@ impl<'a> Constraints<'a> {
     ) -> Result<(), InputError> {
         for of in declared {
             let made = sides.declared(self.contacts.len() as u32, &of.contact, warnings)?;
-            // Where all nodes are held no bodies touch each other that could part.
+            // A contact that was found needs no points if supports hold all of its nodes.
             if of.words.is_none() || !made.points.is_empty() {
                 self.contacts.push(made);
                 self.tables.push(&of.table[..]);
@@ -90,7 +90,7 @@ impl<'a> Constraints<'a> {
         self.contacts.len() + self.equations.len()
     }
 
-    /// The contacts and equations that aren't there in each step.
+    /// The contacts and equations that are absent in each step.
     pub fn absent(&self, scene: &Scene) -> Vec<Vec<u32>> {
         let names = self.equations.iter().map(|of| &of.name[..]);
         let tables: Vec<&str> = self.tables.iter().copied().chain(names).collect();

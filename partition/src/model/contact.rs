@@ -25,23 +25,23 @@ use crate::scene::material::PlaneState;
 use crate::scene::number::Number;
 use crate::scene::units::Units;
 
-/// Measured gaps in space are none up to this fraction: round-off of coordinates would hold bodies apart, or press them
-/// together, and where several contacts meet no displacement has all of them.
+/// Relative measured gap in space below which it is set to zero: round-off of coordinates would hold bodies apart, or
+/// press them together, and where several contacts meet no displacement could fulfil all their constraints.
 const NO_GAP: f64 = 1e-15;
 
-/// The points of a contact before its laws.
+/// The points of a contact before its laws are assigned.
 #[derive(Default)]
 struct Paired {
     points: Vec<ContactPoint<u32>>,
-    /// Places at which the side without points is checked for penetration.
+    /// Points at which the side without constraints is checked for penetration.
     probes: Vec<Probe<u32>>,
-    /// Distance of straight facets from the curve that they stand for (m).
+    /// Largest distance of straight facets from the curve that they approximate (m).
     off: f64,
     warnings: Vec<String>,
 }
 
 impl Paired {
-    /// Closes gaps up to a distance, and all overlaps; none without a distance.
+    /// Closes gaps up to a distance, and all overlaps; `None` leaves them unchanged.
     fn close(&mut self, distance: Option<f64>) {
         let gaps = (self.points.iter_mut().map(|point| &mut point.gap))
             .chain(self.probes.iter_mut().map(|probe| &mut probe.gap));
@@ -50,7 +50,7 @@ impl Paired {
     }
 }
 
-/// Data that contacts are made from.
+/// Data from which contacts are built.
 pub(super) struct Contacts<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
@@ -77,7 +77,7 @@ impl<'a> Contacts<'a> {
         }
     }
 
-    /// Contact or tie `number` of the scene.
+    /// Builds contact or tie `number` of the scene.
     pub fn declared(
         &self,
         number: u32,
@@ -125,7 +125,7 @@ impl<'a> Contacts<'a> {
         (points.iter_mut()).for_each(|point| point.is_absolute = keys.absolute);
         if let Some(stiffness) = &keys.stiffness {
             laws::give_stiffness(stiffness, &mut points, &what)?;
-            // Its sides overlap where they press.
+            // Compliant sides overlap under pressure, which a probe would report as penetration.
             probes.clear();
         }
         if !keys.interference {
@@ -151,7 +151,8 @@ impl<'a> Contacts<'a> {
         })
     }
 
-    /// The points of contact `number` as its sides or its obstacle give them, and the side by which these are judged.
+    /// The points of contact `number` according to its sides or its obstacle, and the side by whose size they are
+    /// checked.
     fn paired(
         &self,
         number: u32,
@@ -178,7 +179,7 @@ impl<'a> Contacts<'a> {
         Ok((side_a, paired))
     }
 
-    /// Points without those that supports hold along the normal.
+    /// Removes points whose normal jump is prescribed by supports.
     fn without_prescribed(
         &self,
         of: (u32, &str),
@@ -188,7 +189,7 @@ impl<'a> Contacts<'a> {
         (self.held).without_prescribed(of, points, slack, self.units)
     }
 
-    /// The points of side a in front of an obstacle, and its motion.
+    /// The points of side a that face an obstacle, and the obstacle's motion.
     fn of_obstacle(
         &self,
         obstacle: (&Obstacle, Vec<[f64; 3]>),
@@ -206,7 +207,7 @@ impl<'a> Contacts<'a> {
     /// The points of contact `number` between side a, whose facets are `on_a`, and the side of these `names`.
     ///
     /// # Errors
-    /// A facet that is on both sides, or sides that don't match.
+    /// A facet on both sides, or sides that don't match.
     fn sides(
         &self,
         number: u32,
@@ -229,7 +230,7 @@ impl<'a> Contacts<'a> {
         let slack = 2.0 * side_a.kinks().max(side_b.kinks());
         for probe in &mut probes {
             probe.contact = number;
-            // Straight facets of one curve overlap where nothing presses.
+            // Straight facets that approximate the same curve overlap without load.
             if probe.gap < 0.0 {
                 probe.gap = (probe.gap + slack).min(0.0);
             }
@@ -244,10 +245,10 @@ impl<'a> Contacts<'a> {
         })
     }
 
-    /// Replaces the gaps of the mesh by a given one; the warning of one that is far from them.
+    /// Replaces the gaps measured on the mesh by a given one; returns a warning if the two differ much.
     ///
     /// # Errors
-    /// A gap that isn't a number at a point.
+    /// A gap that isn't finite at a point.
     fn give_gap(
         &self,
         gap: &Number,
@@ -299,7 +300,7 @@ impl<'a> Contacts<'a> {
         Ok((facets, surface))
     }
 
-    /// The points of two sides, paired as the scene asks or as their nodes allow.
+    /// The points of two sides, with the discretization given in the scene or the one that their nodes allow.
     fn pairs(
         &self,
         side_a: &Surface,

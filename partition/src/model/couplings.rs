@@ -1,13 +1,13 @@
-//! Couplings: nodes that follow a reference point, by equations between displacements.
+//! Couplings: equations by which nodes follow the motion of a reference point.
 //!
-//! The motion of a point R is that of the corners of a frame, R, R + L e₁ and in space R + L e₂, nodes that no cell has: with the
-//! displacements p₀, p₁, p₂ of these
+//! The motion of a point R is that of the corners of a frame, R, R + L e₁ and in space R + L e₂. These are nodes
+//! without cells. With their displacements p₀, p₁, p₂
 //!
 //! ```text
 //! u(x) = p₀ + θ × (x − R),   θ = ((p₂ − p₀)·e₃, −(p₁ − p₀)·e₃, (p₁ − p₀)·e₂) / L
 //! ```
 //!
-//! They are nodes of the body of the side: whatever rigid motion that makes, they go with it.
+//! They belong to the body of the coupled side, so that they take part in its rigid-body motions.
 
 mod frame;
 mod partial;
@@ -33,18 +33,20 @@ use crate::scene::step::{LoadStep, Scale};
 pub(super) struct CoupledFrame {
     /// The equations.
     pub contact: Contact,
-    /// The nodes of the frame: position (m).
+    /// Positions of the frame's nodes (m).
     pub corners: Vec<[f64; 3]>,
-    /// A cell of the body that they belong to.
+    /// A cell of the body that the frame belongs to.
     pub cell: u32,
-    /// The loads in every load step, or the ones that there are.
+    /// The loads in every load step, or a single entry without load steps.
     pub loads: Vec<FrameLoads>,
 }
 
-/// The couplings of a scene, whose equations are numbered from `first` on; their frames' nodes follow those of the mesh.
+/// The couplings of a scene, whose equations are numbered from `first` on; the nodes of their frames follow those of
+/// the mesh.
 ///
 /// # Errors
-/// Groups that don't exist, nodes that don't tell how the point turns, values of what isn't prescribed.
+/// Groups that don't exist, nodes that don't determine the rotation of the point, values of components that aren't
+/// prescribed.
 pub(super) fn couplings(
     scene: &Scene,
     (mesh, topology): (&Mesh, &Topology),
@@ -77,8 +79,8 @@ pub(super) fn couplings(
     Ok(all)
 }
 
-/// Appends the nodes of the frames to a mesh, what acts on them to its loads and the names of what holds them to others;
-/// returns the equations, and for every new node a cell of its body.
+/// Appends the nodes of the frames to a mesh, their loads and supports to `loads`, and the names of their boundary
+/// conditions to `names`; returns the equations, and for every new node a cell of its body.
 pub(super) fn attach(
     frames: Vec<CoupledFrame>,
     mesh: &mut Mesh,
@@ -123,7 +125,7 @@ pub(super) fn attach(
     (contacts, cells)
 }
 
-/// A coupling and where it is.
+/// A coupling and its nodes.
 struct CouplingOnMesh<'a> {
     scene: &'a Scene,
     mesh: &'a Mesh,
@@ -179,7 +181,7 @@ impl CouplingOnMesh<'_> {
         InputError::new(format!("{}: {why}", self.what))
     }
 
-    /// The coupled nodes, and their shares in a force: those of a uniform traction on sides, else equal ones.
+    /// The coupled nodes and their shares of a force: those of a uniform traction on sides, otherwise equal ones.
     fn weights(&self) -> Result<Vec<(u32, f64)>, InputError> {
         let (mesh, what) = (self.mesh, &self.what[..]);
         let nodes = groups::boundary_nodes(mesh, &self.coupling.on, what)?;
@@ -199,7 +201,7 @@ impl CouplingOnMesh<'_> {
         Ok(nodes.into_iter().map(share).collect())
     }
 
-    /// Loads of every load step: those of the step, else those of the scene.
+    /// Loads of every load step, by default those of the scene.
     fn steps(&self) -> Vec<Acting> {
         let own = &self.coupling.loads;
         let acting = |step: Option<&LoadStep>| {
@@ -229,10 +231,10 @@ impl CouplingOnMesh<'_> {
         }
     }
 
-    /// Σ w (|r|² I − r rᵀ) of nodes with weights about a point.
+    /// Σ w (|r|² I − r rᵀ) of weighted nodes about a point.
     ///
     /// # Errors
-    /// They don't tell how it turns.
+    /// Nodes that don't determine a rotation.
     fn inertia(&self, weights: &[(u32, f64)], about: [f64; 3]) -> Result<Matrix3<f64>, InputError> {
         let mut inertia = Matrix3::zeros();
         for &(node, w) in weights {
@@ -254,7 +256,7 @@ impl CouplingOnMesh<'_> {
         }
     }
 
-    /// The equations of nodes that move as one with the point.
+    /// The equations of a rigid coupling.
     fn rigid(&self, frame: &Frame, weights: &[(u32, f64)]) -> Result<Vec<Form>, InputError> {
         self.inertia(weights, frame.origin)?;
         let of_node = |&(node, _): &(u32, f64)| {
@@ -268,8 +270,8 @@ impl CouplingOnMesh<'_> {
         Ok(weights.iter().flat_map(of_node).collect())
     }
 
-    /// The equations of nodes that follow the point along some directions; what else is prescribed there is taken out of the
-    /// `steps`.
+    /// The equations of nodes that follow the point along some directions; prescribed components without coupling are
+    /// removed from the `steps`.
     fn partial(
         &self,
         frame: &Frame,
@@ -296,7 +298,7 @@ impl CouplingOnMesh<'_> {
                 Some(axis) => axis.vector(*direction, at(node)),
                 None => Some(*direction),
             };
-            // On the axis nothing is radial or around it.
+            // On the axis the radial and the tangential direction don't exist.
             let directions = directions.iter().filter_map(turned).collect();
             nodes.push(FollowingNode {
                 node,
@@ -320,8 +322,8 @@ impl CouplingOnMesh<'_> {
         Ok(forms)
     }
 
-    /// The equations of nodes whose mean motion is that of the point: Σ w u is that of their middle, and Σ w r × u what turns
-    /// them so.
+    /// The equations of a distributing coupling: Σ w u is the displacement of the nodes' centre, and Σ w r × u
+    /// determines the rotation.
     fn distributing(&self, frame: &Frame, weights: &[(u32, f64)]) -> Result<Vec<Form>, InputError> {
         let at = |node: u32| self.mesh.points[node as usize];
         let middle = (weights.iter()).fold([0.0; 3], |sum, &(node, w)| advance(sum, w, at(node)));

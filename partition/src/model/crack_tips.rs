@@ -1,4 +1,4 @@
-//! Crack tips: nodes of the outline at which the body turns by a whole circle.
+//! Crack tips: nodes of the outline at which the body spans an angle of 360°.
 
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -9,18 +9,18 @@ use crate::element::geometry::{advance, difference, dot, length};
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 
-/// Angle between the faces at a tip up to which these are those of a crack, not of a notch (rad).
+/// Angle between the faces at a tip up to which they form a crack and not a notch (rad).
 const OPENING: f64 = 0.05;
-/// Angle of a body that is none (rad).
+/// Angle that is round-off (rad).
 const ROUND_OFF: f64 = 1e-6;
-/// Distance of a face from the straight line, over that from the tip, up to which it is straight.
+/// Distance of a face from the straight line, over that from the tip, up to which the face is straight.
 const STRAIGHT: f64 = 0.01;
-/// Radius of the disc over the distance from the tip to what disturbs its near field.
+/// Radius of the disc over the distance from the tip to the nearest disturbance of its near field.
 const UNDISTURBED: f64 = 0.8;
-/// Facets of a crack face that a disc has at least.
+/// Least number of facets of a crack face within the disc.
 const FEWEST: f64 = 3.0;
 
-/// An edge of the outline, with the body to its left, and the node in its middle.
+/// An edge of the outline, with the body on its left, and its middle node.
 struct Edge {
     cell: u32,
     ends: [u32; 2],
@@ -31,11 +31,11 @@ struct Edge {
 struct Outline<'a> {
     mesh: &'a Mesh,
     edges: Vec<Edge>,
-    /// The edges that start and end at a node.
+    /// The edges that start and that end at a node.
     at: HashMap<u32, [Vec<usize>; 2]>,
 }
 
-/// A node at which two faces of a crack end, and the edges of these from it on.
+/// A node at which two faces of a crack end, with the edges of these faces.
 struct Ending {
     node: u32,
     direction: [f64; 3],
@@ -43,8 +43,8 @@ struct Ending {
     faces: [Vec<usize>; 2],
 }
 
-/// The crack tips of a plane mesh in the order of their positions, each with a cell that has it, and how many have too
-/// few facets around them.
+/// The crack tips of a plane mesh in the order of their positions, each with a cell that contains it, and the number of
+/// tips with too few facets around them.
 pub(super) fn find(
     (mesh, topology): (&Mesh, &Topology),
     plane: Option<PlaneState>,
@@ -100,8 +100,8 @@ pub(super) fn find(
     (tips, coarse)
 }
 
-/// The remark on crack tips whose mesh is too coarse for stress intensity factors. It is no warning: who doesn't want
-/// factors need not hear of it in every run.
+/// The remark on crack tips whose mesh is too coarse for stress intensity factors. A warning would disturb all runs
+/// that don't need these factors.
 pub(super) fn remark(coarse: usize) -> Option<String> {
     (coarse > 0).then(|| {
         format!(
@@ -131,7 +131,7 @@ fn seams(mesh: &Mesh, cell_material: &[u32]) -> Vec<u32> {
     seams.into_iter().collect()
 }
 
-/// The contact whose conditions a node has.
+/// The contact of every node with contact points.
 fn contacts_of_nodes(contacts: &[Contact]) -> HashMap<u32, usize> {
     let all = contacts.iter().enumerate();
     all.flat_map(|(c, contact)| {
@@ -162,7 +162,7 @@ impl<'a> Outline<'a> {
         Self { mesh, edges, at }
     }
 
-    /// The single edge that starts (0) or ends (1) at a node through which the outline passes once.
+    /// The single edge that starts (0) or ends (1) at a node through which the outline passes only once.
     fn one(&self, node: u32, end: usize) -> Option<usize> {
         match &self.at.get(&node)? {
             [starts, ends] if starts.len() == 1 && ends.len() == 1 => Some([starts, ends][end][0]),
@@ -177,7 +177,7 @@ impl<'a> Outline<'a> {
         )
     }
 
-    /// The crack that ends at a node, if one does: the two edges there leave the body a whole circle.
+    /// The crack that ends at a node, if any: between its two edges the body spans 360°.
     fn ending(&self, node: u32) -> Option<Ending> {
         let [lower, upper] = [self.one(node, 0)?, self.one(node, 1)?];
         let away = [self.edges[lower].ends[1], self.edges[upper].ends[0]];
@@ -203,7 +203,7 @@ impl<'a> Outline<'a> {
         })
     }
 
-    /// Distance of a node behind a tip along a crack (m) and that from its line over it.
+    /// Distance of a node from a tip along the crack (m), and its distance from the crack's line over that.
     fn behind(&self, tip: u32, direction: [f64; 3], node: u32) -> (f64, f64) {
         let offset = self.vector(tip, node);
         let distance = -dot(offset, direction);
@@ -229,8 +229,8 @@ impl<'a> Outline<'a> {
         edges
     }
 
-    /// The radius of the disc around a tip that holds nothing but straight faces and one material (m), if that is large
-    /// enough beside the facets.
+    /// The radius of the largest disc around a tip with straight faces only and a single material (m), if it is large
+    /// enough compared with the facets.
     fn radius(&self, ending: &Ending, seams: &[u32]) -> Option<f64> {
         let own: HashSet<usize> = ending.faces.iter().flatten().copied().collect();
         let tip = self.mesh.points[ending.node as usize];

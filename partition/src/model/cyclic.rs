@@ -1,7 +1,9 @@
-//! Cyclic symmetry: equations u_b = R u_a between the nodes of the two sides of a sector, R the rotation from one to the next.
+//! Cyclic symmetry: equations u_b = R u_a between the nodes of the two sides of a sector, R the rotation from one side
+//! to the other.
 //!
-//! Each component is an equation of two terms, e·u_b − (Rᵀ e)·u_a = 0, which go through fronts and clusters like others; a node
-//! on the axis is its own partner, and is held across the axis. Everything repeats in every sector (nodal diameter 0).
+//! Each component is an equation of two terms, e·u_b − (Rᵀ e)·u_a = 0, treated like other equations in fronts and
+//! clusters; a node on the axis is its own partner, and is held perpendicular to the axis. The solution is the same in
+//! every sector (nodal diameter 0).
 
 use std::collections::HashMap;
 
@@ -15,13 +17,13 @@ use crate::mesh::bounding_box::BoundingBox;
 use crate::scene::Scene;
 use crate::scene::cyclic::Cyclic;
 
-/// Distance of partners from each other, relative to the extent of the mesh, that is none: coordinates may have five digits.
+/// Distance between partners, relative to the extent of the mesh, that is round-off: coordinates may have five digits.
 const NEAR: f64 = 1e-5;
 
-/// Difference of unit vectors that are the same.
+/// Norm of the difference up to which unit vectors are equal.
 const SAME: f64 = 1e-6;
 
-/// The cyclic symmetries of a scene, numbered from `first` on; `contacts` get the normals that these give them.
+/// The cyclic symmetries of a scene, numbered from `first` on; the normals of `contacts` at their sides are corrected.
 ///
 /// # Errors
 /// Groups that don't exist, nodes without a partner.
@@ -61,11 +63,11 @@ pub(super) fn cyclic(
     Ok(all)
 }
 
-/// Gives the points of contacts at the ends of a sector the normals of the whole ring: those of a curved side are of the facets
-/// within the sector alone, without those of its neighbour, so that sectors would interlock.
+/// Gives contact points at the ends of a sector the normals of the whole ring: on a curved side the facets within the
+/// sector would be averaged without those of the neighbouring sector, so that sectors would interlock.
 ///
 /// # Errors
-/// Such a point that isn't one of two nodes: what it faces belongs to the neighbour, too.
+/// A point there with more than two nodes: its opposite facets lie partly in the neighbouring sector.
 fn turn_normals(
     contacts: &mut [Contact],
     (mesh, turn): (&Mesh, &Turn),
@@ -101,7 +103,7 @@ fn turn_normals(
     Ok(())
 }
 
-/// Gives the point of two nodes another normal, and its gap along it where that is the one of the mesh.
+/// Gives the point of two nodes another normal, and measures its gap along it unless the scene gives the gap.
 fn press_along(point: &mut ContactPoint<u32>, normal: [f64; 3], mesh: &Mesh) {
     let place = |at: usize| mesh.points[point.entries[at].0 as usize];
     let offset = difference(place(1), place(0));
@@ -111,7 +113,8 @@ fn press_along(point: &mut ContactPoint<u32>, normal: [f64; 3], mesh: &Mesh) {
     point.frame = LocalFrame::new(normal);
 }
 
-/// The equation of a pair along an axis of b, which is `back` on a; of a node that is its own partner it is held along the axis.
+/// The equation of a pair along an axis of b, which is `back` on a; for a node that is its own partner, a support along
+/// the axis.
 fn point(mesh: &Mesh, [a, b]: [u32; 2], (axis, back): ([f64; 3], [f64; 3])) -> ContactPoint<u32> {
     let (entries, axes) = match a == b {
         true => (vec![(b, 1.0)], vec![axis]),
@@ -134,7 +137,7 @@ struct Turn {
 }
 
 impl Turn {
-    /// R v, with v turned by an angle, after Rodrigues.
+    /// R v, v rotated by an angle, with Rodrigues' formula.
     fn by(&self, angle: f64, v: [f64; 3]) -> [f64; 3] {
         let (sin, cos) = angle.sin_cos();
         let along = (1.0 - cos) * dot(self.axis, v);
@@ -147,16 +150,16 @@ impl Turn {
         self.by(-self.angle, v)
     }
 
-    /// The place of a point when it is turned.
+    /// The position of a rotated point.
     fn place(&self, x: [f64; 3]) -> [f64; 3] {
         let turned = self.by(self.angle, difference(x, self.point));
         advance(turned, 1.0, self.point)
     }
 
-    /// The directions of the equations of a pair; of a node on the axis those across it.
+    /// The directions of the equations of a pair; on the axis those perpendicular to it.
     fn held_axes(&self, on_axis: bool, dim: usize) -> Vec<[f64; 3]> {
         match on_axis {
-            // In the plane the axis is z, and both tangents lie across it.
+            // In the plane the axis is z, and both tangents lie in the plane.
             true => LocalFrame::new(self.axis).tangents.to_vec(),
             false => (0..dim)
                 .map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k))))
@@ -165,10 +168,10 @@ impl Turn {
     }
 }
 
-/// The rotation, one way or the other, that makes side b of side a, and the pairs of their nodes.
+/// The rotation, in either sense, that maps side a onto side b, and the pairs of their nodes.
 ///
 /// # Errors
-/// None does.
+/// Sides that no rotation maps onto each other.
 fn partners(
     (bodies, cyclic): (&Bodies, &Cyclic),
     [a, b]: &[Vec<u32>; 2],
@@ -212,7 +215,7 @@ fn partners(
     )))
 }
 
-/// Nodes by their places.
+/// Nodes by their positions.
 struct Places<'a> {
     mesh: &'a Mesh,
     slack: f64,
@@ -245,7 +248,7 @@ impl<'a> Places<'a> {
         x.map(|c| (c / (4.0 * slack)).round() as i64)
     }
 
-    /// The node at a place; of several the one of the body of node `of`, as on the sides of a contact.
+    /// The node at a position; of several the one of the body of node `of`, like on the sides of a contact.
     fn at(&self, x: [f64; 3], of: u32) -> Option<u32> {
         let [i, j, k] = Self::key(x, self.slack);
         let near = (-1..2).flat_map(|l| (-1..2).flat_map(move |m| (-1..2).map(move |n| [l, m, n])));

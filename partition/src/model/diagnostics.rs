@@ -1,4 +1,4 @@
-//! Warnings of likely mistakes of a scene that are allowed all the same.
+//! Warnings of probable mistakes in an otherwise valid scene.
 
 mod strains;
 mod undeclared;
@@ -17,10 +17,10 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::contact::Partner;
 
-/// Sides of two contacts that have a facet in common: the first's a with the second's a and b, then its b.
+/// Pairs of sides of two contacts that have a facet in common: the first's a with the second's a and b, then its b.
 type Common = [[bool; 2]; 2];
 
-/// The parts of a model, each of them right by itself.
+/// The parts of a model to be checked.
 pub(super) struct Diagnostics<'a> {
     scene: &'a Scene,
     bodies: &'a Bodies,
@@ -33,7 +33,7 @@ pub(super) struct Diagnostics<'a> {
 }
 
 impl<'a> Diagnostics<'a> {
-    /// The diagnostics of a scene on its bodies, with the contacts that were made as they are `declared`.
+    /// The diagnostics of a scene on its bodies, with the contacts built from `declared`.
     pub fn new(
         scene: &'a Scene,
         on: &'a LoadedBodies,
@@ -51,10 +51,10 @@ impl<'a> Diagnostics<'a> {
         }
     }
 
-    /// A warning for each.
+    /// All warnings.
     ///
     /// # Errors
-    /// One that is too large to be anything else.
+    /// A value so large that it has to be a mistake.
     pub fn warnings(&self) -> Result<Vec<String>, InputError> {
         let tables: Vec<&str> = self.declared.iter().map(|of| &of.table[..]).collect();
         self.check_repeated_contacts(&activation::contacts(self.scene, &tables))?;
@@ -69,7 +69,7 @@ impl<'a> Diagnostics<'a> {
         BoundingBox::around(&self.bodies.mesh.points).extent()
     }
 
-    /// Contacts whose sides have to go farther than the bodies are large before they touch.
+    /// Warnings of contacts whose gap exceeds the size of the bodies.
     fn far_apart(&self) -> Vec<String> {
         let (extent, unit) = (self.extent(), self.scene.units.length());
         let least = |contact: &Contact| {
@@ -88,11 +88,10 @@ impl<'a> Diagnostics<'a> {
         far.collect()
     }
 
-    /// Two contacts between the same facets, or with the same obstacle: each of them holds what the
-    /// other holds already.
+    /// Refuses two contacts between the same facets, or with the same obstacle, whose constraints repeat each other.
     ///
     /// # Errors
-    /// Two that are there in the same load step: what they carry would follow from their order.
+    /// Two such contacts in the same load step: the forces of each would depend on their order.
     fn check_repeated_contacts(&self, absent: &[Vec<u32>]) -> Result<(), InputError> {
         let contacts: Vec<_> = self.declared.iter().map(|of| &of.contact).collect();
         let mesh = &self.bodies.mesh;

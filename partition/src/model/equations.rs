@@ -1,4 +1,4 @@
-//! Linear equations between displacements: points with one condition, in which every node has a direction of its own.
+//! Linear equations between displacements: points with one constraint, in which every node has its own direction.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::scene::Scene;
 use crate::scene::equation::Equation;
 use crate::scene::step::LoadStep;
 
-/// Factor of a node, relative to the largest, that is none.
+/// Coefficient of a node, relative to the largest, that is zero.
 const NOTHING: f64 = 1e-14;
 
-/// The equations of a scene, those of one name together, numbered from `first` on.
+/// The equations of a scene, grouped by name, numbered from `first` on.
 ///
 /// # Errors
 /// Groups that don't exist, terms that cancel.

@@ -1,4 +1,4 @@
-//! Facets found by the boxes around them: those near a line, near a box, or in boxes of any choice.
+//! Spatial search for facets by their bounding boxes: near a line, near a box, or in boxes selected by a predicate.
 
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, SelectionFunction};
@@ -6,10 +6,10 @@ use rstar::{AABB, RTree, SelectionFunction};
 use super::surface::SurfaceFacet;
 use crate::mesh::bounding_box::BoundingBox;
 
-/// The box around a facet, and its number.
+/// The bounding box of a facet, and its number.
 type Leaf = GeomWithData<Rectangle<[f64; 3]>, usize>;
 
-/// The boxes in which a search looks further.
+/// The predicate that selects the boxes to be searched.
 struct Boxes<F>(F);
 
 impl<F: Fn([f64; 3], [f64; 3]) -> bool> SelectionFunction<Leaf> for Boxes<F> {
@@ -22,11 +22,11 @@ impl<F: Fn([f64; 3], [f64; 3]) -> bool> SelectionFunction<Leaf> for Boxes<F> {
     }
 }
 
-/// The boxes around facets, by their numbers.
+/// The bounding boxes of facets, with their numbers.
 pub(super) struct FacetTree(RTree<Leaf>);
 
 impl FacetTree {
-    /// The tree of `facets`, whose boxes are wider by a `margin` (m). O(n log n) for n facets.
+    /// The tree of `facets`, whose boxes are enlarged by a `margin` (m). O(n log n) for n facets.
     pub fn new<'f>(
         facets: impl Iterator<Item = &'f SurfaceFacet>,
         margin: impl Fn(&SurfaceFacet) -> f64,
@@ -38,8 +38,8 @@ impl FacetTree {
         Self(RTree::bulk_load(facets.enumerate().map(leaf).collect()))
     }
 
-    /// The facets in boxes, given by their least and largest coordinates, for which `may_hold` says
-    /// so; it must do so of every box that holds one of them.
+    /// The facets in boxes, given by their least and largest coordinates, for which `may_hold` is true; it has to be
+    /// true for every box that contains such a facet's box.
     pub fn within(
         &self,
         may_hold: impl Fn([f64; 3], [f64; 3]) -> bool,
@@ -48,12 +48,12 @@ impl FacetTree {
         found.map(|leaf| leaf.data)
     }
 
-    /// The facets whose boxes a line through `start` along `direction` meets, either way.
+    /// The facets whose boxes intersect the line through `start` along `direction`, in either sense.
     pub fn along(&self, start: [f64; 3], direction: [f64; 3]) -> impl Iterator<Item = usize> {
         self.within(move |low, high| meets(start, direction, low, high))
     }
 
-    /// The facets whose boxes are no farther than a `margin` from that of a facet (m).
+    /// The facets whose boxes are within a `margin` of that of a facet (m).
     pub fn near(&self, facet: &SurfaceFacet, margin: f64) -> impl Iterator<Item = usize> {
         let BoundingBox { low, high } = around(facet, margin);
         let found = (self.0).locate_in_envelope_intersecting(AABB::from_corners(low, high));
@@ -61,7 +61,7 @@ impl FacetTree {
     }
 }
 
-/// The box around a facet, wider by a `margin` (m).
+/// The bounding box of a facet, enlarged by a `margin` (m).
 fn around(facet: &SurfaceFacet, margin: f64) -> BoundingBox {
     let own = BoundingBox::around(&facet.kind.hull(&facet.at));
     BoundingBox {
@@ -70,8 +70,7 @@ fn around(facet: &SurfaceFacet, margin: f64) -> BoundingBox {
     }
 }
 
-/// True if the line through `start` along `direction`, both ways, goes through a box: the ranges in
-/// which it lies between the opposite faces have something in common.
+/// True if the line through `start` along `direction` intersects a box: its intervals between opposite faces overlap.
 fn meets(start: [f64; 3], direction: [f64; 3], low: [f64; 3], high: [f64; 3]) -> bool {
     let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {

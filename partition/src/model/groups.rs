@@ -1,4 +1,4 @@
-//! Physical groups by the names that a scene calls them.
+//! Physical groups by their names in a scene.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::mesh::{Group, Mesh};
 use crate::scene::condition::Names;
 use crate::scene::suggest::hint;
 
-/// The members that a group has to have.
+/// The required kind of a group's members.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Members {
     Cells,
@@ -45,7 +45,7 @@ pub(super) fn facets(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>,
     Ok(facets.into_iter().collect())
 }
 
-/// True if all groups `names` that the mesh has consist of facets.
+/// True if all existing groups among `names` consist of facets.
 pub(super) fn are_of_facets(mesh: &Mesh, names: &Names) -> bool {
     let mut groups = names.iter().filter_map(|name| mesh.groups.get(name));
     groups.all(|group| Members::Facets.fit(group, mesh))
@@ -57,7 +57,7 @@ pub(super) fn are_of_points(mesh: &Mesh, names: &Names) -> bool {
     groups.all(|group| group.is_some_and(|group| group.dim + 1 < mesh.dim))
 }
 
-/// The nodes of the groups `names`, of whatever they consist, ascending.
+/// The nodes of the groups `names`, of any kind of members, ascending.
 pub(super) fn nodes(mesh: &Mesh, names: &Names, what: &str) -> Result<Vec<u32>, InputError> {
     nodes_of(mesh, names, Members::Any, what)
 }
@@ -91,11 +91,10 @@ fn nodes_of(
     Ok(nodes.into_iter().collect())
 }
 
-/// For every cell which of the groups of cells `names` it is in. `what` names the key of the scene
-/// that asks for them.
+/// The index in `names` of the group of cells that contains every cell. `what` is the key of the scene, for messages.
 ///
 /// # Errors
-/// A cell in two of them.
+/// A cell in two of the groups.
 pub(super) fn owners(
     mesh: &Mesh,
     names: &[&str],

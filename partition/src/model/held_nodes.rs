@@ -1,4 +1,4 @@
-//! Nodes that supports hold, and contact points whose jump they prescribe.
+//! Nodes held by supports, and contact points whose jump is prescribed by them.
 
 use std::collections::HashMap;
 
@@ -9,24 +9,24 @@ use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::scene::units::Units;
 
-/// Gaps are exact to this fraction of the scene's coordinates.
+/// Relative accuracy of gaps, in terms of the scene's coordinates.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// Square of the cosine between an axis and the directions in which a node is held from which on it is held along it.
+/// Squared cosine between an axis and the held directions of a node above which the node counts as held along the axis.
 const ALONG: f64 = 0.5;
 
-/// A direction in which a node is held, and how far in each load step (m).
+/// A direction in which a node is held, and the displacement in each load step (m).
 struct Held {
     direction: [f64; 3],
     values: Vec<f64>,
 }
 
-/// The nodes that supports hold, each with its directions.
+/// The nodes held by supports, each with its directions.
 #[derive(Default)]
 pub(super) struct HeldNodes(HashMap<u32, Vec<Held>>);
 
 impl HeldNodes {
-    /// The nodes that the supports of `loads` hold.
+    /// The nodes held by the supports of `loads`.
     pub fn new(loads: &Loads) -> Self {
         let mut by_node: HashMap<u32, Vec<Held>> = HashMap::new();
         for (i, support) in loads.supports.iter().enumerate() {
@@ -38,17 +38,16 @@ impl HeldNodes {
         Self(by_node)
     }
 
-    /// True if supports hold a node along axis k, or nearly so.
+    /// True if supports hold a node along axis k, at least approximately.
     pub fn is_held_along(&self, node: u32, k: usize) -> bool {
         let held = self.0.get(&node).into_iter().flatten();
         held.map(|held| held.direction[k].powi(2)).sum::<f64>() > ALONG
     }
 
-    /// The points of contact `number` whose jump supports leave open; a gap is
-    /// exact to `slack` (m).
+    /// The points of contact `number` whose normal jump isn't prescribed by supports; gaps are exact to `slack` (m).
     ///
     /// # Errors
-    /// A point whose gap supports close.
+    /// A point at which supports prescribe penetration.
     pub fn without_prescribed(
         &self,
         (number, what): (u32, &str),
@@ -80,8 +79,8 @@ impl HeldNodes {
         Ok(kept)
     }
 
-    /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None`
-    /// if one is free, or what lies between the sides gives way.
+    /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None` if one
+    /// is free, or if the contact is compliant.
     fn prescribed_jump(&self, point: &ContactPoint<u32>) -> Option<Vec<f64>> {
         let mut jumps = Vec::new();
         if point.is_compliant() {

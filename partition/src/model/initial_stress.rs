@@ -1,5 +1,5 @@
-//! Stress σ_i that cells have without any strain: what is left from before, and what heat would make of a body
-//! that can't expand, σ = C (ε − ε_T) + σ_0 = C ε + σ_i. It loads nodes with f_i = −∫ Bᵀ σ_i dx.
+//! Initial stress σ_i, the stress of cells without strain: residual stress and the stress of a body whose thermal
+//! expansion is prevented, σ = C (ε − ε_T) + σ_0 = C ε + σ_i. It loads nodes with f_i = −∫ Bᵀ σ_i dx.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
@@ -23,18 +23,18 @@ pub type Stress = [f64; 6];
 /// σ_i in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialStress {
-    /// The mean over every cell; empty where no body of the scene has any.
+    /// The average over every cell; empty if no body of the scene has initial stress.
     pub cells: Vec<Stress>,
-    /// The measure of every cell of a body that has any (m², m³; around an axis that of the ring).
+    /// The measure of every cell of a body with initial stress (m², m³; around an axis that of the ring).
     pub measures: Vec<f64>,
-    /// Stresses by node and material; each body that has any has a material of its own.
+    /// Stresses by node and material; each body with initial stress has a separate material.
     pub nodes: HashMap<(u32, u32), Stress>,
 }
 
 /// σ_i of one body in a load step.
 struct StressField<'a> {
     initial: Option<(&'a crate::scene::initial::InitialStress, f64)>,
-    /// σ_i at 1 K above, and the temperature with its factor.
+    /// σ_i per kelvin, and the temperature with its factor.
     thermal: Option<(Stress, &'a Number, f64)>,
 }
 
@@ -167,7 +167,7 @@ impl InitialStress {
         Ok(whole)
     }
 
-    /// The mean over the cells of a body, each with its measure.
+    /// The average over the cells of a body, weighted by their measure.
     pub(super) fn mean(&self, bodies: &Bodies, body: u32) -> Stress {
         let (mut sum, mut whole) = ([0.0; 6], 0.0);
         for (cell, (stress, measure)) in self.cells.iter().zip(&self.measures).enumerate() {
@@ -180,7 +180,7 @@ impl InitialStress {
     }
 }
 
-/// (1/V) ∫ Bᵀ σ dx over a body of measure V, node by node: the weights of displacements in the mean of σ·ε.
+/// (1/V) ∫ Bᵀ σ dx over a body of measure V, node by node: the coefficients of displacements in the average of σ·ε.
 ///
 /// # Errors
 /// A stress that isn't finite.
@@ -205,7 +205,7 @@ pub(super) fn mean_weights(
     Ok(weights.collect())
 }
 
-/// −C ε_T of an isotropic expansion by `expansion`.
+/// −C ε_T of an isotropic thermal expansion by `expansion` per kelvin.
 fn of_degree(
     material: &Material,
     plane: Option<PlaneState>,
@@ -224,7 +224,7 @@ fn of_degree(
                         .into(),
                 );
             };
-            // Isotropic, so that c_zz is c_xx.
+            // The material is isotropic, so that c_zz is c_xx.
             [xx + zx, yy + zy, zx + zy + c[0][0], xy, 0.0, 0.0]
         }
         (&[xx, yy, xy], _) => [xx, yy, 0.0, xy, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! The bodies of a scene on its mesh with all that acts on them, before anything joins them.
+//! The bodies of a scene on its mesh with all loads and supports, before contacts and equations join them.
 
 use super::adjust;
 use super::bodies::{self, Bodies};
@@ -24,7 +24,7 @@ pub(super) struct LoadedBodies {
 }
 
 impl LoadedBodies {
-    /// The bodies of a scene, whose nodes are moved where a tie says so.
+    /// The bodies of a scene, with nodes moved where a tie requests it.
     ///
     /// # Errors
     /// Groups that don't exist, or supports that contradict each other.
@@ -52,7 +52,7 @@ impl LoadedBodies {
         })
     }
 
-    /// The names of conditions that prescribe displacements, and of springs behind them, which it has no more then.
+    /// Moves out the names of the boundary conditions that prescribe displacements, followed by those of springs.
     pub fn take_support_names(&mut self) -> Vec<String> {
         let own = std::mem::take(&mut self.loads.names).into_iter();
         own.chain(std::mem::take(&mut self.springs.names)).collect()

@@ -19,12 +19,12 @@ use crate::scene::material::PlaneState;
 use crate::scene::number::Vector;
 use crate::scene::step::Scale;
 
-/// Degree of exactness on lines and faces: a cubic pressure along a curved quadratic one times a shape
-/// function and n dS needs 9 and 11.
+/// Degree of exactness on lines and faces: a cubic pressure along a curved quadratic facet times a shape function and n
+/// dS needs 9 and 11.
 const FACET_DEGREES: [usize; 2] = [9, 11];
-/// A load of a loading.
+/// A single load of a loading.
 pub(super) enum Load<'a> {
-    /// Load on a body, by its number.
+    /// A load on a body, given by its number.
     Body(u32, &'a Vector),
     /// A traction.
     Traction(&'a Traction),
@@ -64,7 +64,7 @@ pub(super) fn loads<'a>(scene: &Scene, loading: &Loading<'a>) -> Vec<(String, Lo
 }
 
 impl Loaded<'_> {
-    /// Adds the nodal forces of a load, which is called `what` in messages.
+    /// Adds the nodal forces of a load, whose name in messages is `what`.
     pub fn add(
         &self,
         (what, load): &(String, Load<'_>),
@@ -102,7 +102,7 @@ impl Loaded<'_> {
     }
 }
 
-/// The nodal forces of a loading of a scene, node by node, and the initial stress that makes some of them.
+/// The nodal forces of a loading of a scene at all nodes, and the initial stress, whose forces are included.
 pub(super) fn forces(
     on: Loaded<'_>,
     loading: &Loading,
@@ -127,7 +127,7 @@ pub(super) fn forces(
     Ok((forces, initial))
 }
 
-/// Adds ∫ N_i b dx over the cells of a body, b a `factor` of the force.
+/// Adds ∫ N_i b dx over the cells of a body, where b is `factor` times the force.
 fn body_force(
     bodies: &Bodies,
     body: u32,
@@ -164,8 +164,8 @@ fn body_force(
     Ok(())
 }
 
-/// Adds a `factor` of a force on `nodes`, which share a total like a uniform traction of their `surface`, in equal parts
-/// without one.
+/// Adds `factor` times a force on `nodes`: a total is distributed like a uniform traction on their `surface`, or
+/// equally without a surface.
 fn nodal_forces(
     mesh: &Mesh,
     force: &Force,
@@ -198,7 +198,7 @@ fn nodal_forces(
     Ok(())
 }
 
-/// Adds ∫ N_i τ dS, with τ dS from the place and n dS.
+/// Adds ∫ N_i τ dS, where `load` returns τ dS from the position and n dS.
 pub(super) fn surface_load(
     surface: &Surface,
     forces: &mut [[f64; 3]],

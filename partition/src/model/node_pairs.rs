@@ -1,4 +1,4 @@
-//! Contact points of nodes that lie opposite each other.
+//! Node-to-node contact: points of nodes that lie opposite each other.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 
 /// Reason for which two sides have no pairs of nodes.
 pub(super) enum Unpaired {
-    /// Sides that face each other, but not node by node.
+    /// Sides that face each other, but with non-matching nodes.
     Unmatched(String),
     /// Sides that don't face each other.
     Apart(String),
@@ -20,7 +20,7 @@ pub(super) enum Unpaired {
 /// A contact point for every node of side a and its partner on side b.
 ///
 /// # Errors
-/// Sides that don't face each other, or not node by node.
+/// Sides that don't face each other, or with non-matching nodes.
 pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> {
     let mesh = sides.mesh;
     let skip = |node: u32| sides.shared.contains(&node);
@@ -35,7 +35,7 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
             Hit::Nodes(nodes) => {
                 partners.extend(nodes.iter().copied());
                 let is_mid = mid_a.contains(&a.node);
-                // A corner and a node on an edge stand for different parts of the area.
+                // Tributary areas of a corner and of a middle node differ.
                 if let Some(other) = nodes.iter().find(|&b| mid_b.contains(b) != is_mid) {
                     let facet = sides.around_b[other][0];
                     unmatched.push((a.node, "b", &sides.b.facets[facet]));
@@ -70,7 +70,8 @@ pub(super) fn points(sides: &Sides) -> Result<Vec<ContactPoint<u32>>, Unpaired> 
     Ok(points)
 }
 
-/// Reason of a mismatch where nodes lie opposite the inside of facets of the other side, each with that side's letter.
+/// The reason of a mismatch where nodes lie opposite the inside of facets of the other side, each with that side's
+/// letter.
 fn mismatch(mesh: &Mesh, unmatched: &[(u32, &str, &SurfaceFacet)]) -> Option<String> {
     let (node, side, facet) = unmatched.first()?;
     let shown: Vec<u32> = unmatched.iter().take(5).map(|u| u.0).collect();
@@ -86,7 +87,7 @@ fn mismatch(mesh: &Mesh, unmatched: &[(u32, &str, &SurfaceFacet)]) -> Option<Str
     ))
 }
 
-/// The contact points of a node of side a and its partners, more than one where several lie in one place.
+/// The contact points of a node of side a and its partners; there are several if they coincide.
 fn points_of_node(a: &SideNode, nodes: Vec<u32>, sides: &Sides) -> Vec<ContactPoint<u32>> {
     let mesh = sides.mesh;
     let faced = faced(a, &nodes, sides);
@@ -105,8 +106,8 @@ fn points_of_node(a: &SideNode, nodes: Vec<u32>, sides: &Sides) -> Vec<ContactPo
     opposite(a, nodes, &faced).into_iter().map(point).collect()
 }
 
-/// A facet of side a whose nodes have partners that aren't those of a facet of side b: in space the same nodes
-/// may be the corners of other triangles, or of a quadrilateral, on which a uniform pressure has other forces.
+/// A facet of side a whose nodes have partners that don't form a facet of side b: in space the same nodes may be the
+/// corners of other triangles, or of a quadrilateral, on which a uniform pressure has different nodal forces.
 fn cut_otherwise<'a>(sides: &Sides<'a>, points: &[ContactPoint<u32>]) -> Option<&'a SurfaceFacet> {
     if sides.mesh.dim < 3 {
         return None;
@@ -135,13 +136,13 @@ fn cut_otherwise<'a>(sides: &Sides<'a>, points: &[ContactPoint<u32>]) -> Option<
     })
 }
 
-/// A facet of side a around a node, and opposite which of the node's partners a facet of side b lies.
+/// A facet of side a around a node, and for which of the node's partners a facet of side b lies opposite.
 struct Faced<'a> {
     facet: &'a SurfaceFacet,
     partners: Vec<bool>,
 }
 
-/// The facets around node `a`, whose `partners` on side b are in one place.
+/// The facets around node `a`, whose `partners` on side b coincide.
 fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>> {
     let around = sides.around_a[&a.node].iter().map(|&f| &sides.a.facets[f]);
     let faced = around.map(|facet| {
@@ -157,8 +158,8 @@ fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>
     faced.collect()
 }
 
-/// Along which node `a` is pressed: its normal, and in a corner of which one facet looks away from
-/// side b that of those which don't.
+/// Direction of the contact force on node `a`: its normal, or at a corner with a facet averted from side b the normal
+/// of the other facets.
 fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
     let (mut facing, mut back_facing) = ([0.0; 3], Vec::new());
     for Faced { facet, partners } in faced {
@@ -175,12 +176,11 @@ fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
     }
 }
 
-/// Nodes, of `partners` in one place on side b, with which node `a` of side a has conditions, and the
-/// part of its tributary area that is of each: that opposite facets of side b, as side a may reach
-/// beyond it.
+/// Nodes, of coincident `partners` on side b, with which node `a` of side a has constraints, and the part of its
+/// tributary area for each: the part opposite facets of side b, as side a may extend beyond it.
 ///
-/// Pairs without those of diagonal bodies: of corners of several bodies in a point two that lie diagonally across share
-/// nothing but that point, and a condition between them would follow from those between neighbours.
+/// Pairs of diagonally opposite bodies are left out: where corners of several bodies meet in a point, bodies across the
+/// diagonal share only that point, and a constraint between them would follow from those between neighbours.
 fn opposite(a: &SideNode, partners: Vec<u32>, faced: &[Faced]) -> Vec<(u32, f64)> {
     let mut areas: Vec<f64> = vec![0.0; partners.len()];
     for Faced { facet, partners } in faced {

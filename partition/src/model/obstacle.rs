@@ -11,14 +11,14 @@ use crate::element::geometry::{advance, difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::condition::Obstacle;
 
-/// A contact point for every node of a side that faces the obstacle: its signed distance, linearized
-/// at the nearest point of the obstacle, stays ≥ 0.
+/// A contact point for every node of a side that faces the obstacle: its signed distance, linearized at the nearest
+/// point of the obstacle, stays ≥ 0.
 ///
-/// From the other nodes the body itself lies between them and the obstacle. Without them a whole
-/// outline may be given as a side, and a node meets one of two opposite walls only.
+/// Nodes that are averted from the obstacle, with their own body in between, are left out. So a whole outline may be
+/// given as a side, and a node faces only one of two opposite walls.
 ///
-/// One that moves is where its `motion` ends when distances are measured, so that they are right there: of round ones
-/// they are linear on the way.
+/// The distance to a moving obstacle is linearized at the end of its `motion`, so that it is exact there; for round
+/// obstacles it is approximate in between.
 pub(super) fn points(
     mesh: &Mesh,
     (obstacle, motion): (&Obstacle, Vec<[f64; 3]>),
@@ -26,7 +26,7 @@ pub(super) fn points(
     nodes: Vec<SideNode>,
 ) -> Result<Vec<ContactPoint<u32>>, String> {
     let around = side.around();
-    // Of an outline that turns a corner at the node the part that faces the obstacle.
+    // At a corner of the outline, only the part that faces the obstacle counts.
     let facing_area = |a: &SideNode, normal: [f64; 3]| {
         let facets = around[&a.node].iter().map(|&f| &side.facets[f]);
         let facing = facets.filter(|facet| dot(facet.normal_at(a.node), normal) >= FACING);
@@ -69,8 +69,9 @@ pub(super) fn points(
     Ok(points)
 }
 
-/// On quadratic facets whose corners carry nothing else: with functions of which corners take a part from the nodes on
-/// their edges, N_e = (Ñ_e + …)/(1 − Σ taken), the condition of such a node is
+/// Modified constraints on quadratic facets whose corners carry a force only through other facets. With the modified
+/// functions, in which corners take a part of those of the nodes on their edges, N_e = (Ñ_e + …)/(1 − Σ taken), the
+/// constraint of a node e on an edge is
 ///
 /// > (u_e − Σ taken·u_c)·n/(1 − Σ taken) ≤ (g_e − Σ taken·g_c)/(1 − Σ taken),   c the ends of its edge
 fn blend_corners(side: &Surface, points: &mut [ContactPoint<u32>], place: &HashMap<u32, usize>) {
@@ -101,8 +102,8 @@ fn blend_corners(side: &Surface, points: &mut [ContactPoint<u32>], place: &HashM
     }
 }
 
-/// Signed distance of a point to an obstacle, positive outside of its material, and the
-/// obstacle's normal at its point nearest to it, out of its material.
+/// Signed distance of a point from an obstacle, positive outside of its material, and the outward normal of the
+/// obstacle at its nearest point.
 fn distance(obstacle: &Obstacle, at: [f64; 3]) -> Option<(f64, [f64; 3])> {
     match obstacle {
         Obstacle::HalfSpace { point, normal } => {
@@ -126,7 +127,8 @@ fn distance(obstacle: &Obstacle, at: [f64; 3]) -> Option<(f64, [f64; 3])> {
     }
 }
 
-/// The same at the end of `arm`, which starts in the centre or on the axis.
+/// Distance and normal of a round obstacle for the point at the end of `arm`, which starts at the centre or on the
+/// axis.
 fn round(arm: [f64; 3], radius: f64, inside: bool) -> Option<(f64, [f64; 3])> {
     let far = length(arm);
     let out = (far > 0.0).then(|| arm.map(|c| c / far))?;
@@ -138,7 +140,7 @@ fn round(arm: [f64; 3], radius: f64, inside: bool) -> Option<(f64, [f64; 3])> {
 
 /// The unit vector along a direction.
 fn unit(direction: [f64; 3]) -> [f64; 3] {
-    // Scaled first, so that no square under- or overflows.
+    // Scaled first, so that no square overflows or underflows.
     let largest = direction.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let scaled = direction.map(|c| c / largest);
     scaled.map(|c| c / length(scaled))

@@ -1,4 +1,4 @@
-//! Parameters: of what quantities have derivatives, and what loads that are some do to nodes.
+//! Parameters of the derivatives of quantities, and the nodal forces of those that are loads.
 
 use super::activation;
 use super::bodies::Bodies;
@@ -13,7 +13,7 @@ use crate::scene::material::Elasticity;
 /// The parameters of a scene, and the nodal forces of those that are loads.
 ///
 /// # Errors
-/// As when its loads are made.
+/// Those of the scene's loads.
 pub(super) fn parameters(
     on: Loaded<'_>,
     of_scene: &steps::Loads,
@@ -36,7 +36,7 @@ pub(super) fn parameters(
     Ok((all, forces))
 }
 
-/// The loads of all load steps by name, and their forces in each.
+/// The loads of all load steps by name, and their nodal forces in each.
 fn of_loads(on: Loaded<'_>) -> Result<(Vec<Parameter>, Vec<LoadForce>), InputError> {
     let loadings = on.scene.loadings();
     let absent = activation::bodies(on.scene);
@@ -89,13 +89,13 @@ fn of_loads(on: Loaded<'_>) -> Result<(Vec<Parameter>, Vec<LoadForce>), InputErr
     Ok((named.collect(), all))
 }
 
-/// The stiffness of every material that has cells, unless heat makes loads in proportion to it.
+/// The stiffness of every material with cells, unless thermal loads are proportional to it.
 fn stiffnesses(scene: &Scene, bodies: &Bodies) -> Vec<Parameter> {
     let mut used = bodies.cell_material.clone();
     used.sort_unstable();
     used.dedup();
     let number = |name: &str| scene.materials.keys().position(|of| of == name);
-    // The material of the scene that one of the model is.
+    // The material of the scene for each material of the model.
     let mut scene_materials: Vec<Option<usize>> = (0..scene.materials.len()).map(Some).collect();
     let own = scene.bodies.values().filter(|of| of.has_initial_stress());
     scene_materials.extend(own.map(|body| number(&body.material)));
@@ -130,7 +130,7 @@ fn stiffnesses(scene: &Scene, bodies: &Bodies) -> Vec<Parameter> {
     materials.filter_map(parameter).collect()
 }
 
-/// Additions to the displacements that conditions prescribe, axis by axis, unless others follow from them.
+/// Increments of prescribed displacements, axis by axis, for boundary conditions on which no others depend.
 fn displacements(scene: &Scene, loads: &steps::Loads) -> Vec<Parameter> {
     let loadings = scene.loadings();
     let Some(first) = loadings.first() else {

@@ -3,36 +3,36 @@
 use crate::contact_point::{ContactPoint, Probe};
 use crate::stiffness::Stiffness;
 
-/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, xy around an axis; xx, yy, zz,
-/// yz, xz, xy in space).
+/// A linear elastic material, σ = C ε in Voigt's order (xx, yy, xy in the plane; xx, yy, zz, xy around an axis; xx, yy,
+/// zz, yz, xz, xy in space).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name in the scene.
     pub name: String,
     /// C, symmetric positive definite, for the scene's plane state (Pa).
     pub stiffness: Stiffness,
-    /// Row of σ_zz against (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it, around an axis and in space.
+    /// Row of σ_zz for (ε_xx, ε_yy, γ_xy) (Pa); `None` where the user didn't give it, around an axis and in space.
     pub out_of_plane: Option<[f64; 3]>,
     /// Poisson's ratio of an isotropic material.
     pub poisson: Option<f64>,
-    /// The way in which cells of it are integrated.
+    /// The integration of its cells' stiffness.
     pub formulation: Formulation,
 }
 
-/// The way in which the stiffness of cells is integrated.
+/// The integration of the stiffness of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
     /// Full integration.
     #[default]
     Full,
-    /// 4-node quadrilaterals and 8-node hexahedra have incompatible modes, with which they bend.
+    /// 4-node quadrilaterals and 8-node hexahedra with incompatible modes, which represent bending.
     IncompatibleModes,
-    /// 8-node quadrilaterals and 20-node hexahedra are integrated at two points in each direction.
+    /// 8-node quadrilaterals and 20-node hexahedra, integrated at two points in each direction.
     Reduced,
 }
 
 impl Formulation {
-    /// The formulation in words, behind the name of a material.
+    /// The formulation in plain words, as a suffix to the name of a material.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Full => "",
@@ -51,8 +51,8 @@ pub struct Support {
     pub direction: [f64; 3],
     /// Prescribed displacement along it (m).
     pub value: f64,
-    /// Index of the condition that prescribes it among [`Model::support_names`](super::Model::support_names): of several that
-    /// do, the first.
+    /// Index in [`Model::support_names`](super::Model::support_names) of the boundary condition that prescribes it: of
+    /// several the first.
     pub condition: u32,
 }
 
@@ -61,8 +61,8 @@ pub struct Support {
 pub struct Contact {
     /// Name in the scene.
     pub name: String,
-    /// Points, along the side whose nodes have them, over the nodes of the mesh.
+    /// Points over the nodes of the mesh, along the side whose nodes carry them.
     pub points: Vec<ContactPoint<u32>>,
-    /// Places at which the side whose nodes have no conditions is checked for penetration; none where nodes match.
+    /// Points at which the side without constraints is checked for penetration; none for matching nodes.
     pub probes: Vec<Probe<u32>>,
 }

@@ -1,19 +1,20 @@
 //! Pretensions of bolts: equations across a cut of the mesh.
 //!
-//! The mesh is cut along facets inside the bolt, so that every node of them is there twice, on side a and on side b. With n the
-//! outward normal of side a, or the direction that the scene gives, and a pair (a₀, b₀) of these nodes near the middle
+//! The mesh is cut along facets inside the bolt, so that every node of them is duplicated, on side a and on side b.
+//! With n the outward normal of side a, or the direction given by the scene, and a pair (a₀, b₀) of these nodes near
+//! the centre
 //!
 //! ```text
 //! n·(u_a − u_b) − n·(u_a₀ − u_b₀) = 0,   t·(u_a − u_b) = 0,   δ = n·(u_a₀ − u_b₀)
 //! ```
 //!
-//! for all pairs: the sides overlap by the shortening δ, the length that is taken out of the bolt. A force F is one on a₀ along n
-//! and one on b₀ against it, whose work is F δ. A shortening that is given, or was reached and is locked, is one more equation,
-//! which in the second case comes like any contact that comes in a load step: at the jump that its nodes have then. With its
-//! multiplier λ, 0 where it isn't there, the force across the cut is F − λ.
+//! for all pairs: the sides overlap by the shortening δ of the bolt. A force F is applied to a₀ along n and to b₀ in
+//! the opposite direction, with the work F δ. A shortening that is given, or locked at the current value, is one more
+//! equation. When locked, it is activated in a load step like any contact, at the current jump of its nodes. With its
+//! multiplier λ, 0 while it is inactive, the force across the cut is F − λ.
 //!
-//! So a pretension needs no unknown of its own that a rigid motion would have to leave alone, as it moves with the bolt, and what
-//! equations go through, fronts, clusters, the certificate and the refinement, goes on as it is.
+//! So a pretension needs no extra unknown, which rigid-body motions would have to leave out, and fronts, clusters, the
+//! certificate and the refinement treat it like any equation.
 
 mod cut;
 
@@ -31,20 +32,21 @@ use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::pretension::{Pretension, Tightening};
 
-/// Part of the area of a cut that its normals have along its bolt of a cut from which on it is one across it.
+/// Area of a cut projected along its bolt, relative to the cut's area, above which the cut counts as transverse.
 const ACROSS: f64 = 0.5;
 
 /// The pretensions of a scene on the mesh.
 #[derive(Default)]
 pub(super) struct Pretensions {
-    /// The equations of each cut, and behind them what holds its shortening where anything ever does.
+    /// The equations of each cut, followed by the equation that holds its shortening if any step does.
     pub contacts: Vec<Contact>,
-    /// The numbers of those that aren't there, step by step.
+    /// The numbers of inactive equations, step by step.
     pub absent: Vec<Vec<u32>>,
 }
 
 impl Pretensions {
-    /// The pretensions across the opened cuts, the contacts numbered from `first` on; their forces are added to `loads`.
+    /// The pretensions across the opened cuts, the contacts numbered from `first` on; their forces are added to
+    /// `loads`.
     ///
     /// # Errors
     /// A direction along the cut, a bolt that a step adds or removes.
@@ -121,11 +123,11 @@ fn check_presence(
     }
 }
 
-/// A cut, and the direction along which it is tightened.
+/// A cut and the direction in which it is tightened.
 struct Bolt<'a> {
     mesh: &'a Mesh,
     what: String,
-    /// Nodes of side a and b, the pair in the middle first.
+    /// Pairs of nodes of sides a and b, the central pair first.
     pairs: Vec<[u32; 2]>,
     frame: LocalFrame,
 }
@@ -175,7 +177,7 @@ impl<'a> Bolt<'a> {
         })
     }
 
-    /// The equation of nodes with directions, which the first entry's sign tells.
+    /// The equation Σ sign·(axis·u(node)) = 0 of `entries` (node, sign, axis).
     fn point(&self, entries: &[(u32, f64, [f64; 3])]) -> ContactPoint<u32> {
         let (node, _, normal) = entries[0];
         let all = entries.iter();
@@ -194,7 +196,7 @@ impl<'a> Bolt<'a> {
         }
     }
 
-    /// The equations of the cut; the first one knows the forces that are given.
+    /// The equations of the cut; the first one carries the given forces.
     fn equations(&self, given: &[Tightening]) -> Vec<ContactPoint<u32>> {
         let n = self.frame.normal;
         let [a_0, b_0] = self.pairs[0];
@@ -210,7 +212,7 @@ impl<'a> Bolt<'a> {
         points
     }
 
-    /// The equation that holds the shortening, which its two tags tell from those of the cut.
+    /// The equation that holds the shortening, distinguished from those of the cut by its two tags.
     fn hold(&self, given: &[Tightening]) -> ContactPoint<u32> {
         let n = self.frame.normal;
         let [a, b] = self.pairs[0];
@@ -235,7 +237,7 @@ impl<'a> Bolt<'a> {
         }
     }
 
-    /// Adds the forces that are given to the loads of all steps.
+    /// Adds the given forces to the loads of all steps.
     fn add_forces(&self, given: &[Tightening], loads: &mut Loads) {
         if given.iter().all(|given| given.force() == 0.0) {
             return;

@@ -1,4 +1,4 @@
-//! Quantities: what those of a scene are on its mesh.
+//! Quantities of a scene, resolved on its mesh.
 
 use super::bodies::Bodies;
 use super::initial_stress::{InitialStress, mean_weights};
@@ -14,28 +14,28 @@ use crate::scene::number::ConstantVector;
 use crate::scene::quantity::{self, Place, Target};
 use crate::scene::suggest::hint_and_known;
 
-/// Distance of two nodes at one place, relative to the extent of the mesh.
+/// Distance of coincident nodes, relative to the extent of the mesh.
 const SAME: f64 = 1e-9;
 
-/// Scene and mesh in which quantities are looked for.
+/// Scene and mesh on which quantities are resolved.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub scene: &'a Scene,
     pub bodies: &'a Bodies,
     pub materials: &'a [Material],
     pub contacts: &'a [Contact],
-    /// The crack tips, each with a cell that has it.
+    /// The crack tips, each with a cell that contains it.
     pub tips: &'a [(u32, CrackTip)],
-    /// The names of supports, behind which those of springs come.
+    /// The names of supports, followed by those of springs.
     pub supports: &'a [String],
     /// The initial stress in every load step.
     pub initial: &'a [&'a InitialStress],
 }
 
-/// The quantities of a scene, and the weights of nodes in them.
+/// The quantities of a scene, and the nodal weights of displacements in them.
 ///
 /// # Errors
-/// A name that isn't there, with those that are; a node that isn't the only one at its place.
+/// An unknown name, with the existing ones; a node that isn't unique at its position.
 pub(super) fn quantities(known: Known<'_>) -> Result<(Vec<Quantity>, Vec<NodeWeight>), InputError> {
     let (mut all, mut weights) = (Vec::new(), Vec::new());
     for (number, asked) in (0..).zip(&known.scene.quantity) {
@@ -96,7 +96,7 @@ impl Known<'_> {
         Ok((quantity, weights))
     }
 
-    /// Gives a quantity of a contact its kind, its directions and its contact.
+    /// Sets the kind, the directions and the contact of a quantity of a contact.
     fn of_contact(&self, target: &Target, quantity: &mut Quantity) -> Result<(), String> {
         match target {
             Target::ContactForce { contact, along } => {
@@ -138,7 +138,7 @@ impl Known<'_> {
         Ok(())
     }
 
-    /// True if forces are those of whole rings.
+    /// True if forces are those of whole rings (axisymmetry).
     fn is_ring(&self) -> bool {
         self.scene.plane == Some(PlaneState::Axisymmetric)
     }
@@ -163,7 +163,7 @@ impl Known<'_> {
         })
     }
 
-    /// The direction of a force; around an axis that along the axis.
+    /// The direction of a force; around an axis only the axial one.
     fn of_force(&self, along: &ConstantVector) -> Result<[f64; 3], String> {
         match self.is_ring() && along.value[0] != 0.0 {
             true => Err(
@@ -174,7 +174,7 @@ impl Known<'_> {
         }
     }
 
-    /// The node of the mesh at a place.
+    /// The node of the mesh at a position.
     fn node(&self, place: &Place) -> Result<u32, String> {
         let mesh = &self.bodies.mesh;
         let point = match place {
@@ -202,7 +202,7 @@ impl Known<'_> {
         }
     }
 
-    /// The point of a contact at a place.
+    /// The point of a contact at a position.
     fn point<'p>(
         &self,
         points: &'p [ContactPoint<u32>],
@@ -220,7 +220,7 @@ impl Known<'_> {
         found.ok_or_else(|| "the contact has no condition at that node".into())
     }
 
-    /// The number and the points of a contact, or of a tie as well.
+    /// The number and the points of a contact, or, if allowed, of a tie.
     fn contact(&self, name: &str, or_tie: bool) -> Result<(u32, &[ContactPoint<u32>]), String> {
         let fits = |contact: &Contact| {
             let first = contact.points.first();
@@ -275,7 +275,7 @@ impl Known<'_> {
         })
     }
 
-    /// The weights of nodes in the mean of a component of the stress of a body.
+    /// The nodal weights in the average of a component of a body's stress.
     fn mean_stress(
         &self,
         name: &str,
@@ -311,7 +311,8 @@ impl Known<'_> {
     }
 }
 
-/// The stress that does the work of strains which is a component of their stress: its row of C, in the order of results.
+/// The row of C for a component of the stress, in the order of results: a stress whose work on strains is that
+/// component of their stress.
 fn row(material: &Material, component: usize) -> Option<[f64; 6]> {
     let c = &material.stiffness;
     let of_row = |row: &[f64]| match *row {

@@ -4,27 +4,27 @@ use super::facet_tree::FacetTree;
 use super::surface::Surface;
 use crate::element::geometry::{advance, difference, dot, length};
 
-/// Distance from a line up to which a node lies on it, relative to the length of the facet that
-/// the node belongs to. Averaged normals of neighbouring facets of different lengths, and that of
-/// the last facet at the end of a curve, miss the partner by the gap times a small angle.
+/// Distance from a line up to which a node lies on it, relative to the length of the facet that the node belongs to.
+/// Averaged normals of neighbouring facets of different lengths, and that of the last facet at the end of a curve,
+/// deviate from the partner by the gap times a small angle.
 const ASIDE: f64 = 1e-2;
-/// Cosine of the angle between a line and the inward normal of a facet that it meets face to face.
+/// Cosine of the angle between a line and the inward normal of a facet above which they meet face to face.
 pub(super) const FACING: f64 = 0.1;
 
-/// A surface that lines are sent at.
+/// A surface, prepared for intersection with lines.
 pub(super) struct Target<'a> {
     surface: &'a Surface,
     tree: FacetTree,
 }
 
-/// The first hit of a line.
+/// The first intersection of a line.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Hit {
-    /// Nodes, more than one where several lie in one place.
+    /// Nodes, several if they coincide.
     Nodes(Vec<u32>),
     /// The inside of a facet.
     Facet(usize),
-    /// No facet, though facets that face the same way as the line may lie on it.
+    /// No facet; there may be facets in the line that face the same way.
     Nothing {
         /// True if there are such facets.
         back_facing: bool,
@@ -32,8 +32,8 @@ pub(super) enum Hit {
 }
 
 impl Hit {
-    /// The nearest of the `nodes` on a line, each with the way to it and how far from the line it may be, or the facet
-    /// that it crossed before them, with the way to that.
+    /// The nearest of the `nodes` on a line, each with its distance along the line and the allowed one from it, or the
+    /// facet that the line crossed before them, with its distance.
     fn nearest(
         nodes: &[(u32, f64, f64)],
         crossed: Option<(usize, f64)>,
@@ -61,7 +61,7 @@ impl Hit {
 }
 
 impl<'a> Target<'a> {
-    /// Makes a surface ready to be searched: O(n log n) for n facets.
+    /// Prepares a surface for the search: O(n log n) for n facets.
     pub fn new(surface: &'a Surface) -> Self {
         Self {
             surface,
@@ -69,15 +69,15 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// The facets in boxes, given by their least and largest coordinates, for which `may_hold` says
-    /// so; it must do so of every box that holds one of them.
+    /// The facets in boxes, given by their least and largest coordinates, for which `may_hold` is true; it has to be
+    /// true for every box that contains such a facet's box.
     pub fn facets(&self, may_hold: impl Fn([f64; 3], [f64; 3]) -> bool) -> Vec<usize> {
         self.tree.within(may_hold).collect()
     }
 
-    /// First intersection of the line from `start` along the unit vector `direction`, either way but
-    /// no more than `behind` backwards, with what faces it; nodes for which `passes` holds are
-    /// passed by. O(log n) for a surface that isn't parallel to the line.
+    /// First intersection of the line from `start` along the unit vector `direction`, at most `behind` backwards, with
+    /// facets that face it; nodes for which `passes` is true are ignored. O(log n) for a surface that isn't parallel to
+    /// the line.
     pub fn hit(
         &self,
         start: [f64; 3],

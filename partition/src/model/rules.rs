@@ -1,14 +1,14 @@
-//! The quadrature rules by which loads are integrated.
+//! The quadrature rules for loads.
 
 use super::parts::Formulation;
 use crate::element::ElementKind;
 use crate::element::quadrature::TabulatedPoint;
 use crate::scene::material::PlaneState;
 
-/// The degree that the radius adds.
+/// The degree added for the radius, of linear and of quadratic cells.
 const RADIUS: [usize; 2] = [1, 2];
 
-/// The degree of a rule that is exact with the radius as a factor, where the scene is axisymmetric.
+/// The degree of a rule that is exact with the radius as a factor if the scene is axisymmetric.
 pub(super) fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) -> usize {
     match plane {
         Some(PlaneState::Axisymmetric) => degree + RADIUS[usize::from(!is_linear)],
@@ -16,7 +16,7 @@ pub(super) fn around(plane: Option<PlaneState>, degree: usize, is_linear: bool) 
     }
 }
 
-/// The rule by which a load is integrated over cells: of reduced ones that of their stiffness.
+/// The quadrature rule for loads over cells; with reduced integration that of the stiffness.
 pub(super) fn rule_of_cells(
     kind: ElementKind,
     formulation: Formulation,

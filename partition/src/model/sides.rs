@@ -1,4 +1,4 @@
-//! The two sides of a contact: what every way of pairing them needs.
+//! The two sides of a contact: data for every discretization. Side a is the slave side, side b the master side.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,11 +6,11 @@ use super::surface::Surface;
 use crate::error::InputError;
 use crate::mesh::Mesh;
 
-/// Interference up to which two sides face each other, relative to the smaller side: beyond it
-/// the material lies between them.
+/// Interference up to which two sides face each other, relative to the smaller side: beyond it the bodies' material
+/// lies between them.
 pub(super) const INTERFERENCE: f64 = 0.1;
 
-/// A node of a side with its outward normal, and the part of the side's area that it stands for.
+/// A node of a side with its outward normal and its tributary area.
 pub(super) struct SideNode {
     pub node: u32,
     pub position: [f64; 3],
@@ -18,27 +18,27 @@ pub(super) struct SideNode {
     pub tributary_area: f64,
 }
 
-/// Two sides that may touch.
+/// Two sides in possible contact.
 pub(super) struct Sides<'a> {
     pub mesh: &'a Mesh,
     pub a: &'a Surface,
     pub b: &'a Surface,
     /// The facets around each node of side a.
     pub around_a: HashMap<u32, Vec<usize>>,
-    /// Side b: what stands above for side a.
+    /// The facets around each node of side b.
     pub around_b: HashMap<u32, Vec<usize>>,
-    /// Nodes of both sides, crack tips; they carry no condition.
+    /// Nodes of both sides, crack tips; they carry no constraint.
     pub shared: HashSet<u32>,
-    /// The nodes along side a but for the shared ones.
+    /// The nodes along side a without the shared ones.
     pub nodes_a: Vec<SideNode>,
-    /// Side b: what stands above for side a.
+    /// The nodes along side b without the shared ones.
     pub nodes_b: Vec<SideNode>,
     /// Largest overlap of the sides (m).
     pub behind: f64,
 }
 
 impl<'a> Sides<'a> {
-    /// Brings two sides together. `what` names the contact.
+    /// Combines two sides. `what` names the contact.
     ///
     /// # Errors
     /// A node at which a side has no normal.
@@ -65,8 +65,7 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// Reason for which sides that don't meet anywhere have no condition; `back_facing` if they would, were one of them
-/// turned round.
+/// Reason why sides have no constraint; `back_facing` if they would have some with one of them reversed.
 pub(super) fn apart(back_facing: bool) -> String {
     if back_facing {
         "the sides face the same way; expected them face to face".to_owned()
@@ -77,7 +76,7 @@ pub(super) fn apart(back_facing: bool) -> String {
     }
 }
 
-/// The nodes along a side but for those in `shared`. `what` names the contact.
+/// The nodes along a side except those in `shared`. `what` names the contact.
 ///
 /// # Errors
 /// A node at which the side has no normal.

@@ -1,4 +1,4 @@
-//! The boundary of all bodies, and which of its facets face each other.
+//! The boundary of all bodies, and its pairs of facets that face each other.
 
 mod facet;
 mod view;
@@ -15,7 +15,7 @@ use crate::mesh::Mesh;
 use crate::mesh::topology::{CellFacet, Topology};
 use crate::scene::material::PlaneState;
 
-/// Cosine of the angle between neighbours that are no corner: 45°.
+/// Cosine of the angle up to which neighbours form no corner: 45°.
 const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Two facets that face each other.
@@ -23,20 +23,20 @@ const SMOOTH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 pub(super) struct Facing {
     /// The facets, ascending.
     pub facets: [usize; 2],
-    /// The way from one to the other along the normal, in the middle of what they have in common (m).
+    /// The distance from one to the other along the normal, at the centre of their overlap (m).
     pub gap: f64,
-    /// Length or area of what they have in common.
+    /// Length or area of their overlap.
     pub measure: f64,
 }
 
-/// The facets of all bodies that no two cells share.
+/// The boundary facets, which belong to a single cell.
 pub(super) struct Skin<'a> {
     pub facets: Vec<SkinFacet>,
     pub mesh: &'a Mesh,
 }
 
 impl<'a> Skin<'a> {
-    /// The facets of the boundary of bodies that are `wanted`; around an axis without those on the axis.
+    /// The facets of the boundary for which `wanted` is true; around an axis without those on the axis.
     pub fn new(
         bodies: &'a Bodies,
         topology: &Topology,
@@ -64,8 +64,8 @@ impl<'a> Skin<'a> {
         }
     }
 
-    /// All pairs of facets that face each other with nothing between them, ascending, up to the distance `reach` of
-    /// the larger one's size (m), either way. O(n log n) for n facets, as long as the reach isn't beyond their size.
+    /// All pairs of facets that face each other with nothing between them, ascending, up to the distance `reach` of the
+    /// larger one's size (m), in either sense. O(n log n) for n facets, as long as the reach doesn't exceed their size.
     pub fn facing(&self, reach: impl Fn(f64) -> f64) -> Vec<Facing> {
         let shapes = self.facets.iter().map(|facet| &facet.shape);
         let tree = FacetTree::new(shapes, |_| 0.0);
@@ -90,7 +90,7 @@ impl<'a> Skin<'a> {
                     gap,
                     measure,
                 });
-                // Of two that aren't parallel each sees the other in its own way.
+                // Two facets that aren't parallel see each other differently.
                 found.measure = found.measure.max(measure);
                 if gap.abs() < found.gap.abs() {
                     found.gap = gap;
@@ -100,7 +100,7 @@ impl<'a> Skin<'a> {
         pairs.into_values().collect()
     }
 
-    /// The facets that each facet goes on in without a corner, of the same body.
+    /// The facets of the same body that continue each facet without a corner.
     pub fn neighbours(&self) -> Vec<Vec<usize>> {
         let mut at_edge: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
         for (index, facet) in self.facets.iter().enumerate() {

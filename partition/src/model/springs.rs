@@ -17,28 +17,28 @@ const DEGREES: [usize; 2] = [7, 9];
 /// The block of K_s that couples two nodes of one cell (N/m, per metre of thickness in the plane).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringBlock {
-    /// Row and column of nodes; the transposed block, of another two, isn't listed.
+    /// Row and column of nodes; the transposed block is omitted.
     pub nodes: [u32; 2],
     /// The block, row by row.
     pub stiffness: [[f64; 3]; 3],
-    /// Index of its entry among [`Model::support_names`](super::Model::support_names).
+    /// Index of its name in [`Model::support_names`](super::Model::support_names).
     pub condition: u32,
 }
 
 /// The springs of a scene.
 #[derive(Default)]
 pub(super) struct Springs {
-    /// Names of the entries of the scene.
+    /// Names of the springs in the scene.
     pub names: Vec<String>,
-    /// Blocks, each with a cell that has both of its nodes, in the order of the scene.
+    /// Blocks, each with a cell that contains both of its nodes, in the order of the scene.
     pub blocks: Vec<(u32, SpringBlock)>,
 }
 
 impl Springs {
-    /// The springs of `scene`, whose names come after those of `supports`.
+    /// The springs of `scene`, whose names follow those of `supports`.
     ///
     /// # Errors
-    /// Groups that don't exist, stiffnesses that are less than 0, a side without a cell.
+    /// Groups that don't exist, negative stiffnesses, a side without a cell.
     pub fn new(
         scene: &Scene,
         bodies: &Bodies,

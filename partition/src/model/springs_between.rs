@@ -1,6 +1,7 @@
-//! Springs between points: the relative displacement of their ends is that of a node on a spring to the ground.
+//! Springs between points: the relative displacement of their ends equals that of an auxiliary node on a spring to the
+//! ground.
 //!
-//! So each is an equation, n·(u_a − u_b − s) = 0 with the mean displacements of both ends, of a compliant point.
+//! So each is an equation, n·(u_a − u_b − s) = 0 with the average displacements of both ends, of a compliant point.
 
 use super::{Contact, groups};
 use crate::contact_point::{ContactPoint, Law};
@@ -13,7 +14,7 @@ use crate::scene::spring::SpringBetween;
 /// The springs between points of a scene, numbered from `first` on.
 ///
 /// # Errors
-/// Groups that don't exist, ends that share a node or lie at one place, a stiffness that is none.
+/// Groups that don't exist, ends that share a node or coincide, zero stiffness.
 pub(super) fn springs_between(
     scene: &Scene,
     mesh: &Mesh,
@@ -30,7 +31,7 @@ pub(super) fn springs_between(
     scene.springs_between().enumerate().map(spring).collect()
 }
 
-/// The points of a spring: one along each direction in which it is stiff.
+/// The points of a spring: one along each direction of nonzero stiffness.
 fn points(
     spring: &SpringBetween,
     mesh: &Mesh,

@@ -7,7 +7,7 @@ use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 
-/// A load step of a model: prescribed displacements and loads, where any step has them.
+/// A load step of a model: values at the supports and nodes that any step prescribes or loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelStep {
     /// Name.
@@ -18,27 +18,27 @@ pub struct ModelStep {
     pub supports: Vec<f64>,
     /// Force on every loaded node (N per metre of thickness).
     pub forces: Vec<[f64; 3]>,
-    /// Stress without strain.
+    /// Initial stress.
     pub initial_stress: InitialStress,
-    /// The scene's bodies that aren't there, ascending.
+    /// The absent bodies of the scene, ascending.
     pub absent_bodies: Vec<u32>,
-    /// The contacts that are switched off, ascending: those of absent bodies aren't among them.
+    /// The contacts that are switched off, ascending; those of absent bodies aren't listed.
     pub absent_contacts: Vec<u32>,
 }
 
 /// The loads of a scene.
 pub(super) struct Loads {
-    /// Names of the conditions that prescribe displacements.
+    /// Names of the boundary conditions that prescribe displacements.
     pub names: Vec<String>,
     /// Supports, with the values of the first step.
     pub supports: Vec<Support>,
-    /// Forces on all nodes that are loaded in any step, those of the first.
+    /// Forces of the first step on all nodes that are loaded in any step.
     pub forces: Vec<(u32, [f64; 3])>,
-    /// Stress without strain in the first step.
+    /// Initial stress in the first step.
     pub initial_stress: InitialStress,
     /// The steps; none where the scene has none.
     pub steps: Vec<ModelStep>,
-    /// Conditions, by number, that decide a part of what another one of another kind prescribes.
+    /// For each boundary condition whether it prescribes a part of what another one of another kind prescribes.
     pub decides: Vec<bool>,
 }
 
@@ -95,7 +95,7 @@ impl Loads {
         })
     }
 
-    /// The values of support i in all steps, its one value where there are none.
+    /// The values of support i in all steps, or its single value without steps.
     pub fn values(&self, i: usize) -> Vec<f64> {
         match self.steps.is_empty() {
             true => vec![self.supports[i].value],
@@ -107,8 +107,8 @@ impl Loads {
 /// The supports, the forces at all nodes and the initial stress of a load step.
 type Loading = (Vec<Support>, Vec<[f64; 3]>, InitialStress);
 
-/// The load steps of a scene: of each loading its supports, its forces at the nodes that are `loaded`, its initial stress
-/// and the bodies that are `absent`.
+/// The load steps of a scene: each loading with its supports, its forces at the nodes that are `loaded`, its initial
+/// stress and the bodies that are `absent`.
 fn model_steps(
     scene: &Scene,
     loadings: &[Loading],
@@ -130,12 +130,12 @@ fn model_steps(
     steps.collect()
 }
 
-/// The forces at some nodes, of those at all.
+/// The forces at some nodes, from those at all nodes.
 fn at(nodes: &[u32], forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
     nodes.iter().map(|&node| forces[node as usize]).collect()
 }
 
-/// The steps with the contacts that aren't there in each, those of the scene and those of bolts.
+/// The steps with the inactive contacts of each, those of the scene and those of bolts.
 pub(super) fn with_absent_contacts(
     steps: Vec<ModelStep>,
     of_scene: Vec<Vec<u32>>,
@@ -150,8 +150,8 @@ pub(super) fn with_absent_contacts(
         .collect()
 }
 
-/// Checks that step k prescribes displacements where the first step does, in the same directions: the
-/// steps share one factorization.
+/// Checks that step k prescribes displacements at the nodes and in the directions of the first step, as all steps share
+/// one factorization.
 fn check_places(
     k: usize,
     first: &[Support],

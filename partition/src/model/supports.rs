@@ -16,19 +16,19 @@ use crate::scene::material::PlaneState;
 const AGREE: f64 = 1e-12;
 /// Sine of the angle up to which a direction counts as prescribed already.
 pub(super) const PARALLEL: f64 = 1e-6;
-/// Cosine of 40°: facets of one bilateral condition that differ by more are a corner, where both
-/// directions hold.
+/// Cosine of 40°: facets of one bilateral boundary condition with a larger angle form a corner, at which both
+/// directions are held.
 const CORNER: f64 = 0.766_044_443_118_978;
 
-/// A direction that a condition prescribes at a node.
+/// A direction prescribed at a node by a boundary condition.
 struct Row {
     direction: [f64; 3],
     value: f64,
-    /// Index of the condition among the names.
+    /// Index of the boundary condition among the names.
     condition: usize,
 }
 
-/// The names of the conditions that prescribe displacements in a loading of `scene`, displacements before
+/// The names of the boundary conditions that prescribe displacements in a loading of `scene`, displacements before
 /// bilateral ones.
 pub(super) fn names(scene: &Scene, loading: &Loading, mesh: &Mesh) -> Vec<String> {
     let displacement = (loading.displacement.iter().enumerate())
@@ -41,7 +41,7 @@ pub(super) fn names(scene: &Scene, loading: &Loading, mesh: &Mesh) -> Vec<String
     displacement.chain(bilateral).chain(axis).collect()
 }
 
-/// The nodes on the axis of an axisymmetric scene, which can't leave it.
+/// The nodes on the axis of an axisymmetric scene, which have no radial displacement.
 fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
     let is_ring = scene.plane == Some(PlaneState::Axisymmetric);
     let nodes = (0..).zip(&mesh.points);
@@ -52,13 +52,13 @@ fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
 pub(super) struct Supports {
     /// Ascending by node, the rows of one node orthonormal.
     pub rows: Vec<Support>,
-    /// Earlier conditions of every condition that hold a part of what it prescribes: at nodes that both have, the force
-    /// along the direction of the earlier one is counted as that one's.
+    /// For every boundary condition the earlier ones that hold a part of what it prescribes: at common nodes, the force
+    /// along the direction of the earlier one is assigned to that one.
     holders: Vec<BTreeSet<usize>>,
 }
 
 impl Supports {
-    /// Names of the conditions with a note on the part that others hold.
+    /// Names of the boundary conditions with a note on the part that others hold.
     pub fn names(&self, names: Vec<String>) -> Vec<String> {
         let short = |holder: &usize| names[*holder].split(" on ").next().unwrap_or_default();
         let named = names.iter().zip(&self.holders).map(|(name, holders)| {
@@ -73,7 +73,7 @@ impl Supports {
 }
 
 impl Supports {
-    /// Conditions that hold a part of one behind the first `displacements`.
+    /// For each boundary condition whether it holds a part of one after the first `displacements`.
     pub fn decide(&self, displacements: usize) -> Vec<bool> {
         let others = self.holders.iter().skip(displacements);
         let held: BTreeSet<usize> = others.flatten().copied().collect();
@@ -135,8 +135,7 @@ pub(super) fn supports(
     Ok(supports)
 }
 
-/// The normals at a node of the facets around it: averages, weighted by measure, of those that
-/// differ by no more than a corner.
+/// The normals at a node of the facets around it: averages, weighted by measure, of those that form no corner.
 fn corner_normals(surface: &Surface, node: u32, mut facets: Vec<usize>) -> Vec<[f64; 3]> {
     let measure = |f: &usize| surface.facets[*f].measure;
     facets.sort_by(|a, b| measure(b).total_cmp(&measure(a)));
@@ -154,8 +153,8 @@ fn corner_normals(surface: &Surface, node: u32, mut facets: Vec<usize>) -> Vec<[
         .collect()
 }
 
-/// Appends the orthonormal rows that say the same as `rows`: what one adds to those before it, which are remembered
-/// where they hold a part of it.
+/// Appends orthonormal rows equivalent to `rows`: the part of each that is independent of the earlier ones; records
+/// earlier ones that hold a part of it.
 fn orthonormal(
     node: u32,
     mesh: &Mesh,
@@ -171,7 +170,7 @@ fn orthonormal(
     let scale = rows.iter().map(|row| row.value.abs()).fold(0.0, f64::max);
     for (index, row) in rows.iter().enumerate() {
         let (mut direction, mut value) = (row.direction, row.value);
-        // Twice is enough for orthogonality to rounding.
+        // Repeating Gram-Schmidt twice gives orthogonality to round-off.
         for _ in 0..2 {
             for before in &supports[start..] {
                 let overlap = dot(direction, before.direction);

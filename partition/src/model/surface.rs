@@ -12,26 +12,26 @@ use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::material::PlaneState;
 
-/// Angle between two facets from which on they are no curve but a corner (rad).
+/// Angle between two facets above which they form a corner (rad).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_4;
 
-/// Part of the height of a kink that a facet on a curve has by itself unless it is straight.
+/// Sag of a facet on a curve, relative to the height of the kink, below which the facet is straight.
 const STRAIGHT: f64 = 0.5;
 
-/// The surface at a node, by the facets around it.
+/// The geometry of the surface at a node, from the facets around it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SurfaceNode {
-    /// Σ measure·normal at it of the facets around it.
+    /// Σ measure·normal at the node, of the facets around it.
     pub area: [f64; 3],
     /// Σ measure of the facets around it.
     pub measure: f64,
-    /// ∫ of its shape function over the surface.
+    /// ∫ of the node's shape function over the surface.
     pub tributary_area: f64,
 }
 
 impl SurfaceNode {
-    /// The average of the facets' outward normals at the node weighted by their measure,
-    /// normalized. `None` where they cancel.
+    /// The average of the adjacent facets' outward normals at the node, weighted by their measure and normalized.
+    /// `None` where they cancel.
     pub fn normal(&self) -> Option<[f64; 3]> {
         let size = length(self.area);
         (size > 1e-6 * self.measure).then(|| self.area.map(|c| c / size))
@@ -41,32 +41,31 @@ impl SurfaceNode {
 /// The edge at which two facets meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turn {
-    /// A node of both.
+    /// A common node.
     pub node: u32,
-    /// The two, by their places on the surface.
+    /// The two facets, by their indices on the surface.
     facets: [usize; 2],
     /// The angle between their normals there (rad).
     pub angle: f64,
     /// The larger size of the two (m).
     size: f64,
-    /// Distance of the straighter one from its chords (m).
+    /// Distance of the straighter facet from its chords (m).
     sag: f64,
 }
 
 impl Turn {
-    /// Sagitta of chords that turn by the angle: of an arc over the chord h that turns by α the height is
-    /// h α/8 (m).
+    /// Sagitta of chords that enclose the angle: an arc over the chord h with the angle α has the height h α/8 (m).
     fn height(&self) -> f64 {
         self.size * self.angle / 8.0
     }
 
-    /// True if the straighter one is straight beside what that says.
+    /// True if the sag of the straighter facet is small compared with that sagitta.
     fn is_straight(&self) -> bool {
         self.sag <= STRAIGHT * self.height()
     }
 }
 
-/// True if a facet that is none of a cell has all of its nodes in one: three corners of four.
+/// True if all nodes of a facet belong to one face of a cell without forming it: three corners of four.
 fn is_part_of_face(mesh: &Mesh, nodes: &[u32]) -> bool {
     mesh.cells.iter().any(|(kind, of_cell)| {
         let mut facets = kind.facets().iter();
@@ -82,7 +81,8 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// The surface of `facets` of the mesh, each of exactly one cell, in a plane state or in space. `what` names the key.
+    /// The surface of `facets` of the mesh, each of exactly one cell, in a plane state or in space. `what` names the
+    /// key.
     pub fn new(
         mesh: &Mesh,
         topology: &Topology,
@@ -121,7 +121,7 @@ impl Surface {
         Ok(Self { facets })
     }
 
-    /// The same surface with its normals turned round.
+    /// The same surface with reversed normals.
     pub fn turned(&self) -> Self {
         let turned = |facet: &SurfaceFacet| {
             let order = facet.kind.reversed();
@@ -143,7 +143,7 @@ impl Surface {
                 let sum = nodes.entry(node).or_default();
                 sum.area = advance(sum.area, facet.measure, facet.normal_at(node));
                 if is_ring && at[0] == 0.0 {
-                    // On the axis what is all around has no normal but along it.
+                    // By symmetry the normal on the axis is axial.
                     sum.area[0] = 0.0;
                 }
                 sum.measure += facet.measure;
@@ -189,14 +189,14 @@ impl Surface {
             .collect()
     }
 
-    /// Largest distance of straight facets from the curve that they stand for (m).
+    /// Largest distance of straight facets from the curve that they approximate (m).
     pub fn stands_off(&self) -> f64 {
         let turns = self.turns();
         Self::largest_height(turns.iter().filter(|turn| turn.is_straight()))
     }
 
-    /// Largest sagitta of straight facets of a curve that goes on over them: it turns at two ends of a facet, where a
-    /// corner between two flat parts turns at one (m).
+    /// Largest sagitta of straight facets of a curve that continues beyond them: such a facet has an angle at both
+    /// ends, whereas a facet at a corner between two flat parts has it at one end (m).
     pub fn stands_off_curve(&self) -> f64 {
         let mut heights = vec![[0.0_f64; 2]; self.facets.len()];
         for turn in self.turns() {
@@ -212,7 +212,8 @@ impl Surface {
         seconds.fold(0.0, f64::max)
     }
 
-    /// The height of the kinks between facets, at most: straight ones stand off a curve by it, curved ones by less (m).
+    /// The largest height of the kinks between facets: straight facets deviate from a curve by it, curved ones by less
+    /// (m).
     pub fn kinks(&self) -> f64 {
         Self::largest_height(self.turns().iter())
     }
@@ -222,7 +223,7 @@ impl Surface {
         smooth.map(Turn::height).fold(0.0, f64::max)
     }
 
-    /// Nodes in the middle of facets; the others are corners.
+    /// Nodes in the middle of edges and facets; the others are corners.
     pub fn mid_nodes(&self) -> HashSet<u32> {
         let of_facet = |facet: &'_ SurfaceFacet| facet.nodes[facet.kind.corners()..].to_vec();
         self.facets.iter().flat_map(of_facet).collect()
@@ -239,9 +240,9 @@ impl Surface {
         around
     }
 
-    /// Nodes one after the other: lines are followed from end to end with the body to the
-    /// left, closed ones from their point of least coordinates; pieces in the order of where they
-    /// start. The nodes of faces are sorted by coordinates. Numbers of nodes play no part.
+    /// Nodes in geometrical order, independent of their numbers: lines are followed from end to end with the body on
+    /// the left, closed ones from their point of least coordinates; pieces are ordered by their start. The nodes of
+    /// faces are sorted by coordinates.
     pub fn in_order(&self) -> Vec<u32> {
         if self.facets.iter().any(|facet| facet.kind.dim() > 1) {
             let all = self
@@ -286,7 +287,7 @@ impl Surface {
         order
     }
 
-    /// The mean diameter of its facets (m).
+    /// The average diameter of its facets (m).
     pub fn facet_size(&self) -> f64 {
         let sizes = self.facets.iter().map(SurfaceFacet::size);
         sizes.sum::<f64>() / self.facets.len() as f64

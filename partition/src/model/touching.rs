@@ -1,8 +1,8 @@
-//! Contacts that a scene wants wherever bodies touch: found, and written as if each had been one of the scene.
+//! Automatic contact detection: contacts wherever bodies touch, handled as if the scene declared each of them.
 //!
-//! Facets of the boundary that face each other at no more than a small distance are a pair. A contact is made of pairs
-//! that go on side by side, as long as the facets on both of its sides go on without a corner in the same body. Its
-//! sides become groups of the mesh.
+//! Facets of the boundary that face each other within a small distance form a pair. Adjacent pairs form a contact, as
+//! long as the facets on both of its sides continue without a corner in the same body. Its sides become groups of the
+//! mesh.
 
 mod explicit;
 mod nearest;
@@ -25,43 +25,44 @@ use crate::scene::Scene;
 use crate::scene::condition::Names;
 use crate::scene::contact::{Between, Contact, Declaration};
 
-/// Distance up to which facets beside those that touch are thought to come into contact, relative to their size.
+/// Distance, relative to their size, up to which facets adjacent to touching ones are considered as possibly coming
+/// into contact.
 const NEAR: f64 = 0.25;
 
-/// Gap in the middle of the facets next to those that touch, relative to their size, up to which loads may close it: sides
-/// part by twice that slope, and what closes a slope has strains of about half of it (Hertz: p_0/E* = a/(2R)), by then no
-/// small ones.
+/// Gap at the centre of facets adjacent to touching ones, relative to their size, that loads may close: the sides open
+/// with twice that slope, and closing a slope needs strains of about half of it (Hertz: p_0/E* = a/(2R)), beyond which
+/// strains aren't small.
 const CLOSING: f64 = 0.1;
 
-/// A contact of the scene, and its facets where it was found.
+/// A contact of the scene, with the description of its facets if it was found.
 pub(super) struct Declared {
     pub contact: Contact,
-    /// The name in the scene of what asks for it.
+    /// The name of its declaration in the scene.
     pub table: String,
-    /// Facets and bodies, in words.
+    /// Description of facets and bodies.
     pub words: Option<String>,
 }
 
-/// A table of the scene that asks for contacts wherever bodies touch, and the contacts found for it.
+/// A declaration of the scene that requests contacts wherever bodies touch, and the contacts found for it.
 struct Search<'a> {
     between: &'a Between,
     patches: Vec<Patch>,
-    /// Pairs that other contacts have already.
+    /// Number of pairs that already belong to other contacts.
     taken: usize,
 }
 
 impl Search<'_> {
-    /// Up to which distance facets of a size touch (m).
+    /// The distance up to which facets of a size touch (m).
     fn tolerance(&self, size: f64) -> f64 {
         self.between.within.unwrap_or(STANDING_OFF * size)
     }
 }
 
-/// The contacts of a scene in its order, those that are found in the place of the table that wants them; their sides
-/// are added to the groups of the mesh.
+/// The contacts of a scene in its order, with those found in place of their declaration; their sides are added to the
+/// groups of the mesh.
 ///
 /// # Errors
-/// A table for which nothing is found.
+/// A declaration for which nothing is found.
 pub(super) fn contacts(
     scene: &Scene,
     bodies: &mut Bodies,
@@ -112,7 +113,7 @@ pub(super) fn contacts(
     Ok(contacts)
 }
 
-/// The pairs of facets that face each other within every search, but for those that an `explicit` contact has.
+/// The pairs of facets that face each other within every search, without those that belong to an `explicit` contact.
 fn facing_sides(
     searches: &mut [Search],
     skin: &Skin,
@@ -193,8 +194,8 @@ fn search(
     Ok(())
 }
 
-/// Takes those of the facets that are `near` to the ones that are `touching` beside which they are, as long as they are no
-/// farther apart than these anywhere: a clearance is the same between smaller facets.
+/// Moves pairs from `near` to the adjacent `touching` ones, as long as no gap exceeds the gaps of these: a clearance
+/// continues between smaller facets.
 fn go_on(neighbours: &[Vec<usize>], touching: &mut Vec<Facing>, near: &mut Vec<Facing>) {
     let most = touching
         .iter()
@@ -217,7 +218,7 @@ fn go_on(neighbours: &[Vec<usize>], touching: &mut Vec<Facing>, near: &mut Vec<F
     touching.sort_by_key(|pair| pair.facets);
 }
 
-/// The warning of a gap that opens slowly beside facets that touch: it may close.
+/// The warning of a gap that opens slowly beside touching facets: loads may close it.
 fn parting(
     skin: &Skin,
     neighbours: &[Vec<usize>],
@@ -245,14 +246,14 @@ fn parting(
     ))
 }
 
-/// Records the contacts that were found.
+/// Names and records the contacts found.
 struct Sides<'a> {
     scene: &'a Scene,
     skin: &'a Skin<'a>,
 }
 
 impl Sides<'_> {
-    /// The contacts of every search; their sides are added to `groups`, each by its name.
+    /// The contacts of every search; their sides are added to `groups`, each with its name.
     fn written(
         &self,
         searches: &[Search],
@@ -312,7 +313,7 @@ impl Sides<'_> {
         Ok(all)
     }
 
-    /// The names that the scene gives to contacts, ties and equations.
+    /// The names of contacts, ties and equations in the scene.
     fn taken_names(&self) -> HashSet<String> {
         let explicit = self.scene.contact.iter().filter_map(Declaration::contact);
         (explicit.map(|contact| &contact.name))
@@ -322,7 +323,7 @@ impl Sides<'_> {
             .collect()
     }
 
-    /// The two sides of a contact.
+    /// Description of the two sides of a contact.
     fn words(&self, patch: &Patch, bodies: [&str; 2], name: &str) -> String {
         let unit = self.scene.units.length();
         let square = if self.skin.mesh.dim == 3 { "²" } else { "" };
@@ -353,7 +354,7 @@ impl Sides<'_> {
     }
 }
 
-/// Two bodies in a name.
+/// The two bodies, joined to a name.
 fn between([first, second]: [&str; 2]) -> String {
     match first == second {
         true => first.to_owned(),
@@ -361,7 +362,7 @@ fn between([first, second]: [&str; 2]) -> String {
     }
 }
 
-/// A name that isn't taken yet, and is now.
+/// A name that isn't taken yet; it is added to `taken`.
 fn unique(name: String, taken: &mut HashSet<String>) -> String {
     let mut free = name.clone();
     let mut number = 2;

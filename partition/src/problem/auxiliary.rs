@@ -1,8 +1,8 @@
-//! Auxiliary nodes of contact points, which no cell has and no file lists.
+//! Auxiliary nodes of contact points, which belong to no cell and aren't stored in files.
 //!
-//! A moving obstacle of a point is a node that is held where it goes by load steps. A compliant point has a node on a
-//! spring: with its displacement s it is a rigid one, n·(⟦u⟧ − s) ≤ g, and its force is that of the spring, λ = k n·s. They
-//! follow the other nodes of the subdomain of the point's first entry.
+//! The moving obstacle of a point is a node with prescribed displacements in load steps. A compliant point has a node
+//! on a spring: with its displacement s the constraint becomes rigid, n·(⟦u⟧ − s) ≤ g, and its force is that of the
+//! spring, λ = k n·s. These nodes follow the other nodes of the subdomain of the point's first entry.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::contact_point::ContactPoint;
 use crate::element::geometry::dot;
 use crate::model::{SpringBlock, Support};
 
-/// The condition of supports and springs that no scene has given, and no report names.
+/// Marks supports and springs without a boundary condition in the scene, which no report lists.
 const NO_CONDITION: u32 = u32::MAX;
 
-/// The largest name of an auxiliary node: below those that files give, and below −1, which is none.
+/// The largest tag of an auxiliary node: below the tags in files, and below −1, which stands for no node.
 const FIRST_TAG: i64 = -2;
 
 /// Coordinate axes.
@@ -23,17 +23,17 @@ const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// An auxiliary node of a contact point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Auxiliary {
-    /// The moving obstacle that it faces.
+    /// The moving obstacle opposite the point.
     Moving,
-    /// The end of its spring, last among its entries.
+    /// The end of its spring, the last of its entries.
     Sprung,
 }
 
-/// The auxiliary nodes of each subdomain, each with the place of its contact point in the catalog.
+/// The auxiliary nodes of each subdomain, each with the index of its contact point in the catalog.
 pub(super) type AuxiliaryNodes = BTreeMap<u32, Vec<(usize, Auxiliary)>>;
 
 impl Auxiliary {
-    /// The auxiliary nodes that a point has.
+    /// The auxiliary nodes of a point.
     fn of<N: Copy>(point: &ContactPoint<N>) -> impl Iterator<Item = Self> + use<N> {
         let all = [
             (!point.motion.is_empty(), Self::Moving),
@@ -43,7 +43,7 @@ impl Auxiliary {
             .filter_map(|(is_there, node)| is_there.then_some(node))
     }
 
-    /// The directions in which it is held, in space of `dim` dimensions.
+    /// The directions in which it is held, in `dim` dimensions.
     fn held<N: Copy>(self, point: &ContactPoint<N>, dim: usize) -> Vec<[f64; 3]> {
         match self {
             Self::Moving => AXES[..dim].to_vec(),
@@ -62,7 +62,7 @@ impl Auxiliary {
 }
 
 impl Catalog {
-    /// Gives the contact points entries of their auxiliary nodes.
+    /// Adds the auxiliary nodes to the entries of the contact points.
     pub(super) fn add_auxiliary_nodes(&mut self) -> AuxiliaryNodes {
         let mut all = AuxiliaryNodes::new();
         let points = self.points.iter_mut().zip(&mut self.point_nodes);
@@ -91,7 +91,7 @@ impl Catalog {
 }
 
 impl Subdomain {
-    /// Appends these auxiliary `nodes` of the points of a catalog, with their springs and what holds them.
+    /// Appends these auxiliary `nodes` of the points of a catalog, with their springs and supports.
     pub(super) fn add_auxiliary_nodes(&mut self, nodes: &[(usize, Auxiliary)], catalog: &Catalog) {
         for &(j, of_point) in nodes {
             let point = &catalog.points[j];

@@ -1,4 +1,4 @@
-//! Checks that what a contact point says twice is the same, and fits the mesh.
+//! Checks that redundant data of a contact point agree with each other and with the mesh.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +11,15 @@ use crate::problem::SubdomainNode;
 /// Largest error of the sum of weights, relative to the largest of them.
 const WEIGHT: f64 = 1e-8;
 
-/// Largest distance of positions from the node that they belong to, relative to the extent of its subdomains.
+/// Largest distance of a position from its node, relative to the extent of its subdomains.
 const PLACE: f64 = 1e-8;
 
-/// Largest area relative to the extent of its subdomains: no curved side around a node is longer.
+/// Largest tributary area, relative to the extent of its subdomains: no curved side around a node is longer.
 const LARGEST_AREA: f64 = 10.0;
 
 type Point = ContactPoint<SubdomainNode>;
 
-/// A node as its subdomain describes it.
+/// A node with the data of its subdomain.
 #[derive(Clone, Copy, Debug)]
 pub struct NodePlace {
     /// The mesh file's tag.
@@ -28,16 +28,16 @@ pub struct NodePlace {
     pub body: usize,
     /// Coordinates (m).
     pub at: [f64; 3],
-    /// True if it is an [auxiliary](super::auxiliary) one, on neither side.
+    /// True for an [auxiliary](super::auxiliary) node, which belongs to neither side.
     pub is_auxiliary: bool,
 }
 
-/// The nodes that contact points name.
+/// The nodes of contact points.
 #[derive(Debug)]
 pub struct Places {
     /// The nodes by subdomain and number.
     pub nodes: BTreeMap<SubdomainNode, NodePlace>,
-    /// The largest extent of the subdomains that they lie in (m).
+    /// The largest extent of their subdomains (m).
     pub extent: f64,
     /// Dimension of space.
     pub dim: usize,
@@ -46,10 +46,10 @@ pub struct Places {
 }
 
 impl Places {
-    /// Checks one point, which stands in row `at` of the datasets.
+    /// Checks one point, which is row `at` of the datasets.
     ///
     /// # Errors
-    /// The dataset that says something else than the mesh does.
+    /// The dataset that contradicts the mesh.
     pub fn check(&self, point: &Point, at: usize) -> Result<(), InputError> {
         self.fault(point).map_or(Ok(()), |(dataset, what)| {
             Err(InputError::new(format!(
@@ -58,7 +58,7 @@ impl Places {
         })
     }
 
-    /// The fault of a point, and its dataset.
+    /// The error in a point, and its dataset.
     fn fault(&self, point: &Point) -> Option<(&'static str, String)> {
         if point.is_equation() {
             return self.fault_of_equation(point);
@@ -79,7 +79,7 @@ impl Places {
         let weights = point.entries.iter().map(|&(_, weight)| weight);
         let scale = weights.clone().fold(0.0, |m: f64, w| m.max(w.abs()));
         let sum: f64 = weights.sum();
-        // On some quadratic facets the ends of a node's edge count, too.
+        // On some quadratic facets the ends of a node's edge are included, too.
         let may_blend = matches!(self.plane, None | Some(PlaneState::Axisymmetric));
         let is_blended = may_blend && point.tag_b == -1 && (sum - 1.0).abs() <= WEIGHT * scale;
         let (expected, why) = match point.entries.len() == 1 || is_blended {
@@ -93,7 +93,7 @@ impl Places {
         self.fault_of_names(point)
     }
 
-    /// The fault of an equation in the node that stands for it.
+    /// The error of an equation in the node that represents it.
     fn fault_of_equation(&self, point: &Point) -> Option<(&'static str, String)> {
         let named = point.entries.iter().any(|(node, _)| {
             let place = self.nodes.get(node);
@@ -103,7 +103,7 @@ impl Places {
         (!named && point.tag() != -1).then(|| ("node_a", format!("{}; {what}", point.tag_a)))
     }
 
-    /// The fault of a point in the nodes that it names.
+    /// The error of a point in its tags.
     fn fault_of_names(&self, point: &Point) -> Option<(&'static str, String)> {
         for (dataset, tag, sign, side) in [
             ("node_a", point.tag_a, 1.0, "positive"),
@@ -146,11 +146,11 @@ impl Places {
         None
     }
 
-    /// True if the force of a point acts where its weights of side a, among them that of node `own`, say.
+    /// True if the point of application of a force agrees with the weights of side a, which has the node `own`.
     fn acts_there(&self, point: &Point, own: SubdomainNode) -> bool {
         let body = |node: SubdomainNode| self.nodes.get(&node).map(|place| place.body);
         let is_pair = point.entries.len() == 1 || (point.tag_a != -1 && point.tag_b != -1);
-        // Where both sides belong to one body the nodes don't tell on which they are.
+        // If both sides belong to one body, the nodes don't determine their side.
         if !is_pair && (point.entries.iter()).all(|&(node, _)| body(node) == body(own)) {
             return true;
         }

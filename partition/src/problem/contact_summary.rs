@@ -7,20 +7,20 @@ use crate::contact_point::ContactPoint;
 pub struct ContactSummary {
     /// Name.
     pub name: String,
-    /// Number of its conditions.
+    /// Number of its constraints.
     pub conditions: usize,
     /// True if one of its points has friction.
     pub has_friction: bool,
-    /// The kind of its conditions.
+    /// The kind of its constraints.
     pub kind: ContactKind,
     /// True if one of its points is compliant.
     pub is_compliant: bool,
 }
 
-/// Kind of the conditions of a contact.
+/// Kind of the constraints of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactKind {
-    /// Sides that press on each other and part.
+    /// Sides that press on each other and open.
     #[default]
     Unilateral,
     /// Sides that are tied to each other.
@@ -31,9 +31,9 @@ pub enum ContactKind {
     Spring,
     /// Nodes that follow a reference point.
     Coupling,
-    /// The sides of a cut through a bolt, which it pulls together.
+    /// The sides of a cut through a bolt, which the bolt pulls together.
     Pretension,
-    /// The shortening at that cut, where it is held.
+    /// The prescribed or locked shortening at that cut.
     Held,
 }
 

@@ -1,4 +1,4 @@
-//! Agreement of subdomains: on the nodes that several have, and on tags that tell nodes apart.
+//! Consistency of subdomains: of shared nodes, and of tags, which are unique.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Subdomain;
 
-/// A node on Γ as one of its subdomains has it.
+/// A node on Γ with the data of one of its subdomains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SharedNode {
     /// Number on Γ.
@@ -20,20 +20,20 @@ pub struct SharedNode {
     pub supports: Vec<([f64; 3], Vec<f64>)>,
 }
 
-/// The nodes of a subdomain, as far as others are concerned.
+/// The data of a subdomain's nodes that other subdomains have to agree with.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OwnNodes {
-    /// Tags of those that aren't on Γ.
+    /// Tags of nodes that aren't on Γ.
     pub inner: Vec<i64>,
-    /// Tags of those on Γ, with their numbers there.
+    /// Tags of nodes on Γ, with their numbers there.
     pub on_interface: Vec<(i64, u32)>,
     /// The nodes on Γ.
     pub shared: Vec<SharedNode>,
 }
 
 impl OwnNodes {
-    /// Splits it into `count` parts that can be checked by themselves: what may be wrong with a node of Γ belongs to the
-    /// part of its number, what may be wrong with a tag to that of the tag.
+    /// Splits it into `count` parts that can be checked independently: a node of Γ belongs to the part of its number, a
+    /// tag to the part of the tag.
     pub fn parts(self, count: usize) -> Vec<Self> {
         if count == 1 {
             return vec![self];
@@ -54,7 +54,7 @@ impl OwnNodes {
 }
 
 impl Subdomain {
-    /// Nodes, as far as others are concerned.
+    /// The data of the nodes that other subdomains have to agree with.
     pub fn own_nodes(&self) -> OwnNodes {
         let mut is_shared = vec![false; self.points.len()];
         let shared = self.interface.iter().map(|on| {
@@ -80,32 +80,32 @@ impl Subdomain {
     }
 }
 
-/// Entry on which subdomains disagree; the first one is the least.
+/// An inconsistency between subdomains; they are ordered, and the smallest is reported.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Disagreement {
     /// Copies before tags, by subdomain and number on Γ, or by tag.
     order: (bool, i64, u32),
-    /// The message that says where copies disagree.
+    /// The message that names the entries.
     pub message: String,
 }
 
-/// The nodes of all subdomains, or [parts](OwnNodes::parts) of these, compared.
+/// Comparison of the nodes of all subdomains, or of [parts](OwnNodes::parts) of these.
 #[derive(Clone, Debug, Default)]
 pub struct NodeCopies {
-    /// The first subdomain that has each node of Γ, and what it says of it.
+    /// The first subdomain of each node of Γ, with its data.
     first: HashMap<u32, (usize, SharedNode)>,
     /// Tags of nodes that aren't on Γ, subdomain by subdomain.
     inner: Vec<i64>,
-    /// Every subdomain and where its inner tags end.
+    /// Every subdomain and the end of its inner tags.
     ends: Vec<(usize, usize)>,
-    /// Tags of nodes on Γ, with their numbers there, and the subdomain.
+    /// Tags of nodes on Γ, with their numbers there and the subdomain.
     on_interface: Vec<(i64, u32, usize)>,
-    /// The first disagreement of copies.
+    /// The first inconsistency.
     fault: Option<Disagreement>,
 }
 
 impl NodeCopies {
-    /// Takes in the nodes of subdomain `index`, which ascends.
+    /// Adds the nodes of subdomain `index`; indices ascend.
     pub fn add(&mut self, index: usize, nodes: OwnNodes) {
         self.inner.extend(nodes.inner);
         self.ends.push((index, self.inner.len()));
@@ -133,8 +133,8 @@ impl NodeCopies {
         }
     }
 
-    /// Checks that all copies of a node on Γ have the same place, tag and supports, and that no other nodes have the
-    /// same tag: the first node for which that isn't so.
+    /// Checks that all copies of a node on Γ have the same position, tag and supports, and that no other nodes have the
+    /// same tag; returns the first inconsistency.
     pub fn check(mut self) -> Option<Disagreement> {
         // A node of Γ counts once, for its first subdomain.
         self.on_interface.sort_unstable();
@@ -167,14 +167,14 @@ impl NodeCopies {
     }
 }
 
-/// A number that stands in a list twice.
+/// A number that occurs twice in a list.
 fn repeated(mut list: Vec<i64>) -> Option<i64> {
     list.sort_unstable();
     let twice = list.windows(2).find(|two| two[0] == two[1]);
     twice.map(|two| two[0])
 }
 
-/// Difference between two copies of a node.
+/// Description of a difference between two copies of a node.
 fn difference(a: &SharedNode, b: &SharedNode) -> Option<&'static str> {
     if a.point != b.point {
         Some("coordinates (/VTKHDF/Points)")
@@ -208,7 +208,7 @@ mod tests {
         }
     }
 
-    /// The number of parts of the comparison.
+    /// The message of a comparison in this number of parts.
     fn found(subdomains: &[OwnNodes], parts: usize) -> Option<String> {
         let mut copies = vec![NodeCopies::default(); parts];
         for (s, nodes) in subdomains.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The datasets of a problem file in the making, in the shapes of the schema.
+//! The datasets of a problem file being written, with the shapes of the schema.
 
 use hdf5::H5Type;
 use hdf5::types::TypeDescriptor;
@@ -7,14 +7,14 @@ use super::SubdomainNode;
 use super::schema::{Counts, FIELDS};
 use super::strings::{type_of, write_strings};
 
-/// The datasets of a file in the making.
+/// The datasets of a file being written.
 pub(super) struct Datasets<'a> {
     pub(super) file: &'a hdf5::File,
     pub(super) counts: Counts,
 }
 
 impl Datasets<'_> {
-    /// Writes values row by row, in the shape that the schema says.
+    /// Writes values row by row, with the shape of the schema.
     pub(super) fn put<T: H5Type>(
         &mut self,
         path: &str,
@@ -28,7 +28,7 @@ impl Datasets<'_> {
         }
     }
 
-    /// Makes a dataset for so many values of a type, in the shape that the schema says.
+    /// Creates a dataset for a number of values of a type, with the shape of the schema.
     fn create(
         &mut self,
         path: &str,
@@ -46,7 +46,7 @@ impl Datasets<'_> {
         new.shape(shape).create(path)
     }
 
-    /// Writes which of `count` things are there, row by row; nothing if none is ever `absent`.
+    /// Writes for each of `count` items whether it is present, row by row; nothing if none is ever `absent`.
     pub(super) fn presence<'v>(
         &mut self,
         path: &str,
@@ -62,7 +62,7 @@ impl Datasets<'_> {
         self.put(path, absent.flat_map(of_row))
     }
 
-    /// Writes vectors, of which as many components are kept as the shape has.
+    /// Writes vectors with as many components as the shape has.
     pub(super) fn vectors<'v>(
         &mut self,
         path: &str,
@@ -122,8 +122,7 @@ impl Datasets<'_> {
     }
 }
 
-/// A group at a path, made with all above it that aren't there: without the time, so that the same problem is the same
-/// file whenever it is written.
+/// Opens or creates a group and its parents: without time stamps, so that equal problems give equal files.
 pub(super) fn group(file: &hdf5::File, path: &str) -> hdf5::Result<hdf5::Group> {
     let mut group = file.group("/")?;
     for name in path.split('/').filter(|name| !name.is_empty()) {
@@ -138,7 +137,7 @@ pub(super) fn group(file: &hdf5::File, path: &str) -> hdf5::Result<hdf5::Group> 
     Ok(group)
 }
 
-/// HDF5's strings end at the first NUL.
+/// The text up to its first NUL, at which HDF5's strings end.
 pub(super) fn without_nul(text: &str) -> String {
     text.replace('\0', "\u{fffd}")
 }

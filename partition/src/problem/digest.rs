@@ -1,8 +1,8 @@
-//! The digest of a problem file: a trailer behind the HDF5 file, by which a damaged file is known before the HDF5
-//! library, which may crash on one, sees it.
+//! The digest of a problem file: a trailer after the HDF5 data, by which a damaged file is detected before the HDF5
+//! library, which may crash on it, opens it.
 //!
-//! HDF5 doesn't look behind its end of file, and cuts off what is there whenever it opens the file to write to it. So
-//! the digest is there until the first edit of the file.
+//! HDF5 ignores data after its end of file, and truncates them whenever it opens the file for writing. So the digest is
+//! lost with the first edit of the file.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -13,10 +13,11 @@ use twox_hash::XxHash3_128;
 use crate::error::InputError;
 use crate::source;
 
-/// The last bytes of a file that has a digest.
+/// The last bytes of a file with a digest.
 const MARK: &[u8; 16] = b"contact-dd XXH3\n";
 
-/// Size of the trailer (bytes): the digest, the length of what it is of, both with low bytes first, and the mark.
+/// Size of the trailer (bytes): the digest, the length of the data before it, both in little-endian order, and the
+/// mark.
 const TRAILER: usize = 16 + 8 + MARK.len();
 
 /// Size of a read (bytes).
@@ -25,17 +26,17 @@ const PIECE: usize = 1 << 18;
 /// State of a file's digest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Digest {
-    /// The digest of the file's bytes.
+    /// The digest agrees with the file.
     Right,
     /// No digest: another program wrote or edited the file.
     Absent,
 }
 
 impl Digest {
-    /// Reads all of a file and compares it with its digest, if it has one.
+    /// Reads all of a file and compares it with its digest, if any.
     ///
     /// # Errors
-    /// It can't be read, or has the digest of other bytes.
+    /// A file that can't be read, or whose digest differs.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let mut file = source::open(path, "a problem file")?;
         let unreadable = |reason| InputError::new(format!("can't be read: {reason}"));
@@ -52,10 +53,10 @@ impl Digest {
     }
 }
 
-/// Adds the digest of a whole HDF5 file to it.
+/// Appends the digest to a complete HDF5 file.
 ///
 /// # Errors
-/// The reason that the system gave.
+/// The reason given by the system.
 pub fn append(path: &Path) -> io::Result<()> {
     let mut file = File::options().read(true).append(true).open(path)?;
     let length = file.metadata()?.len();
@@ -74,7 +75,7 @@ fn trailer(file: &mut File) -> io::Result<Option<(u128, u64)>> {
     for part in [&mut digest[..], &mut stated, &mut mark] {
         file.read_exact(part)?;
     }
-    // Of another length, it is the end of something else that was appended.
+    // With another length, something was appended to a file with its trailer.
     let is_there = mark == *MARK && u64::from_le_bytes(stated) == length;
     Ok(is_there.then_some((u128::from_le_bytes(digest), length)))
 }

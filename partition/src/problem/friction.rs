@@ -1,4 +1,4 @@
-//! Friction and stiffness of a contact in words.
+//! Friction and stiffness of a contact in plain words.
 
 use super::Catalog;
 use super::law::LawRow;
@@ -6,13 +6,14 @@ use crate::contact_point::ContactPoint;
 use crate::magnitude::short;
 
 impl Catalog {
-    /// Number of contact conditions with friction.
+    /// Number of contact constraints with friction.
     pub fn conditions_with_friction(&self) -> usize {
         let points = self.points.iter();
         points.filter(|point| point.law.has_friction()).count()
     }
 
-    /// Friction of a contact in words, and on how many of its conditions where not on all; `None` without.
+    /// Friction of a contact in plain words, with the number of its constraints unless all have it; `None` without
+    /// friction.
     pub fn friction(&self, contact: usize) -> Option<String> {
         let points = self.points.iter();
         let laws: Vec<LawRow> = points
@@ -41,7 +42,7 @@ impl Catalog {
         (!words.is_empty()).then(|| words.join(", "))
     }
 
-    /// The stiffness of a contact in words, per area, or of a spring; `None` of a rigid one.
+    /// The stiffness of a contact in plain words, per area, or that of a spring; `None` for a rigid contact.
     pub fn contact_stiffness(&self, contact: usize) -> Option<String> {
         let points = self.points.iter();
         let of = points.filter(|point| point.contact as usize == contact && point.is_compliant());
@@ -52,7 +53,7 @@ impl Catalog {
         let unit = format!("{per}/{}", self.units.length());
         let along = |direction: usize| {
             let per_area = of.clone().map(move |p| p.stiffness[direction] / p.area);
-            // An area and the same one divided by leave round-off.
+            // Multiplying by an area and dividing by it leaves round-off.
             range(per_area.filter(|&k| k > 0.0))
         };
         let normal = along(0)?;
@@ -61,7 +62,7 @@ impl Catalog {
     }
 }
 
-/// The least and the largest of some numbers; one number where they are the same, `None` of none.
+/// The range of some numbers; a single number if all are equal, `None` if there are none.
 pub(crate) fn range(values: impl Iterator<Item = f64> + Clone) -> Option<String> {
     let least = values.clone().reduce(f64::min).map(short)?;
     let most = values.reduce(f64::max).map(short)?;

@@ -2,9 +2,9 @@
 
 use crate::contact_point::Law;
 
-/// A row of the three.
+/// A row of these datasets.
 pub(super) struct LawRow {
-    /// 0 without friction, 1 Tresca friction, 2 Coulomb's, 3 a tie.
+    /// 0 without friction, 1 Tresca friction, 2 Coulomb friction, 3 a tie.
     pub law: i64,
     /// Coefficient of friction.
     pub friction: f64,
@@ -32,10 +32,10 @@ impl From<Law> for LawRow {
 }
 
 impl LawRow {
-    /// The law of a row whose values are each as the schema says.
+    /// The law of a row whose single values are valid.
     ///
     /// # Errors
-    /// A value that its law doesn't have: the dataset, and the expectation.
+    /// A value that contradicts the law: the dataset, and the expectation.
     pub fn law(&self) -> Result<Law, (&'static str, String)> {
         let &Self {
             law,

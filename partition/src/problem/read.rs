@@ -32,7 +32,7 @@ use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::foreign;
 use crate::source;
 
-/// An open problem file whose catalog was read and checked.
+/// An open problem file with a valid catalog.
 #[derive(Debug)]
 pub struct ProblemFile {
     path: PathBuf,
@@ -44,7 +44,7 @@ pub struct ProblemFile {
 /// Signature of an HDF5 file.
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
-/// The error about a scene or a mesh, with the command that makes a problem file of it.
+/// The error for a scene or a mesh, with the command that makes a problem file from it.
 fn instead_of_problem(path: &Path) -> Option<InputError> {
     let head = source::head(path);
     if head.starts_with(HDF5) {
@@ -71,19 +71,20 @@ impl ProblemFile {
     /// Opens a problem file and checks its catalog: shapes, offsets, names, materials and Γ.
     ///
     /// # Errors
-    /// The dataset that is missing or not what it should be.
+    /// The dataset that is missing or invalid.
     pub fn open(path: &Path) -> Result<Self, InputError> {
         Self::open_unnamed(path).map_err(|error| error.in_file(path))
     }
 
     fn open_unnamed(path: &Path) -> Result<Self, InputError> {
-        // The library distinguishes few of the reasons for which a file doesn't open.
+        // The library distinguishes few reasons for which a file can't be opened.
         source::open(path, "a problem file")?;
         if let Some(error) = instead_of_problem(path) {
             return Err(error);
         }
         hdf5::silence_errors(true);
-        // Locks fail on some network file systems, and no program writes under this name in place.
+        // Locks fail on some network file systems, and are unnecessary, as no program writes a file in place under this
+        // name.
         let file = hdf5::File::with_options()
             .with_fapl(|access| access.file_locking(false))
             .open(path)
@@ -108,7 +109,7 @@ impl ProblemFile {
         error.in_file(&self.path)
     }
 
-    /// The catalog of the whole problem, which every rank has.
+    /// The catalog of the whole problem, stored on every rank.
     pub fn catalog(&self) -> &Catalog {
         &self.catalog
     }
@@ -116,7 +117,7 @@ impl ProblemFile {
     /// Reads and checks the slice of one subdomain.
     ///
     /// # Errors
-    /// The dataset and the row that isn't what it should be.
+    /// The dataset and the invalid row.
     pub fn subdomain(&self, index: usize) -> Result<Subdomain, InputError> {
         let mut one = self.subdomains(index..index.saturating_add(1))?;
         one.pop().ok_or_else(|| {
@@ -127,17 +128,16 @@ impl ProblemFile {
     /// Reads and checks the slices of consecutive subdomains, each dataset in one go.
     ///
     /// # Errors
-    /// The dataset and the row that isn't what it should be.
+    /// The dataset and the invalid row.
     pub fn subdomains(&self, range: Range<usize>) -> Result<Vec<Subdomain>, InputError> {
         self.read_subdomains(range)
             .map_err(|error| error.in_file(&self.path))
     }
 
-    /// Reads everything and checks, beyond what the slices show, that subdomains agree on their
-    /// nodes.
+    /// Reads everything and, beyond the single slices, checks that subdomains agree on their nodes.
     ///
     /// # Errors
-    /// The dataset and the row that isn't what it should be.
+    /// The dataset and the invalid row.
     pub fn problem(&self) -> Result<Problem, InputError> {
         let subdomains = self.subdomains(0..self.catalog.subdomains.len())?;
         let mut copies = NodeCopies::default();

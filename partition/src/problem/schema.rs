@@ -1,6 +1,5 @@
-//! The schema of the problem file: every group, dataset and attribute, its shape, what it holds and
-//! what it means. The writer, the reader, the check of unknown names and the tables of
-//! docs/problem-file.md are made from it.
+//! The schema of the problem file: every group, dataset and attribute, with its shape, type and meaning. The writer,
+//! the reader, the check of unknown names and the tables of docs/problem-file.md follow from it.
 
 mod counts;
 mod kind;
@@ -15,7 +14,7 @@ pub use self::kind::Kind;
 pub use self::letters::LETTERS;
 use crate::model::Formulation;
 
-/// The datasets that say which materials have another formulation than the full one.
+/// The datasets that mark materials with another formulation than full integration.
 pub(super) const FORMULATIONS: [(Formulation, &str); 2] = [
     (
         Formulation::IncompatibleModes,
@@ -29,11 +28,11 @@ pub(super) const FORMULATIONS: [(Formulation, &str); 2] = [
 pub struct Field {
     /// Path in the file.
     pub path: &'static str,
-    /// Extents, by letter: "R, d". With a question mark one is there if it isn't 0.
+    /// Extents, by letter: "R, d". One with a question mark is left out if it is 0.
     pub shape: &'static str,
     /// The kind of its values.
     pub kind: Kind,
-    /// True if it may be absent from a group that isn't empty.
+    /// True if it may be missing from a nonempty group.
     pub optional: bool,
     /// The meaning of its values.
     pub meaning: &'static str,
@@ -42,7 +41,7 @@ pub struct Field {
 /// An attribute.
 #[derive(Debug)]
 pub struct Attribute {
-    /// The group that has it.
+    /// Its group.
     pub group: &'static str,
     /// Name.
     pub name: &'static str,
@@ -50,14 +49,14 @@ pub struct Attribute {
     pub value: &'static str,
 }
 
-/// Optional datasets of which a file has all or none.
+/// Sets of optional datasets of which a file has either all or none.
 pub const TOGETHER: [&[&str]; 3] = [
     &["/support/condition", "/support/name"],
     &["/initial_stress/cell", "/initial_stress/node"],
     &["/contact/law", "/contact/friction", "/contact/shear_bound"],
 ];
 
-/// Groups that may be empty where there is nothing to say. All but `/support` may be absent, too.
+/// Groups that may be empty. All except `/support` may also be missing.
 pub const MAY_BE_EMPTY: [&str; 12] = [
     "/interface",
     "/support",
@@ -99,7 +98,7 @@ pub const ATTRIBUTES: &[Attribute] = &[
         "true: stresses are left out. A truth value as h5py writes it, or 1 or 0"),
 ];
 
-/// All datasets, those first whose shapes say what a letter counts.
+/// All datasets, starting with those whose shapes define the count of a letter.
 #[rustfmt::skip]
 pub const FIELDS: &[Field] = &[
     field("/steps/name", "L", Names, "at least one"),
@@ -333,7 +332,7 @@ const fn optional(
 }
 
 impl Field {
-    /// The group that holds it.
+    /// Its group.
     pub fn group(&self) -> &'static str {
         match self.path.rsplit_once('/') {
             Some((group, _)) if !group.is_empty() => group,
@@ -342,7 +341,7 @@ impl Field {
     }
 }
 
-/// All groups, each before those in it.
+/// All groups, parents first.
 pub fn groups() -> Vec<&'static str> {
     let mut groups = vec!["/", "/settings"];
     let parents = FIELDS.iter().map(Field::group).chain(FREE);
@@ -355,7 +354,7 @@ pub fn groups() -> Vec<&'static str> {
     groups
 }
 
-/// The names of what a group may hold.
+/// The names allowed in a group.
 pub fn names_in(group: &str) -> Vec<&'static str> {
     let mut names = Vec::new();
     let paths = FIELDS.iter().map(|field| field.path).chain(groups());

@@ -1,4 +1,4 @@
-//! Stages: consecutive load steps in which the same bodies and contacts are there.
+//! Stages: consecutive load steps with the same active bodies and contacts.
 
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -8,14 +8,14 @@ use super::{Absent, Catalog, SubdomainNode};
 use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::dot;
 
-/// The part of a problem that is there in consecutive load steps.
+/// The part of a problem that is active in consecutive load steps.
 #[derive(Debug)]
 pub struct Stage<'a> {
-    /// The load steps; one where the problem has none.
+    /// The load steps; a single one for a problem without load steps.
     pub steps: Range<usize>,
-    /// The problem without the contact points that aren't there. Bodies that aren't there stay, and nothing acts on them.
+    /// The problem without inactive contact points. Absent bodies stay in it, without loads.
     pub catalog: Cow<'a, Catalog>,
-    /// The contact points that are there, by their places in the catalog of the whole problem.
+    /// The active contact points, by their indices in the catalog of the whole problem.
     pub points: Vec<usize>,
 }
 
@@ -41,7 +41,7 @@ impl Catalog {
             .any(|step| step.absent != Default::default())
     }
 
-    /// The names of the bodies and contacts that aren't there in load step k; contacts of absent bodies needn't be among them.
+    /// The names of the absent bodies and contacts in load step k; contacts of absent bodies needn't be listed.
     pub fn absent_in(&self, k: usize) -> Vec<String> {
         let Some(Absent { bodies, contacts }) = self.steps.get(k).map(|step| &step.absent) else {
             return Vec::new();
@@ -51,12 +51,12 @@ impl Catalog {
         bodies.chain(contacts).cloned().collect()
     }
 
-    /// True if a contact point is there in load step k.
+    /// True if a contact point is active in load step k.
     pub fn is_there(&self, point: &ContactPoint<SubdomainNode>, k: usize) -> bool {
         self.are_there(point.contact, &point.entries, k)
     }
 
-    /// True if a contact and bodies with these nodes are there in load step k.
+    /// True if a contact and bodies with these nodes are active in load step k.
     fn are_there(&self, contact: u32, entries: &[(SubdomainNode, f64)], k: usize) -> bool {
         let Some(absent) = self.steps.get(k).map(|step| &step.absent) else {
             return true;
@@ -68,8 +68,8 @@ impl Catalog {
             && bodies.all(|body| !absent.bodies.contains(&(body as u32)))
     }
 
-    /// The problem of the load steps of a stage. Jumps count from those that points had when they came, `since` by their
-    /// places in this catalog (m); from none where it is empty.
+    /// The problem of the load steps of a stage. Jumps are relative to those at the activation of points, `since` by
+    /// their indices in this catalog (m); to zero if it is empty.
     pub fn stage(&self, steps: Range<usize>, since: &[[f64; 3]]) -> Stage<'_> {
         let k = steps.start;
         let all = 0..self.points.len();
@@ -98,7 +98,7 @@ impl Catalog {
                 point.gap += dot(point.since, point.normal());
             }
         }
-        // What came later has its gap from the position in which it came, which probes don't know.
+        // A contact activated later has its gap relative to the position at its activation, which probes don't know.
         let came = points
             .iter()
             .filter(|&&j| since.get(j).is_some_and(|since| *since != [0.0; 3]));
@@ -113,7 +113,7 @@ impl Catalog {
         }
     }
 
-    /// Leaves out all contact points but these, whose places ascend.
+    /// Removes all contact points except these, whose indices ascend.
     fn keep_points(&mut self, points: &[usize]) {
         self.points = points.iter().map(|&j| self.points[j].clone()).collect();
         self.point_nodes = (points.iter())
@@ -129,7 +129,7 @@ impl Catalog {
 }
 
 impl Stage<'_> {
-    /// The stage with these of its contact points alone, whose places in the catalog of the whole problem ascend.
+    /// The stage with only these of its contact points, whose indices in the catalog of the whole problem ascend.
     #[must_use]
     pub fn with_points(&self, points: &[usize]) -> Self {
         let kept: Vec<usize> = (self.points.iter().enumerate())

@@ -1,4 +1,4 @@
-//! Strings of a file, of variable or fixed length.
+//! Strings in a file, of variable or fixed length.
 
 use std::fmt::Display;
 use std::str::FromStr;
@@ -9,10 +9,10 @@ use hdf5::types::{FixedAscii, FixedUnicode, TypeDescriptor, VarLenAscii, VarLenU
 /// Longest fixed-length string that is read or written (bytes).
 const LONGEST_FIXED: usize = 1024;
 
-/// The type in which texts are written: that of a fixed length where they aren't too long for one, as HDF5 keeps others
+/// The type of written texts: one of fixed length unless they are too long, as HDF5 stores strings of variable length
 /// in a heap without checksums.
 pub(super) fn type_of(texts: &[String]) -> TypeDescriptor {
-    // Nothing has no length 0 in HDF5.
+    // HDF5 has no strings of length 0.
     match texts.iter().map(String::len).max().unwrap_or(0).max(1) {
         length if length <= LONGEST_FIXED => TypeDescriptor::FixedUnicode(length),
         _ => TypeDescriptor::VarLenUnicode,

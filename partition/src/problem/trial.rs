@@ -1,7 +1,7 @@
-//! The trial of a problem file: whether it can be read at all.
+//! The trial of a problem file: a check that it can be read.
 //!
-//! On a damaged file the HDF5 library may crash or never come to an end. A file that has a [digest](super::digest) isn't
-//! damaged. Any other is read first by a process of its own, which is this program, started anew.
+//! On a damaged file the HDF5 library may crash or hang. A file with a valid [digest](super::digest) isn't damaged. Any
+//! other is first read by a separate process, which runs this program again.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -20,34 +20,34 @@ use super::digest::Digest;
 use super::read::ProblemFile;
 use crate::error::InputError;
 
-/// Names the file to a process that tries it.
+/// Environment variable with the file's name for the process that tries it.
 const FILE: &str = "CONTACT_DD_TRIAL";
 
-/// Number of subdomains that are read at once.
+/// Number of subdomains read at once.
 const AT_ONCE: usize = 64;
 
-/// The computing time within which each step of reading a small file ends (seconds).
+/// Limit of the CPU time of each step of reading a small file (seconds).
 const PATIENCE: u64 = 1;
 
-/// Rate of reading in a debug build, at least (bytes in a second).
+/// Least rate of reading, in a debug build (bytes per second).
 const SLOWEST: u64 = 20 << 20;
 
-/// The memory that reading a small file takes, and far more (bytes).
+/// Memory limit for a small file, far above its need (bytes).
 const MEMORY: u64 = 4 << 30;
 
-/// The memory that reading a large file takes, over its size, and more.
+/// Memory limit for a large file, relative to its size, above its need.
 const MEMORY_OF_SIZE: u64 = 8;
 
-/// Time between two looks at the other process.
+/// Interval of polling the other process.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Checks that the HDF5 library can read a problem file: by its digest, or by trying. Ends early, without a finding,
-/// once the program `is_asked_to_stop`.
+/// Checks that the HDF5 library can read a problem file: by its digest, or by trial. Ends early, without a result, once
+/// the program `is_asked_to_stop`.
 ///
-/// [`answer`] has to be the first that the program calls.
+/// [`answer`] has to be called first by the program.
 ///
 /// # Errors
-/// The file isn't there or is damaged.
+/// A missing or damaged file.
 pub fn check(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputError> {
     let checked = match Digest::of(path) {
         Ok(Digest::Right) => Ok(()),
@@ -57,8 +57,8 @@ pub fn check(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputErr
     checked.map_err(|error| error.in_file(path))
 }
 
-/// Reads the file that this process was started to try, if it was; what is wrong with it in words is told by the one
-/// that comes after.
+/// Reads the file if this process was started to try it; errors in its content are left to the process that reads it
+/// afterwards.
 pub fn answer() -> Option<ExitCode> {
     let path = env::var_os(FILE)?;
     let read = || -> Result<(), InputError> {
@@ -83,7 +83,7 @@ fn attempt(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputError
             "is damaged: the HDF5 library {how}. Expected a whole file; make it again"
         ))
     };
-    // Where no process can be started the file is read untried.
+    // If no process can be started, the file is read without a trial.
     let Ok(child) = start(path.as_os_str()) else {
         return Ok(());
     };
@@ -107,7 +107,7 @@ fn start(path: &OsStr) -> io::Result<Child> {
         .spawn()
 }
 
-/// Exit status of a process; `None` if it was ended because the program `is_asked_to_stop`.
+/// Exit status of a process; `None` if it was killed because the program `is_asked_to_stop`.
 fn wait(mut child: Child, is_asked_to_stop: fn() -> bool) -> io::Result<Option<ExitStatus>> {
     loop {
         if let Some(status) = child.try_wait()? {
@@ -125,7 +125,7 @@ fn wait(mut child: Child, is_asked_to_stop: fn() -> bool) -> io::Result<Option<E
 /// The limits of a process that tries a file.
 struct Limits {
     memory: u64,
-    /// Computing time of a step (seconds).
+    /// CPU time of a step (seconds).
     patience: u64,
 }
 
@@ -138,7 +138,7 @@ impl Limits {
         }
     }
 
-    /// Limits the memory and the first step, leaves no core file, and ends with the process that waits.
+    /// Limits the memory and the first step, disables core files, and makes the process end with its parent.
     fn start(&self) {
         let _ = set_parent_process_death_signal(Some(Signal::KILL));
         limit(Resource::Core, 0);
@@ -146,14 +146,14 @@ impl Limits {
         self.extend();
     }
 
-    /// Gives another step its time.
+    /// Allows CPU time for another step.
     fn extend(&self) {
         let spent = clock_gettime(ClockId::ProcessCPUTime).tv_sec as u64;
         limit(Resource::Cpu, spent + 1 + self.patience);
     }
 }
 
-/// Sets a limit, or the one that the system imposes where that is less. What can't be limited goes without.
+/// Sets a limit, or the system's own if that is lower. Errors are ignored.
 fn limit(resource: Resource, most: u64) {
     let given = getrlimit(resource);
     let current = given.maximum.map_or(most, |maximum| maximum.min(most));

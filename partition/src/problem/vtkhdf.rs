@@ -1,4 +1,4 @@
-//! VTKHDF: the attributes by which ParaView knows a group as an unstructured grid of VTK's HDF format.
+//! VTKHDF: the attributes that mark a group as an unstructured grid of VTK's HDF format for ParaView.
 
 use hdf5::types::FixedAscii;
 
@@ -8,8 +8,8 @@ pub const GRID: &str = "UnstructuredGrid";
 /// Version of the layout.
 const VERSION: [i64; 2] = [2, 0];
 
-/// ParaView compares all of the attribute's bytes, so it has exactly as many as the word: null-padded,
-/// with no room for the terminator over which VTK's reader trips.
+/// ParaView compares all bytes of the attribute, so that its length is exactly that of the word: null-padded, without
+/// the terminator, which VTK's reader can't handle.
 type GridType = FixedAscii<{ GRID.len() }>;
 
 /// Marks a group as an unstructured grid.

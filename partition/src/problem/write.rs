@@ -20,10 +20,10 @@ use crate::error::OutputError;
 use crate::model::PlaneState;
 
 impl Problem {
-    /// Writes the problem, with its [digest], under a temporary name and renames it when it is whole.
+    /// Writes the problem, with its [digest], under a temporary name and renames the complete file.
     ///
     /// # Errors
-    /// The file can't be written; what was there before is untouched.
+    /// A file that can't be written; an existing file stays unchanged.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         hdf5::silence_errors(true);
         let destination = Destination::new(path)?;
@@ -36,8 +36,8 @@ impl Problem {
     fn write_all(&self, path: &Path) -> hdf5::Result<()> {
         let file = hdf5::File::with_options()
             .with_fapl(|access| {
-                // Of the formats whose metadata have checksums the one that most programs read, and that keeps no
-                // mark of a writer that was killed.
+                // Of the formats with checksums for metadata, this is the one that most programs read, and that keeps
+                // no mark of a writer that was killed.
                 access.libver_bounds(LibraryVersion::V18, LibraryVersion::V18);
                 access.file_locking(false)
             })
@@ -214,7 +214,7 @@ impl Problem {
         if all.iter().all(|s| s.initial_stress.cells.is_empty()) {
             return Ok(());
         }
-        // Row by row all steps of a cell or node.
+        // All steps of a cell or node, row by row.
         let rows = |rows: fn(&InitialStress) -> &[[f64; 6]]| {
             all.iter().flat_map(move |s| {
                 let of_steps = s.initial_stresses();

@@ -1,4 +1,4 @@
-//! Bodies and contacts of a load step: what `add` and `remove` say.
+//! Activation of bodies and contacts in a load step: the keys `add` and `remove`.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use super::step::LoadStep;
 use super::{Scene, suggest};
 
 impl LoadStep {
-    /// Names that come in this step, then names that go, with the key of each.
+    /// Names that are added in this step, then names that are removed, with the key of each.
     fn changes(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let all = [("add", &self.add), ("remove", &self.remove)];
         let named = all.into_iter();
@@ -17,8 +17,8 @@ impl LoadStep {
 }
 
 impl Scene {
-    /// The bodies and contacts that aren't there, by name and step by step. What is added before it was ever removed isn't
-    /// there from the start.
+    /// The absent bodies and contacts, by name and step by step. A name whose first change adds it is absent from the
+    /// start.
     pub fn absent(&self) -> Vec<BTreeSet<&str>> {
         let mut absent = self.absent_at_first();
         let mut all = Vec::new();
@@ -34,7 +34,7 @@ impl Scene {
         all
     }
 
-    /// Names that are added before they were ever removed.
+    /// Names whose first change adds them.
     fn absent_at_first(&self) -> BTreeSet<&str> {
         let (mut seen, mut absent) = (BTreeSet::new(), BTreeSet::new());
         for (key, name) in self.step.iter().flat_map(LoadStep::changes) {
@@ -45,7 +45,7 @@ impl Scene {
         absent
     }
 
-    /// The first name in `add` or `remove` of which that can't be said, and why.
+    /// The first name with an invalid `add` or `remove`, and the reason.
     pub(super) fn wrong_change(&self) -> Option<Fault> {
         let contacts = || self.connections().map(|(_, _, name)| name);
         let bodies = || self.bodies.keys().map(String::as_str);

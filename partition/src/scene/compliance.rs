@@ -4,8 +4,8 @@ use serde::Deserialize;
 
 use super::number::Number;
 
-/// The stiffness of a compliant contact: pressure per overlap, and shear stress per displacement of what sticks (N/m³);
-/// numbers above 0, or expressions of position.
+/// The stiffness of a compliant contact: pressure per overlap, and shear stress per tangential displacement of sticking
+/// points (N/m³); positive numbers, or expressions of position.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,
@@ -14,21 +14,21 @@ use super::number::Number;
 pub struct ContactStiffness {
     /// Along the normal.
     pub normal: Number,
-    /// Along the tangents; `None` where what sticks doesn't move.
+    /// Along the tangents; `None` if sticking points don't move.
     pub tangential: Option<Number>,
 }
 
 impl ContactStiffness {
-    /// Fault of the stiffness in space of `dim` dimensions.
+    /// The error in the stiffness for `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         let numbers = std::iter::once(&self.normal).chain(&self.tangential);
         numbers.into_iter().find_map(|number| number.fault(dim))
     }
 
-    /// The stiffness along the normal and along the tangents at a point (m), 0 where it is rigid.
+    /// The stiffness along the normal and along the tangents at a point (m), 0 for rigid.
     ///
     /// # Errors
-    /// The key and what it is there, which isn't a number above 0.
+    /// The key and its value there, which isn't a positive number.
     pub fn at(&self, point: [f64; 3]) -> Result<[f64; 2], String> {
         let value = |key: &str, number: &Number| {
             let value = number.at(point).and_then(|value| match value > 0.0 {

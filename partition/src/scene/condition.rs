@@ -1,4 +1,4 @@
-//! Bodies, supports, loads and obstacles as a scene gives them.
+//! Bodies, supports, loads and obstacles in a scene.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -75,16 +75,16 @@ pub struct Body {
     pub material: String,
     /// Force per volume (N/m³).
     pub body_force: Option<Vector>,
-    /// Stress before it is loaded (Pa).
+    /// Initial stress (Pa).
     pub initial_stress: Option<InitialStress>,
     /// Thermal expansion.
     pub thermal: Option<Thermal>,
-    /// The rule by which its quadratic quadrilaterals and hexahedra are integrated.
+    /// Integration of its quadratic quadrilaterals and hexahedra.
     #[serde(default)]
     pub integration: Integration,
 }
 
-/// The rule by which quadratic quadrilaterals and hexahedra are integrated.
+/// Integration of the stiffness of quadratic quadrilaterals and hexahedra.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Integration {
@@ -96,7 +96,7 @@ pub enum Integration {
 }
 
 impl Body {
-    /// True if it has stress without strain: initial stress or thermal stress.
+    /// True with initial stress or thermal stress.
     pub fn has_initial_stress(&self) -> bool {
         self.initial_stress.is_some() || self.thermal.is_some()
     }
@@ -106,7 +106,7 @@ impl Body {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "DisplacementKeys")]
 pub struct Displacement {
-    /// The groups on which the condition holds.
+    /// The groups on which it is prescribed.
     pub on: Names,
     /// u_x, u_y, u_z (m).
     pub components: [Option<Number>; 3],
@@ -140,7 +140,7 @@ impl TryFrom<DisplacementKeys> for Displacement {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of on")]
 pub struct Bilateral {
-    /// The groups on which the condition holds.
+    /// The groups on which it holds.
     pub on: Names,
 }
 
@@ -148,7 +148,7 @@ pub struct Bilateral {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of on and value")]
 pub struct Traction {
-    /// The groups on which the condition holds.
+    /// The groups on which it acts.
     pub on: Names,
     /// τ (N/m²).
     pub value: Vector,
@@ -158,7 +158,7 @@ pub struct Traction {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of on and value")]
 pub struct Pressure {
-    /// The groups on which the condition holds.
+    /// The groups on which it acts.
     pub on: Names,
     /// Pressure, positive where it pushes into the body (N/m²).
     pub value: Number,
@@ -177,7 +177,7 @@ pub struct Force {
 /// A force on several nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ForceAmount {
-    /// The sum of all nodal forces (N), shared like a uniform traction on facets, in equal parts on points.
+    /// The sum of all nodal forces (N), distributed like a uniform traction on facets, equally on points.
     Total(ConstantVector),
     /// The force on every node (N).
     Each(Vector),
@@ -212,7 +212,7 @@ impl TryFrom<ForceKeys> for Force {
 }
 
 impl ForceAmount {
-    /// The key that gives it, and why it is none in space of `dim` dimensions.
+    /// The key of the force, and the reason if it is invalid in `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> (&'static str, Option<String>) {
         match self {
             Self::Total(total) => (
@@ -228,11 +228,11 @@ impl ForceAmount {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "ObstacleKeys")]
 pub enum Obstacle {
-    /// All that lies behind a flat wall.
+    /// The half-space behind a flat wall.
     HalfSpace {
         /// A point on the wall (m).
         point: ConstantVector,
-        /// Direction out of the obstacle towards the body, of any length but zero.
+        /// Direction out of the obstacle towards the body, of any nonzero length.
         normal: ConstantVector,
     },
     /// A circle, in space a sphere.
@@ -241,18 +241,18 @@ pub enum Obstacle {
         center: ConstantVector,
         /// Radius (m).
         radius: f64,
-        /// True if it keeps bodies inside, not outside.
+        /// True if bodies are kept inside instead of outside.
         inside: bool,
     },
-    /// A cylinder without ends.
+    /// A cylinder of infinite length.
     Cylinder {
         /// A point on its axis (m).
         point: ConstantVector,
-        /// Direction of its axis, of any length but zero.
+        /// Direction of its axis, of any nonzero length.
         axis: ConstantVector,
         /// Radius (m).
         radius: f64,
-        /// True if it keeps bodies inside, not outside.
+        /// True if bodies are kept inside instead of outside.
         inside: bool,
     },
 }
@@ -313,7 +313,7 @@ impl TryFrom<ObstacleKeys> for Obstacle {
 }
 
 impl Obstacle {
-    /// Fault of the obstacle in space of `dim` dimensions.
+    /// The error in the obstacle for `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         let own = match self {
             Self::HalfSpace { point, .. } => point.dim,

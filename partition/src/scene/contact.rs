@@ -1,4 +1,5 @@
-//! Contacts as a scene gives them: by their sides, or by the bodies between which they are to be found.
+//! Contacts in a scene: given by their sides, or by bodies between which they are detected. Side a is the slave side,
+//! side b the master side.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -20,7 +21,7 @@ pub enum Declaration {
 }
 
 impl Declaration {
-    /// The name of the contact, or that with which the names of contacts that are found begin.
+    /// The name of the contact, or the prefix of the names of detected contacts.
     pub fn name(&self) -> &str {
         match self {
             Self::Contact(contact) => &contact.name,
@@ -28,7 +29,7 @@ impl Declaration {
         }
     }
 
-    /// The contact, where it is told by its sides.
+    /// The contact, if it is given by its sides.
     pub fn contact(&self) -> Option<&Contact> {
         match self {
             Self::Contact(contact) => Some(contact),
@@ -36,7 +37,7 @@ impl Declaration {
         }
     }
 
-    /// The gap in place of the geometric one (m), the law of friction, and the stiffness.
+    /// The prescribed gap (m), the law of friction, and the stiffness.
     pub(super) fn laws(
         &self,
     ) -> (
@@ -52,37 +53,37 @@ impl Declaration {
     }
 }
 
-/// Γ_c: two sides that may touch, or one side and a rigid obstacle.
+/// Γ_c: two sides in possible contact, or one side and a rigid obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// Name, that of a group in the result file.
+    /// Name, also of a group in the result file.
     pub name: String,
     /// Side a.
     pub side_a: Names,
     /// Partner of side a.
     pub partner: Partner,
-    /// The discretization of two sides; `None` to let their nodes decide.
+    /// The discretization of two sides; `None` for an automatic choice by their nodes.
     pub pairing: Option<Pairing>,
-    /// The displacement of the obstacle (m); `None` of one that doesn't move, but for steps.
+    /// The displacement of the obstacle (m); `None` if it moves at most in steps.
     pub motion: Option<ConstantVector>,
-    /// The gap in place of the geometric one (m).
+    /// The gap that replaces the geometric one (m).
     pub gap: Option<Number>,
-    /// The distance up to which gaps, and all overlaps, are taken as closed (m); `None` where they are as measured.
+    /// The distance up to which gaps, and all overlaps, are closed (m); `None` keeps them as measured.
     pub adjust: Option<f64>,
     /// True if negative gaps are intended.
     pub interference: bool,
-    /// Law of friction; `None` without.
+    /// Law of friction; `None` for frictionless contact.
     pub friction: Option<Friction>,
-    /// The stiffness of what lies between the sides; `None` where they don't overlap.
+    /// The contact stiffness; `None` for hard contact.
     pub stiffness: Option<ContactStiffness>,
-    /// True if gaps count from the start, also where it is added in a load step.
+    /// True if gaps are relative to the undeformed bodies, even if the contact is added in a load step.
     pub absolute: bool,
-    /// Reach of a tie; `None` of sides that may part.
+    /// Reach of a tie; `None` for sides that may open.
     pub tie: Option<TieReach>,
 }
 
 impl Contact {
-    /// Sides, one of them where its partner is an obstacle.
+    /// Its sides, a single one with an obstacle.
     pub fn sides(&self) -> impl Iterator<Item = &Names> {
         let side_b = match &self.partner {
             Partner::Side(names) => Some(names),
@@ -92,12 +93,12 @@ impl Contact {
     }
 }
 
-/// The part of two sides that a tie holds together, and in which position.
+/// The part of two sides that a tie joins, and the position in which it does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TieReach {
-    /// Up to which distance nodes are tied (m); `None` for a part of the size of facets.
+    /// The distance up to which nodes are tied (m); `None` for a fraction of the size of facets.
     pub tolerance: Option<f64>,
-    /// True if nodes are moved onto the other side, so that no gap is left between tied sides.
+    /// True if nodes are moved onto the other side, so that tied sides have no gap.
     pub adjust: bool,
 }
 
@@ -110,26 +111,26 @@ pub enum Partner {
     Obstacle(Obstacle),
 }
 
-/// The discretization of a contact: conditions between its two sides.
+/// The discretization of a contact between two sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pairing {
-    /// A condition for every node of side a and the node of side b opposite it.
+    /// Node-to-node: a constraint for every node of side a and the opposite node of side b.
     Nodes,
-    /// A condition for every node of side a and what of side b lies opposite its surroundings,
-    /// weighted by dual Lagrange multipliers.
+    /// Mortar: a constraint for every node of side a and the opposite part of side b, weighted by dual Lagrange
+    /// multipliers.
     Mortar,
 }
 
-/// Contacts wherever bodies touch: what they have in common.
+/// Contacts wherever bodies touch, with common properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Between {
-    /// Beginning of their names.
+    /// Prefix of their names.
     pub name: String,
     /// The bodies.
     pub bodies: Chosen,
-    /// Up to which gap facets that face each other belong to a contact (m); `None` for what touches but for
-    /// the standing off of facets from curves.
+    /// Gap up to which facets that face each other belong to a contact (m); `None` for touching facets, with a
+    /// tolerance for facets that approximate curves.
     pub within: Option<f64>,
     /// Pairing as in [`Contact`].
     pub pairing: Option<Pairing>,
@@ -144,7 +145,7 @@ pub struct Between {
 }
 
 impl Between {
-    /// The contact `name` of two sides that were found.
+    /// The contact `name` between two detected sides.
     pub fn contact(&self, name: String, [side_a, side_b]: [Names; 2]) -> Contact {
         Contact {
             name,
@@ -163,13 +164,13 @@ impl Between {
     }
 }
 
-/// Between which bodies contacts are looked for.
+/// The bodies between which contacts are detected.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(from = "Names")]
 pub enum Chosen {
-    /// Any two bodies, and a body and itself.
+    /// Any two bodies, and self-contact.
     All,
-    /// Any two of several bodies, or one and itself.
+    /// Any two of several bodies, and self-contact of these.
     Named(Names),
 }
 
@@ -183,7 +184,7 @@ impl From<Names> for Chosen {
 }
 
 impl Chosen {
-    /// The names of the bodies; none where all are meant.
+    /// The names of the bodies; empty for all.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let names = match self {
             Self::All => None,
@@ -192,7 +193,7 @@ impl Chosen {
         names.into_iter().flat_map(Names::iter)
     }
 
-    /// True if a contact between bodies of these names is looked for.
+    /// True if contacts between bodies of these names are detected.
     pub fn has(&self, a: &str, b: &str) -> bool {
         let Self::Named(names) = self else {
             return true;
@@ -235,7 +236,7 @@ struct Keys {
 }
 
 impl Keys {
-    /// Refuses keys that need another one beside them.
+    /// Refuses keys that require another key.
     fn check(&self) -> Result<(), String> {
         let sticks = self.friction.is_some() || self.tresca.is_some();
         let has_tangential = |stiffness: &ContactStiffness| stiffness.tangential.is_some();
@@ -314,7 +315,7 @@ impl TryFrom<Keys> for Declaration {
     }
 }
 
-/// The first of the `sides`, and what it is in contact with: the second one or an `obstacle`.
+/// The first of the `sides` and its partner: the second side or an `obstacle`.
 fn side_and_partner(
     sides: Vec<Names>,
     obstacle: Option<Obstacle>,

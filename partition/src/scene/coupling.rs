@@ -10,21 +10,21 @@ use crate::element::geometry::{advance, cross, difference, dot, unit};
 /// Components of the motion of a reference point, and their keys: translations, then rotations.
 pub const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
-/// Nodes that follow a reference point, on which forces and moments act and whose motion may be prescribed.
+/// Nodes that follow a reference point, with its forces, moments and prescribed motion.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(from = "CouplingKeys")]
 pub struct Coupling {
     /// Name.
     pub name: String,
-    /// The groups of facets or points that it couples.
+    /// The coupled groups of facets or points.
     pub on: Names,
     /// The reference point (m).
     pub point: ConstantVector,
-    /// Kind of coupling: rigid, along directions, or distributing.
+    /// Kind of coupling: rigid, in some directions, or distributing.
     pub kind: CouplingKind,
-    /// The directions along which they follow; none where they do along all.
+    /// The coupled directions; empty for all.
     pub directions: Vec<ConstantVector>,
-    /// The axis around which these turn: they are then radial, around and along it.
+    /// The axis of cylindrical directions, which are then radial, hoop and axial.
     pub axis: Option<Axis>,
     /// Loads and prescribed motions of the point.
     pub loads: CouplingLoads,
@@ -41,7 +41,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A vector of radial, hoop and axial components at a place; `None` on the axis, unless it lies along this.
+    /// The vector with radial, hoop and axial components at a position; `None` on the axis, unless it is axial.
     pub fn vector(&self, components: [f64; 3], x: [f64; 3]) -> Option<[f64; 3]> {
         let along = unit(self.direction.value)?;
         let arm = difference(x, self.point.value);
@@ -59,18 +59,18 @@ impl Axis {
     }
 }
 
-/// The way in which nodes follow a reference point.
+/// The kind of coupling.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingKind {
-    /// They move as one rigid body with it.
+    /// The nodes move rigidly with the point.
     #[default]
     Rigid,
-    /// The point moves as the nodes do on average; forces on it are distributed over them, which may deform.
+    /// The point moves with the average motion of the nodes; its forces are distributed over them, and they may deform.
     Distributing,
 }
 
-/// Loads and prescribed motions of a reference point; in a step in place of those of the scene.
+/// Loads and prescribed motions of a reference point; in a step they replace those of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,
@@ -165,7 +165,7 @@ impl CouplingLoads {
         all.map(|component| component.as_ref().map(|Constant(value)| *value))
     }
 
-    /// The key that is wrong in space of `dim` dimensions, and why.
+    /// The invalid key for `dim` dimensions, and the reason.
     pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         let wrong_force = self.force.as_ref().filter(|force| force.dim != dim);
         if wrong_force.is_some() {

@@ -1,4 +1,4 @@
-//! Cyclic symmetry: sectors of a ring, each of which does what its neighbour does, turned.
+//! Cyclic symmetry: sectors of a ring, with the same solution in each, rotated.
 
 use serde::Deserialize;
 
@@ -12,7 +12,7 @@ use super::number::ConstantVector;
 pub struct Cyclic {
     /// Name.
     pub name: String,
-    /// A side, and the one that it is when it is turned.
+    /// A side, and its image under the rotation by one sector.
     pub sides: [Names; 2],
     /// A point of the axis (m).
     pub point: ConstantVector,

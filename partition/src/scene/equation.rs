@@ -5,20 +5,20 @@ use serde::{Deserialize, Deserializer};
 use super::condition::Names;
 use super::contact::contact_name;
 
-/// Σ factor · displacement = value.
+/// The equation Σ factor · displacement = value.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Equation {
-    /// Name, that of a group in the result file, which equations may share.
+    /// Name, also of a group in the result file; equations may share it.
     #[serde(default = "unnamed", deserialize_with = "contact_name")]
     pub name: String,
-    /// The terms, one at least.
+    /// The terms, at least one.
     #[serde(deserialize_with = "terms")]
     pub terms: Vec<Term>,
     /// The sum (m).
     #[serde(default)]
     pub value: f64,
-    /// True if displacements count from the start, also where it is added in a load step.
+    /// True if displacements are absolute, even if the equation is added in a load step.
     #[serde(default)]
     pub absolute: bool,
 }
@@ -27,7 +27,7 @@ pub struct Equation {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of at, component and factor")]
 pub struct Term {
-    /// A point, or a group whose mean displacement it is.
+    /// A point, or a group whose average displacement it is.
     pub at: Names,
     /// The component of the displacement.
     pub component: Component,

@@ -2,7 +2,7 @@
 
 use super::suggest::hint_and_known;
 
-/// Longest text and deepest nesting of an expression, so that no text can exhaust the stack.
+/// Largest length and nesting of an expression, so that no text can exhaust the stack.
 const LONGEST: usize = 4096;
 const DEEPEST: usize = 64;
 
@@ -36,7 +36,7 @@ const BINARY: [(&str, Binary); 4] = [
     ("hypot", f64::hypot),
 ];
 
-/// −1, 0 or 1.
+/// The sign: −1, 0 or 1.
 fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
@@ -56,7 +56,7 @@ pub struct Expression {
     text: String,
     steps: Vec<Step>,
     is_constant: bool,
-    /// The first of its characters that is z.
+    /// The position of its first z.
     z_at: Option<usize>,
 }
 
@@ -67,12 +67,11 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Parses `text`: numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` (or `**`), parentheses, and the
-    /// functions sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln, log10, sqrt, cbrt,
-    /// abs, sign, min, max, atan2, hypot.
+    /// Parses `text`: numbers, `x`, `y`, `z`, `pi`, `+ - * / ^` (or `**`), parentheses, and the functions sin, cos,
+    /// tan, asin, acos, atan, sinh, cosh, tanh, exp, ln, log10, sqrt, cbrt, abs, sign, min, max, atan2, hypot.
     ///
     /// # Errors
-    /// Text that can't be read, and the first character that is wrong.
+    /// Invalid text, and the first invalid character.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut parser = Parser {
             text,
@@ -91,7 +90,7 @@ impl Expression {
         Ok(parser.expression)
     }
 
-    /// Value at a point; not finite where it isn't defined.
+    /// Value at a point; not finite where it is undefined.
     pub fn value(&self, at: [f64; 3]) -> f64 {
         // A nesting level holds at most an operand of each of the four precedences.
         let mut stack = [0.0; 4 * DEEPEST];
@@ -116,12 +115,12 @@ impl Expression {
         stack[0]
     }
 
-    /// The text it was parsed from.
+    /// Its text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Fault of the expression in the plane: it names z.
+    /// The error of an expression in the plane: it contains z.
     pub fn fault_in_plane(&self) -> Option<String> {
         let at = self.z_at?;
         Some(located(
@@ -131,20 +130,20 @@ impl Expression {
         ))
     }
 
-    /// True if it is the same everywhere.
+    /// True if it is independent of position.
     pub fn is_constant(&self) -> bool {
         self.is_constant
     }
 }
 
-/// A fault at a byte of an expression.
+/// An error at a byte of an expression.
 fn located(text: &str, at: usize, reason: &str) -> String {
     let shown: String = text.chars().take(60).collect();
     let place = text[..at].chars().count() + 1;
     format!("expression '{shown}', character {place}: {reason}")
 }
 
-/// Recursive descent through an expression.
+/// Recursive-descent parser of an expression.
 struct Parser<'a> {
     text: &'a str,
     at: usize,

@@ -1,4 +1,4 @@
-//! Contradictions between the keys of a scene, each of which is right by itself.
+//! Contradictions between keys of a scene that are valid individually.
 
 use std::collections::HashMap;
 
@@ -12,10 +12,10 @@ use super::{Scene, suggest};
 use crate::error::InputError;
 use crate::name;
 
-/// The key at which something is wrong, and what.
+/// The key of an error, and its description.
 pub(super) type Fault = (Vec<Step>, String);
 
-/// The key to which these names of tables lead.
+/// The key given by these names of tables.
 fn at<const N: usize>(keys: [&str; N]) -> Vec<Step> {
     keys.map(Step::from).to_vec()
 }
@@ -26,7 +26,7 @@ pub(super) fn entry(list: &str, index: usize, key: &str) -> Vec<Step> {
 }
 
 impl Scene {
-    /// The first thing wrong between keys, and the key at which to say so.
+    /// The first contradiction, and its key.
     pub(super) fn fault(&self) -> Option<Fault> {
         if self.mesh.as_os_str().is_empty() {
             return Some((at(["mesh"]), "expected the name of a file".into()));
@@ -91,7 +91,7 @@ impl Scene {
         None
     }
 
-    /// A quantity whose name is none, or that of another one.
+    /// A quantity with an invalid or repeated name.
     fn repeated_quantity(&self) -> Option<Fault> {
         let mut seen = HashMap::new();
         for (index, quantity) in self.quantity.iter().enumerate() {
@@ -111,7 +111,7 @@ impl Scene {
         None
     }
 
-    /// The names of contacts, ties and equations, each with its list and its place there.
+    /// The names of contacts, ties and equations, each with its list and its index there.
     pub(super) fn connections(&self) -> impl Iterator<Item = (&'static str, usize, &str)> {
         let contacts = self.contact.iter().map(Declaration::name).enumerate();
         let ties = self.tie.iter().map(|tie| &tie.name[..]).enumerate();
@@ -121,7 +121,7 @@ impl Scene {
             .chain(equations.map(|(i, name)| ("equation", i, name)))
     }
 
-    /// A body between which and another one contacts are looked for, and that isn't there.
+    /// An unknown body in the detection of contacts.
     fn unknown_body(&self) -> Option<Fault> {
         for (index, declared) in self.contact.iter().enumerate() {
             let Declaration::Between(between) = declared else {
@@ -138,10 +138,10 @@ impl Scene {
         None
     }
 
-    /// The first value that space of `dim` dimensions has no place for.
+    /// Checks that all values are valid in `dim` dimensions.
     ///
     /// # Errors
-    /// The value, by its key.
+    /// The first invalid value, by its key.
     pub(crate) fn check_dimension(&self, dim: usize) -> Result<(), InputError> {
         match self.wrong_dimension(dim) {
             Some((path, message)) => Err(place::error_at("", &path, &message)),
@@ -204,7 +204,7 @@ impl Scene {
         found.into_iter().next()
     }
 
-    /// Loads of bodies that are of the wrong dimension.
+    /// Checks the dimension of loads on bodies.
     fn wrong_bodies(&self, dim: usize, check: &mut impl FnMut(Vec<Step>, Option<String>)) {
         for (name, body) in &self.bodies {
             let fault = body.body_force.as_ref().and_then(|force| force.fault(dim));
@@ -218,7 +218,7 @@ impl Scene {
         }
     }
 
-    /// Stiffnesses of the wrong size.
+    /// Checks the size of stiffnesses.
     fn wrong_materials(&self, check: &mut impl FnMut(Vec<Step>, Option<String>)) {
         for (name, material) in &self.materials {
             let Elasticity::Anisotropic {
@@ -247,7 +247,7 @@ impl Scene {
         }
     }
 
-    /// Obstacles and laws of contacts of the wrong dimension.
+    /// Checks the dimension of obstacles and laws of contacts.
     fn wrong_contacts(&self, dim: usize, check: &mut impl FnMut(Vec<Step>, Option<String>)) {
         for (index, contact) in self.contact.iter().enumerate() {
             if let Some(Contact {
@@ -268,7 +268,7 @@ impl Scene {
         }
     }
 
-    /// A step with a wrong name, a time before that of the step before, or a body that isn't there.
+    /// A step with an invalid name, a time before that of the previous step, or an unknown body.
     fn wrong_step(&self) -> Option<Fault> {
         let of_step = |index: usize, key: &str| entry("step", index, key);
         let mut before = None;
@@ -312,7 +312,7 @@ impl Scene {
     }
 }
 
-/// Conditions and loads of a scene, or a step, on groups of its mesh.
+/// Boundary conditions and loads of a scene, or a step, on groups of its mesh.
 struct OnGroups<'a> {
     displacement: &'a [Displacement],
     traction: &'a [Traction],
@@ -321,7 +321,7 @@ struct OnGroups<'a> {
 }
 
 impl OnGroups<'_> {
-    /// Checks all of it, below the keys `within`.
+    /// Checks all of them, under the keys `within`.
     fn check(
         &self,
         dim: usize,

@@ -1,4 +1,4 @@
-//! The law of friction of a contact, as a scene gives it.
+//! The law of friction of a contact in a scene.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -6,7 +6,7 @@ use serde::de::{Deserializer, Error};
 use super::number::Number;
 use crate::contact_point::Law;
 
-/// The bound of tangential forces; numbers of at least 0, or expressions of position.
+/// The bound of tangential forces; nonnegative numbers, or expressions of position.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Friction {
     /// `tresca`: bound of Tresca friction (Pa).
@@ -14,7 +14,7 @@ pub enum Friction {
         /// The bound (Pa).
         bound: Number,
     },
-    /// `friction` and perhaps `cohesion`: Coulomb's bound, or Mohr and Coulomb's.
+    /// `friction` and optionally `cohesion`: Coulomb or Mohr-Coulomb friction.
     Coulomb {
         /// Coefficient of friction.
         coefficient: Number,
@@ -24,10 +24,10 @@ pub enum Friction {
 }
 
 impl Friction {
-    /// The law of these keys of a contact; `None` where it has none of them.
+    /// The law from these keys of a contact; `None` without any of them.
     ///
     /// # Errors
-    /// Keys that don't go together.
+    /// Keys that exclude each other.
     pub fn new(
         coefficient: Option<Number>,
         cohesion: Option<Number>,
@@ -51,7 +51,7 @@ impl Friction {
         }
     }
 
-    /// Fault of the law in space of `dim` dimensions, and the key that has it.
+    /// The error in the law for `dim` dimensions, and its key.
     pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         let numbers = match self {
             Self::Given { bound } => [Some(("tresca", bound)), None],
@@ -72,7 +72,7 @@ impl Friction {
     /// The law at a point (m).
     ///
     /// # Errors
-    /// The key and what it is there, which isn't a finite number of at least 0.
+    /// The key and its value there, which isn't finite and nonnegative.
     pub fn at(&self, point: [f64; 3]) -> Result<Law, String> {
         let value = |key: &str, number: &Number| {
             let value = number.at(point).and_then(|value| match value >= 0.0 {
@@ -94,10 +94,10 @@ impl Friction {
     }
 }
 
-/// The range of all its numbers.
+/// The valid range of its numbers.
 const LEAST: &str = "0 or more";
 
-/// Reads a number of at least 0, of which an expression is checked where it is evaluated.
+/// Reads a nonnegative number; an expression is checked when it is evaluated.
 pub(super) fn bound<'de, D>(deserializer: D) -> Result<Option<Number>, D::Error>
 where
     D: Deserializer<'de>,

@@ -11,7 +11,7 @@ use super::number::{Constant, Number, OR_IN_SPACE};
 pub struct InitialStress(Vec<Number>);
 
 impl InitialStress {
-    /// Fault of the stress in space of `dim` dimensions.
+    /// The error in the stress for `dim` dimensions.
     pub(super) fn fault(&self, dim: usize, plane: Option<PlaneState>) -> Option<String> {
         let (count, order) = match plane {
             None => (6, "xx, yy, zz, yz, xz, xy"),
@@ -44,7 +44,7 @@ impl InitialStress {
         Ok(stress)
     }
 
-    /// True if it is the same everywhere.
+    /// True if it is uniform.
     pub fn is_constant(&self) -> bool {
         self.0.iter().all(Number::is_constant)
     }
@@ -57,8 +57,8 @@ impl InitialStress {
     expecting = "a table of expansion and temperature"
 )]
 pub struct Thermal {
-    /// Coefficient of expansion (1/K).
+    /// Coefficient of thermal expansion (1/K).
     pub expansion: Constant,
-    /// Temperature above that at which the body has no strain (K).
+    /// Temperature relative to the strain-free state (K).
     pub temperature: Number,
 }

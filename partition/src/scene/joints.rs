@@ -1,4 +1,4 @@
-//! Pretensions in load steps, and faults of these and of cyclic symmetries.
+//! Pretensions in load steps, and errors in pretensions, springs and cyclic symmetries.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::step::LoadStep;
 use super::{Scene, suggest};
 
 impl Pretension {
-    /// The tightening in every load step, or the one that is given where there is none.
+    /// The tightening in every load step, or the single one without steps.
     pub fn in_steps(&self, steps: &[LoadStep]) -> Vec<Tightening> {
         if steps.is_empty() {
             return vec![self.own];
@@ -45,7 +45,7 @@ impl Pretension {
 }
 
 impl Scene {
-    /// A pretension whose name another one has, or a step that asks of it what can't be.
+    /// A pretension with a repeated name, or a step with an invalid change of it.
     pub(super) fn wrong_pretension(&self) -> Option<Fault> {
         for (index, pretension) in self.pretension.iter().enumerate() {
             let others = self.connections().map(|(_, _, name)| name);
@@ -72,7 +72,7 @@ impl Scene {
         None
     }
 
-    /// Reason for which step `index` can't ask for a change of a pretension.
+    /// Reason why step `index` can't change a pretension in this manner.
     fn wrong_change_of(
         &self,
         index: usize,
@@ -102,7 +102,7 @@ impl Scene {
         Some(why.into())
     }
 
-    /// Pretensions that space of `dim` dimensions has no place for.
+    /// Checks the dimension of pretensions.
     pub(super) fn pretensions_of_wrong_dimension(
         &self,
         dim: usize,
@@ -116,7 +116,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// A cyclic symmetry whose name something else has.
+    /// A cyclic symmetry with a repeated name.
     pub(super) fn wrong_cyclic(&self) -> Option<Fault> {
         for (index, cyclic) in self.cyclic.iter().enumerate() {
             let others = self.connections().map(|(_, _, name)| name);
@@ -132,7 +132,7 @@ impl Scene {
         None
     }
 
-    /// A spring between points whose name something else has.
+    /// A spring between points with a repeated name.
     pub(super) fn wrong_spring(&self) -> Option<Fault> {
         let mut taken: BTreeSet<String> = (self.connections().map(|(_, _, name)| name))
             .chain(self.coupling.iter().map(|of| &of.name[..]))
@@ -149,7 +149,7 @@ impl Scene {
         None
     }
 
-    /// Cyclic symmetries that space of `dim` dimensions has no place for.
+    /// Checks the dimension of cyclic symmetries.
     pub(super) fn cyclic_of_wrong_dimension(
         &self,
         dim: usize,

@@ -1,18 +1,18 @@
-//! The loading of a scene in a load step: that of the step, else that of the scene.
+//! The loading of a scene in a load step: that of the step, by default that of the scene.
 
 use super::Scene;
 use super::condition::{Displacement, Force, Names, Pressure, Traction};
 use super::number::{Number, Vector};
 use super::step::{LoadStep, Scale};
 
-/// All that loads the bodies at once: a scene's own loads, or those of one of its steps.
+/// All loads applied at the same time: the scene's loads, or those of one of its steps.
 #[derive(Clone, Debug)]
 pub struct Loading<'a> {
     /// The step and its number.
     step: Option<(usize, &'a LoadStep)>,
     /// Force per volume of every body.
     pub body_force: Vec<Option<&'a Vector>>,
-    /// Temperature of every body, where the step replaces it.
+    /// Temperature of every body, if the step replaces it.
     pub temperature: Vec<Option<&'a Number>>,
     /// Tractions.
     pub traction: &'a [Traction],
@@ -27,7 +27,7 @@ pub struct Loading<'a> {
 }
 
 impl Scene {
-    /// The loadings, one a step; the scene's own where it has none.
+    /// The loadings, one for each step; a single one without steps.
     pub fn loadings(&self) -> Vec<Loading<'_>> {
         match self.step.is_empty() {
             true => vec![self.loading(None)],

@@ -1,4 +1,4 @@
-//! Materials as a scene gives them, and its plane state.
+//! Materials and the plane state in a scene.
 
 use std::f64::consts::PI;
 
@@ -21,10 +21,10 @@ pub enum Elasticity {
         /// Poisson's ratio.
         poisson: f64,
     },
-    /// Any stiffness.
+    /// A material with any stiffness.
     Anisotropic {
-        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), around an axis in the order xx, yy, zz, xy, in space xx, yy, zz, yz,
-        /// xz, xy; symmetric positive definite (Pa).
+        /// C: (ε_xx, ε_yy, γ_xy) to (σ_xx, σ_yy, σ_xy), around an axis in the order xx, yy, zz, xy, in space xx, yy,
+        /// zz, yz, xz, xy; symmetric positive definite (Pa).
         stiffness: Stiffness,
         /// (ε_xx, ε_yy, γ_xy) to σ_zz in plane strain (Pa).
         out_of_plane: Option<[f64; 3]>,
@@ -39,7 +39,7 @@ pub enum PlaneState {
     Strain,
     /// σ_zz = 0.
     Stress,
-    /// Everything is the same all around the axis x = 0: x is the radius, zz the direction of the hoop.
+    /// Axial symmetry about the axis x = 0: x is the radius, zz the hoop direction.
     Axisymmetric,
 }
 
@@ -66,7 +66,7 @@ impl PlaneState {
         }
     }
 
-    /// Extent that a unit of length or area at `x` stands for: one metre of thickness, or all around the axis 2πx; 1 in
+    /// Extent out of the plane per unit of length or area at `x`: one metre of thickness, or 2πx around the axis; 1 in
     /// space.
     pub fn thickness(plane: Option<Self>, x: [f64; 3]) -> f64 {
         match plane {
@@ -129,7 +129,7 @@ fn poisson<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D:
     Constant::checked(deserializer, holds, "Poisson's ratio", expected).map(Some)
 }
 
-/// A symmetric positive definite matrix, its symmetric part.
+/// The symmetric part of a matrix, which has to be symmetric and positive definite.
 fn stiffness<'de, D>(deserializer: D) -> Result<Option<Stiffness>, D::Error>
 where
     D: Deserializer<'de>,
@@ -154,7 +154,7 @@ where
         }
     }
     let symmetric = 0.5 * (&given + given.transpose());
-    // Scaled first, so that no product under- or overflows.
+    // Scaled first, so that no product overflows or underflows.
     let scale = symmetric.amax();
     let eigenvalues = (&symmetric / scale).symmetric_eigenvalues() * scale;
     let (least, largest) = (eigenvalues.min(), eigenvalues.max());

@@ -1,4 +1,4 @@
-//! Motions by load steps: of obstacles, the values of equations, and the reference points of couplings.
+//! Motions in load steps: of obstacles, the values of equations, and the reference points of couplings.
 
 use std::collections::BTreeMap;
 
@@ -14,8 +14,8 @@ use super::{Scene, suggest};
 use crate::element::geometry::length;
 
 impl Scene {
-    /// The displacement of every obstacle that ever moves, by the name of its contact, in all load steps (m), or the one that it
-    /// has without steps.
+    /// The displacement of every moving obstacle, by the name of its contact, in all load steps (m), or a single one
+    /// without steps.
     pub fn motions(&self) -> BTreeMap<&str, Vec<[f64; 3]>> {
         let of_contact = |(contact, _): (&'_ Contact, &Obstacle)| {
             let own = contact.motion.as_ref().map(|motion| motion.value);
@@ -36,7 +36,7 @@ impl Scene {
             .collect()
     }
 
-    /// The contacts with obstacles, each with its place in the list.
+    /// The contacts with obstacles, each with its index in the list.
     fn obstacles(&self) -> impl Iterator<Item = (usize, &Contact, &Obstacle)> {
         let all = self.contact.iter().enumerate();
         all.filter_map(|(index, declared)| match declared.contact() {
@@ -48,7 +48,7 @@ impl Scene {
         })
     }
 
-    /// A step that moves no obstacle, or gives a value to no equation.
+    /// A step with a motion of an unknown obstacle, or a value of an unknown equation.
     pub(super) fn wrong_motion(&self) -> Option<Fault> {
         for (index, step) in self.step.iter().enumerate() {
             let path =
@@ -81,7 +81,7 @@ impl Scene {
         None
     }
 
-    /// Motions, couplings, pretensions and sectors of the wrong dimension.
+    /// Checks the dimension of motions, couplings, pretensions and cyclic symmetries.
     pub(super) fn motions_of_wrong_dimension(
         &self,
         dim: usize,
@@ -104,7 +104,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// Two couplings of one name, or a step that prescribes what a coupling doesn't.
+    /// Two couplings with the same name, or a step that prescribes a component that the coupling doesn't.
     pub(super) fn wrong_coupling(&self) -> Option<Fault> {
         let names = || self.coupling.iter().map(|of| &of.name[..]);
         for (index, coupling) in self.coupling.iter().enumerate() {
@@ -141,7 +141,7 @@ impl Scene {
         None
     }
 
-    /// Couplings that space of `dim` dimensions has no place for.
+    /// Checks the dimension of couplings.
     fn couplings_of_wrong_dimension(
         &self,
         dim: usize,
@@ -193,7 +193,7 @@ impl Scene {
 }
 
 impl ConstantVector {
-    /// Fault of the vector in space of `dim` dimensions.
+    /// The error in the vector for `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         (self.dim != dim).then(|| super::number::expected_components(dim))
     }

@@ -1,4 +1,4 @@
-//! Numbers of a scene: constants, and expressions of the place.
+//! Numbers of a scene: constants, and expressions of position.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
@@ -11,7 +11,7 @@ use crate::magnitude;
 pub enum Number {
     /// A constant.
     Constant(f64),
-    /// Depends on the place.
+    /// An expression of position.
     Varying(Expression),
 }
 
@@ -30,12 +30,12 @@ impl Number {
         }
     }
 
-    /// True if it is the same everywhere.
+    /// True if it is independent of position.
     pub fn is_constant(&self) -> bool {
         matches!(self, Self::Constant(_))
     }
 
-    /// Fault of the number in space of `dim` dimensions.
+    /// The error in the number for `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         match self {
             Self::Varying(expression) if dim == 2 => {
@@ -45,7 +45,7 @@ impl Number {
         }
     }
 
-    /// The message that its `value` at a point isn't what was `expected`.
+    /// The message that its `value` at a point isn't the `expected` one.
     pub(super) fn unexpected(&self, value: f64, point: [f64; 3], expected: &str) -> String {
         let [x, y, z] = point;
         match self {
@@ -96,7 +96,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// A finite number that is the same everywhere; an expression without x, y and z will do.
+/// A finite number independent of position; an expression without x, y and z is allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Number")]
 pub struct Constant(pub f64);
@@ -116,8 +116,8 @@ impl TryFrom<Number> for Constant {
 }
 
 impl Constant {
-    /// Reads a number for which `holds`; `what` begins the message about any other, which ends with what was
-    /// `expected`.
+    /// Reads a number for which `holds` is true; the message for others begins with `what` and ends with the `expected`
+    /// value.
     pub(super) fn checked<'de, D: Deserializer<'de>>(
         deserializer: D,
         holds: impl Fn(f64) -> bool,
@@ -158,7 +158,7 @@ impl Vector {
         self.0.len()
     }
 
-    /// Fault of the vector in space of `dim` dimensions.
+    /// The error in the vector for `dim` dimensions.
     pub(super) fn fault(&self, dim: usize) -> Option<String> {
         match self.dim() == dim {
             true => self.0.iter().find_map(|number| number.fault(dim)),
@@ -166,7 +166,7 @@ impl Vector {
         }
     }
 
-    /// Value at a point (m), with zero for a third component that it hasn't.
+    /// Value at a point (m), with zero for a missing third component.
     ///
     /// # Errors
     /// An expression that isn't finite there.
@@ -178,16 +178,16 @@ impl Vector {
         Ok(value)
     }
 
-    /// True if it is the same everywhere.
+    /// True if it is uniform.
     pub fn is_constant(&self) -> bool {
         self.0.iter().all(Number::is_constant)
     }
 }
 
-/// Advice on 'plane' where a value is one of space.
+/// Advice on 'plane' for a value with the dimension of space.
 pub(super) const OR_IN_SPACE: &str = "; where the mesh is one of space, 'plane' is left out";
 
-/// Expectation of a vector, in words.
+/// Expectation of a vector, as text.
 pub(super) fn expected_components(dim: usize) -> String {
     match dim {
         2 => format!("a plane scene has vectors of two components{OR_IN_SPACE}"),
@@ -195,13 +195,13 @@ pub(super) fn expected_components(dim: usize) -> String {
     }
 }
 
-/// A vector that is the same everywhere.
+/// A uniform vector.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Vector")]
 pub struct ConstantVector {
     /// Number of its components.
     pub dim: usize,
-    /// Value, with zero for a third component that it hasn't.
+    /// Value, with zero for a missing third component.
     pub value: [f64; 3],
 }
 

@@ -1,4 +1,4 @@
-//! Places in the text of a scene, or of settings: line and key.
+//! Positions in the text of a scene, or of settings: line and key.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::suggest::hint_and_known;
 use super::syntax;
 use crate::error::InputError;
 
-/// One step from a table or an array to what it holds.
+/// One step from a table or an array to an entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     Key(String),
@@ -29,7 +29,7 @@ impl From<usize> for Step {
     }
 }
 
-/// An error at the key that `path` leads to.
+/// An error at the key given by `path`.
 pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
     let found = entries(text)
         .into_iter()
@@ -38,14 +38,14 @@ pub(super) fn error_at(text: &str, path: &[Step], message: &str) -> InputError {
     compose(text, found, path, message)
 }
 
-/// The fault that `toml` or `serde` found in `text`, with line and key.
+/// The error that `toml` or `serde` found in `text`, with line and key.
 pub fn located(text: &str, error: &Error) -> InputError {
     let start = error.span().map(|span| span.start);
     if let (Some(start), Err(_)) = (start, DeTable::parse(text)) {
         let message = syntax::described(text, start, error);
         return compose(text, Some(start), &[], &message);
     }
-    // A key that is missing has no place of its own, which the first of the others isn't, either.
+    // A missing key has no position, and the error's position may be that of another key.
     let is_missing = error.message().starts_with("missing field");
     let path = start
         .and_then(|start| {
@@ -61,7 +61,7 @@ pub fn located(text: &str, error: &Error) -> InputError {
         })
         .map(|(_, entry)| entry.path)
         .unwrap_or_default();
-    // A key of the scene itself is missing before the first table.
+    // A top-level key has to precede the first table.
     let start = match is_missing && path.is_empty() {
         true => Some(first_table(text).map_or(0, |(start, _)| start)),
         false => start,
@@ -70,7 +70,7 @@ pub fn located(text: &str, error: &Error) -> InputError {
     compose(text, start, &path, &message)
 }
 
-/// Keys of the scene itself, and what each may be.
+/// Top-level keys of a scene, and examples of their values.
 const OF_SCENE: [(&str, &str); 5] = [
     ("title", "\"…\""),
     ("mesh", "\"mesh.msh\""),
@@ -79,7 +79,7 @@ const OF_SCENE: [(&str, &str); 5] = [
     ("subdomains", "[…]"),
 ];
 
-/// The place of the first table, and its head.
+/// The position of the first table, and its header.
 fn first_table(text: &str) -> Option<(usize, &str)> {
     let mut start = 0;
     for line in text.split_inclusive('\n') {
@@ -91,7 +91,7 @@ fn first_table(text: &str) -> Option<(usize, &str)> {
     None
 }
 
-/// The place that a key of the scene itself belongs to; nothing for a key of a table, to which `path` leads.
+/// Where a missing top-level key belongs, for the end of a message; empty for a key of a table, given by `path`.
 fn above(text: &str, key: &str, path: &[Step]) -> String {
     if path.is_empty() && ["materials", "bodies"].contains(&key) {
         return format!("; expected a table [{key}.NAME] for each");
@@ -107,7 +107,7 @@ fn above(text: &str, key: &str, path: &[Step]) -> String {
     format!("; expected {key} = {value}{place}")
 }
 
-/// The fault that `serde` found in the value at `path`, with the nearest known word for one that isn't known, and
+/// The error that `serde` found in the value at `path`, with the most similar known word for an unknown one, and
 /// brackets for a table that should be a list.
 fn with_advice(text: &str, message: &str, path: &[Step]) -> String {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -143,8 +143,8 @@ fn with_advice(text: &str, message: &str, path: &[Step]) -> String {
     }
 }
 
-/// Reads an array of tables so that what is wrong in one is located there: `toml` gives an error
-/// without a place that of the innermost newtype around it.
+/// Reads an array of tables so that an error in one of them is located there: `toml` assigns an error without a
+/// position to the innermost newtype around it.
 pub(super) fn list<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
 where
     D: Deserializer<'de>,
@@ -167,8 +167,7 @@ fn compose(text: &str, start: Option<usize>, path: &[Step], message: &str) -> In
     InputError::new(format!("{place}{message}"))
 }
 
-/// A path as in `contact[2] 'seam'.sides`, counted from 1, with the names of the tables that have
-/// one.
+/// A path as in `contact[2] 'seam'.sides`, counted from 1, with the names of tables that have one.
 fn shown(text: &str, path: &[Step]) -> String {
     let root = DeTable::parse(text).ok();
     let root = root.map(|root| DeValue::Table(root.into_inner()));
@@ -202,14 +201,14 @@ fn shown(text: &str, path: &[Step]) -> String {
     shown
 }
 
-/// A value of the text: how to get there, its key and its own place.
+/// A value of the text: its path, its key and its position.
 struct Entry {
     path: Vec<Step>,
     key: Option<Range<usize>>,
     value: Range<usize>,
 }
 
-/// All values of the text; none where it isn't TOML.
+/// All values of the text; empty if it isn't TOML.
 fn entries(text: &str) -> Vec<Entry> {
     let mut entries = Vec::new();
     if let Ok(table) = DeTable::parse(text) {
@@ -218,7 +217,7 @@ fn entries(text: &str) -> Vec<Entry> {
     entries
 }
 
-/// Adds what `value`, to which `path` leads, holds.
+/// Adds the content of `value`, given by `path`.
 fn collect(value: &DeValue, path: &[Step], entries: &mut Vec<Entry>) {
     let held: Vec<_> = match value {
         DeValue::Table(table) => (table.iter())

@@ -12,11 +12,11 @@ use super::number::{Constant, ConstantVector};
 pub struct Pretension {
     /// Name.
     pub name: String,
-    /// The groups of facets between cells of the bolt that are the cut.
+    /// The groups of facets between cells of the bolt that form the cut.
     pub on: Names,
-    /// The direction along which it is tightened; the mean normal of the cut where it isn't given.
+    /// The direction in which it is tightened, by default the average normal of the cut.
     pub direction: Option<ConstantVector>,
-    /// The force or shortening, where no step says otherwise.
+    /// The force or shortening, unless a step changes it.
     pub own: Tightening,
 }
 
@@ -25,17 +25,17 @@ pub struct Pretension {
 pub enum Tightening {
     /// The force across the cut (N).
     Force(f64),
-    /// The length that is taken out at the cut (m).
+    /// The length removed at the cut (m).
     Shortening(f64),
-    /// The length is the one that was reached in the step before it was locked, under this force (N).
+    /// The shortening reached in the step before locking, under this force (N).
     Locked(f64),
 }
 
-/// A bolt in a step.
+/// A change of a pretension in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "StepKeys")]
 pub enum PretensionChange {
-    /// Another force (N), which ends a lock.
+    /// Another force (N), which unlocks the shortening.
     Force(f64),
     /// Another shortening (m).
     Shortening(f64),
@@ -104,7 +104,7 @@ impl TryFrom<StepKeys> for PretensionChange {
 }
 
 impl Pretension {
-    /// The name of the condition that holds its shortening.
+    /// The name of the equation that holds its shortening.
     pub fn hold(&self) -> String {
         format!("{} held", self.name)
     }

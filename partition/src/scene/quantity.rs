@@ -1,4 +1,4 @@
-//! Quantities: what a user wants to know of the solution, by a name.
+//! Named quantities of interest.
 
 use serde::Deserialize;
 
@@ -26,14 +26,14 @@ pub enum Target {
         /// The direction.
         along: ConstantVector,
     },
-    /// The mean of a stress over a body.
+    /// The average of a stress over a body.
     MeanStress {
         /// Name of the body.
         body: String,
         /// The component.
         component: StressComponent,
     },
-    /// Reaction on the bodies of all conditions on a group.
+    /// Reaction on the bodies of all boundary conditions on a group.
     Reaction {
         /// Name of the group.
         on: String,
@@ -53,26 +53,26 @@ pub enum Target {
         contact: String,
         /// A point of the axis.
         about: ConstantVector,
-        /// The direction of the axis in space; in the plane that is z.
+        /// The direction of the axis in space; z in the plane.
         axis: Option<ConstantVector>,
     },
-    /// The mean or the largest pressure of a contact.
+    /// The average or the largest pressure of a contact.
     Pressure {
         /// Name of the contact.
         contact: String,
-        /// Kind of integral.
+        /// Average or largest pressure.
         kind: QuantityKind,
-        /// The length over which a largest one is smoothed (m); 0 where it isn't.
+        /// The smoothing length of the largest pressure (m); 0 without smoothing.
         over: f64,
     },
     /// A stress intensity factor of a crack tip, or its energy release rate.
     CrackTip {
         /// Name of the tip.
         tip: String,
-        /// Kind of integral.
+        /// Stress intensity factor or energy release rate.
         kind: QuantityKind,
     },
-    /// The gap that is left at a point of a contact.
+    /// The remaining gap at a point of a contact.
     Opening {
         /// Name of the contact.
         contact: String,
@@ -92,7 +92,7 @@ pub enum Place {
     Node(i64),
 }
 
-/// A component of a stress, by its place in results: XX YY ZZ XY YZ XZ.
+/// A component of a stress, by its index in results: XX YY ZZ XY YZ XZ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StressComponent {
@@ -168,11 +168,11 @@ struct Keys {
     tip: Option<String>,
 }
 
-/// The keys beside name and kind, as far as no kind has taken them.
+/// The keys besides name and kind that no kind has taken yet.
 #[derive(Default, PartialEq)]
 struct Given {
     place: Option<Place>,
-    /// The direction, the inner `None` being the normal one.
+    /// The direction; the inner `None` is the normal direction.
     along: Option<Option<ConstantVector>>,
     contact: Option<String>,
     body: Option<String>,
@@ -183,7 +183,7 @@ struct Given {
     tip: Option<String>,
 }
 
-/// A unit vector; its dimension is 0 where it is one of the first two axes, which any space has.
+/// A unit vector; its dimension is 0 for one of the first two axes, which is valid in any dimension.
 fn unit(direction: Direction) -> Result<Option<ConstantVector>, &'static str> {
     let axis = |dim, k: usize| ConstantVector {
         dim,
@@ -208,7 +208,7 @@ fn unit(direction: Direction) -> Result<Option<ConstantVector>, &'static str> {
 }
 
 impl Given {
-    /// Takes the keys of a kind; `None` where one that it needs isn't there.
+    /// Takes the keys of a kind; `None` if a required one is missing.
     fn take(&mut self, kind: Kind) -> Option<Target> {
         Some(match kind {
             Kind::Displacement => Target::Displacement {
@@ -263,7 +263,7 @@ impl Given {
 }
 
 impl Kind {
-    /// The keys that a quantity of this kind has, in words.
+    /// The keys of this kind of quantity, in words.
     fn expected(self) -> &'static str {
         match self {
             Self::Displacement => {
@@ -324,7 +324,7 @@ impl TryFrom<Keys> for Quantity {
 }
 
 impl Quantity {
-    /// The key that space of `dim` dimensions has no place for, and why.
+    /// The key that is invalid in `dim` dimensions, and the reason.
     pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         let (at, along) = match &self.of {
             Target::Displacement { at, along } => (Some(at), Some(along)),

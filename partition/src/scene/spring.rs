@@ -17,10 +17,10 @@ pub enum AnySpring {
     Between(SpringBetween),
 }
 
-/// A spring between two points, or the mean displacements of two groups.
+/// A spring between two points, or between the average displacements of two groups.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpringBetween {
-    /// Name; without one that of its ends.
+    /// Name, by default that of its ends.
     pub name: Option<String>,
     /// The ends.
     pub ends: [Names; 2],
@@ -40,7 +40,7 @@ pub enum BetweenStiffness {
 /// Springs to the ground at points, or an elastic foundation under a side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spring {
-    /// The groups of facets or points that it holds.
+    /// The groups of facets or points that it supports.
     pub on: Names,
     /// Force per displacement, on sides also per area.
     pub stiffness: SpringStiffness,
@@ -55,7 +55,7 @@ pub enum SpringStiffness {
     Foundation {
         /// Along the normal.
         normal: Number,
-        /// Along the tangents; none where it is left out.
+        /// Along the tangents; zero if missing.
         tangential: Option<Number>,
     },
 }
@@ -122,11 +122,11 @@ impl TryFrom<SpringKeys> for AnySpring {
 }
 
 impl SpringBetween {
-    /// The stiffness along unit vectors, one along the line from the second to the first of its ends, which are
-    /// `apart`.
+    /// The stiffness along unit vectors, for an axial one along the line from the second to the first of its ends,
+    /// whose difference is `apart`.
     ///
     /// # Errors
-    /// One that is less than 0 or no number there, none at all, or ends at one place.
+    /// A stiffness that is negative or not a number there, zero stiffness, or coincident ends.
     pub fn along(&self, apart: [f64; 3]) -> Result<Vec<([f64; 3], f64)>, String> {
         let all = match &self.stiffness {
             BetweenStiffness::Axial(_) if length(apart) == 0.0 => {
@@ -154,7 +154,7 @@ impl SpringBetween {
         }
     }
 
-    /// The name, among those of results.
+    /// The name in results.
     pub fn title(&self) -> String {
         let [a, b] = self
             .ends
@@ -163,7 +163,7 @@ impl SpringBetween {
         self.name.clone().unwrap_or_else(|| format!("{a} to {b}"))
     }
 
-    /// The key that is wrong in space of `dim` dimensions, and why.
+    /// The invalid key for `dim` dimensions, and the reason.
     fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         match &self.stiffness {
             BetweenStiffness::Axes(axes) => axes.fault(dim).map(|fault| ("stiffness", fault)),
@@ -173,7 +173,7 @@ impl SpringBetween {
 }
 
 impl AnySpring {
-    /// The groups that it is on, at both of its ends.
+    /// The groups at both of its ends.
     pub fn groups(&self) -> impl Iterator<Item = &Names> {
         let (one, both) = match self {
             Self::ToGround(spring) => (Some(&spring.on), &[][..]),
@@ -182,7 +182,7 @@ impl AnySpring {
         one.into_iter().chain(both)
     }
 
-    /// The key that is wrong in space of `dim` dimensions, and why.
+    /// The invalid key for `dim` dimensions, and the reason.
     pub(super) fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         match self {
             Self::ToGround(spring) => spring.stiffness.fault(dim),
@@ -195,7 +195,7 @@ impl SpringStiffness {
     /// The matrix k at a point whose outward normal is `n`.
     ///
     /// # Errors
-    /// A stiffness that is less than 0 or no number there.
+    /// A stiffness that is negative or not a number there.
     pub fn at(&self, point: [f64; 3], n: [f64; 3]) -> Result<[[f64; 3]; 3], String> {
         let mut k = [[0.0; 3]; 3];
         match self {
@@ -222,7 +222,7 @@ impl SpringStiffness {
         Ok(k)
     }
 
-    /// The key that is wrong in space of `dim` dimensions, and why.
+    /// The invalid key for `dim` dimensions, and the reason.
     fn fault(&self, dim: usize) -> Option<(&'static str, String)> {
         match self {
             Self::Axes(stiffness) => stiffness.fault(dim).map(|fault| ("stiffness", fault)),

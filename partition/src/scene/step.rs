@@ -1,4 +1,4 @@
-//! Load steps: what of a scene's loads each of them scales or replaces.
+//! Load steps, which scale or replace loads of a scene.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::number::{Constant, ConstantVector, Number, Vector};
 use super::place;
 use super::pretension::PretensionChange;
 
-/// A load step as a scene gives it.
+/// A load step in a scene.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(
     deny_unknown_fields,
@@ -21,41 +21,41 @@ use super::pretension::PretensionChange;
                  motion, equation, coupling and pretension"
 )]
 pub struct LoadStep {
-    /// Name; its number without.
+    /// Name, by default its number.
     pub name: Option<String>,
-    /// Time on the load path; its number without.
+    /// Time on the load path, by default its number.
     #[serde(deserialize_with = "time")]
     pub time: Option<f64>,
     /// The factors of its loads.
     pub scale: Scale,
-    /// Bodies and contacts that are there from this step on.
+    /// Bodies and contacts that are active from this step on.
     pub add: Option<Names>,
     /// Bodies and contacts that are removed in this step.
     pub remove: Option<Names>,
-    /// Forces per volume in place of those of these bodies (N/m³).
+    /// Forces per volume that replace those of these bodies (N/m³).
     pub body_force: BTreeMap<String, Vector>,
-    /// Temperatures in place of those of these bodies (K).
+    /// Temperatures that replace those of these bodies (K).
     pub temperature: BTreeMap<String, Number>,
-    /// Displacements in place of those of the obstacles of these contacts (m).
+    /// Displacements that replace those of the obstacles of these contacts (m).
     pub motion: BTreeMap<String, ConstantVector>,
-    /// Values in place of those of the equations of these names (m).
+    /// Values that replace those of the equations of these names (m).
     #[serde(deserialize_with = "values")]
     pub equation: BTreeMap<String, f64>,
-    /// Loads and prescribed motions of the reference points of the couplings of these names, where they are given here in
-    /// place of what the scene says.
+    /// Loads and prescribed motions of the reference points of the couplings of these names; the given ones replace
+    /// those of the scene.
     pub coupling: BTreeMap<String, CouplingLoads>,
-    /// The pretensions of these names from here on.
+    /// The pretensions of these names from this step on.
     pub pretension: BTreeMap<String, PretensionChange>,
-    /// Tractions in place of all those of the scene.
+    /// Tractions that replace all those of the scene.
     #[serde(deserialize_with = "list")]
     pub traction: Option<Vec<Traction>>,
-    /// Pressures in place of all those of the scene.
+    /// Pressures that replace all those of the scene.
     #[serde(deserialize_with = "list")]
     pub pressure: Option<Vec<Pressure>>,
-    /// Forces on nodes in place of all those of the scene.
+    /// Forces on nodes that replace all those of the scene.
     #[serde(deserialize_with = "list")]
     pub force: Option<Vec<Force>>,
-    /// Displacements in place of all those of the scene: others at the same nodes along the same axes.
+    /// Displacements that replace all those of the scene, with other values at the same nodes along the same axes.
     #[serde(deserialize_with = "list")]
     pub displacement: Option<Vec<Displacement>>,
 }
@@ -76,7 +76,7 @@ pub struct Scale {
     /// Scale of forces on nodes.
     #[serde(deserialize_with = "number")]
     pub force: f64,
-    /// Scale of prescribed displacements, those of obstacles among them.
+    /// Scale of prescribed displacements, including those of obstacles.
     #[serde(deserialize_with = "number")]
     pub displacement: f64,
     /// Scale of initial stresses.
@@ -133,7 +133,7 @@ impl<'de> Deserialize<'de> for Scale {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Scale, A::Error> {
-                // The table, as derived above.
+                // The table, with the derived implementation.
                 Scale::deserialize(MapAccessDeserializer::new(map))
             }
         }

@@ -1,6 +1,6 @@
-//! The known word that an unknown one was probably meant to be.
+//! Suggestions for unknown words.
 
-/// Words of other programs, the key that means the same in a scene, and what to do where that key isn't known.
+/// Words of other programs, the equivalent key of a scene, and advice where that key isn't valid.
 const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
     (
         "e modulus youngs emod young_modulus youngs_modulus elastic_modulus elasticity",
@@ -119,8 +119,7 @@ const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
     ),
 ];
 
-/// The candidate with the fewest letters different from `word`, capitals aside; the first of
-/// several.
+/// The candidate with the fewest letters different from `word`, case-insensitive; the first of several.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word = word.to_lowercase();
     candidates
@@ -128,8 +127,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .min_by_key(|candidate| distance(&word, candidate))
 }
 
-/// A question or advice to end a message about an unknown word with, `; did you mean 'young'?`; empty
-/// where nothing known is like it.
+/// A question or advice for the end of a message about an unknown word, `; did you mean 'young'?`; empty if no known
+/// word is similar.
 pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let lower = word.to_lowercase();
     let candidates: Vec<&str> = candidates.into_iter().collect();
@@ -151,7 +150,7 @@ pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> St
     }
 }
 
-/// [`hint`] and all that is known.
+/// The [`hint`] and all known words.
 pub fn hint_and_known<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let candidates: Vec<&str> = candidates.into_iter().collect();
     let hint = hint(word, candidates.iter().copied());

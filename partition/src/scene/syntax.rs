@@ -1,9 +1,8 @@
-//! Messages of a line that isn't TOML: toml's own words, and advice for the slips of those who
-//! don't know TOML.
+//! Messages for a line with a syntax error: toml's message, and advice on common mistakes.
 
 use toml::de::Error;
 
-/// The lists of a scene, `[[contact]]`, once for each.
+/// The names of lists of a scene, as in `[[contact]]`.
 const LISTS: [&str; 11] = [
     "coupling",
     "displacement",
@@ -18,7 +17,7 @@ const LISTS: [&str; 11] = [
     "step",
 ];
 
-/// Longest line that is shown.
+/// Largest length of a displayed line.
 const LONGEST: usize = 200;
 
 /// The message of `toml` on `text`, advice, and the line with a caret below it.
@@ -47,7 +46,7 @@ pub(super) fn described(text: &str, start: usize, error: &Error) -> String {
     said
 }
 
-/// Advice for a table where a list was expected, or where there are several of its name.
+/// Advice for a table in place of a list, or for several tables of the same name.
 pub(super) fn double_brackets(table: &str) -> Option<String> {
     let last = table.rsplit('.').next()?;
     LISTS
@@ -55,7 +54,7 @@ pub(super) fn double_brackets(table: &str) -> Option<String> {
         .then(|| format!("expected [[{table}]] in double brackets, once for each"))
 }
 
-/// Advice for a number with a decimal comma behind any `key =` of the line, as in a table `{ … }`.
+/// Advice for a number with a decimal comma after any `key =` of the line, as in a table `{ … }`.
 fn decimal_comma(line: &str) -> Option<String> {
     let line = line.split('#').next().unwrap_or_default();
     line.match_indices('=').find_map(|(at, _)| {
@@ -73,7 +72,7 @@ fn decimal_comma(line: &str) -> Option<String> {
     })
 }
 
-/// Advice for what stands behind `key =`.
+/// Advice for the text after `key =`.
 fn of_value(key: &str, value: &str) -> Option<String> {
     if matches!(value, "True" | "TRUE" | "False" | "FALSE") {
         return Some(format!("expected {}", value.to_lowercase()));

@@ -1,4 +1,4 @@
-//! Ties: sides that are held together whatever the force between them is.
+//! Ties: sides that are joined whatever the sign of the force between them.
 
 use serde::Deserialize;
 
@@ -9,13 +9,13 @@ use super::contact::{Contact, Pairing, Partner, TieReach, contact_name, distance
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "Keys")]
 pub struct Tie {
-    /// Name, that of a group in the result file.
+    /// Name, also of a group in the result file.
     pub name: String,
     /// Side a and side b.
     pub sides: [Names; 2],
-    /// The discretization of the sides; `None` to let their nodes decide.
+    /// The discretization of the sides; `None` for an automatic choice by their nodes.
     pub pairing: Option<Pairing>,
-    /// Nodes of the sides that are tied.
+    /// The nodes of the sides that are tied.
     pub reach: TieReach,
 }
 

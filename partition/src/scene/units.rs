@@ -1,6 +1,6 @@
-//! The units in which the numbers of a scene are meant, for those who read them.
+//! The units of a scene's numbers, for messages and pictures.
 
-/// The unit of length. Nothing is converted: what is printed with a number follows from it.
+/// The unit of length. Nothing is converted: it only determines the units printed with numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 pub enum Units {
     /// m, N and Pa.
@@ -16,7 +16,7 @@ impl Units {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Metre, Self::Millimetre];
 
-    /// The unit of lengths, its name in scenes and files.
+    /// The unit of lengths, which is its name in scenes and files.
     pub fn length(self) -> &'static str {
         self.pick("m", "mm")
     }

@@ -1,4 +1,4 @@
-//! Colours and bars are for terminals.
+//! Colours and progress bars appear on terminals only.
 
 use std::process::Command;
 
@@ -6,7 +6,7 @@ use super::case;
 use crate::support::process::Running;
 use crate::support::solver::{LIMIT, built, program};
 
-/// The beginning of a colour.
+/// The beginning of a colour's escape sequence.
 const COLOUR: &str = "\u{1b}[";
 
 fn is_control(c: char) -> bool {
@@ -24,7 +24,7 @@ fn what_is_no_terminal_gets_no_control_characters() {
             &["--log", "json"],
         ] {
             let ended = case.run_on(ranks, args);
-            // Open MPI gives ranks a terminal of its own, which ends lines in its way.
+            // Open MPI gives ranks a terminal of its own, with other line endings.
             let said = [ended.stdout, ended.stderr].concat().replace("\r\n", "\n");
             assert!(
                 !said.contains(is_control),
@@ -65,7 +65,7 @@ fn a_terminal_shows_colours_unless_the_environment_forbids_them() {
     };
     let shown = on_a_terminal(false);
     assert!(shown.contains("\u{1b}[32mconverged"), "{shown}");
-    // A bar without a phase would have these.
+    // A progress bar without a phase would contain these.
     assert!(!shown.contains('░'), "{shown}");
     assert!(!on_a_terminal(true).contains("\u{1b}[32m"));
 }

@@ -1,4 +1,4 @@
-//! Man pages and completions are made of the parsers' own options.
+//! Man pages and completions are generated from the parsers' options.
 
 use std::fs;
 use std::process::{Command, Output};
@@ -60,7 +60,7 @@ fn the_man_page_has_every_option_and_exit_code_and_is_well_formed() {
         }
         let path = folder.path().join("page.1");
         fs::write(&path, page).unwrap();
-        // Whatever reads man pages here finds nothing to complain of.
+        // All readers of man pages installed here accept it.
         let linted = run(Command::new("mandoc")
             .args(["-T", "lint", "-W", "error"])
             .arg(&path));

@@ -1,4 +1,4 @@
-//! `--log json`: every line is an object that the documentation names.
+//! `--log json`: every line is an object described in the documentation.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -45,7 +45,7 @@ fn names(ended: &Ended) -> Vec<String> {
 
 #[test]
 fn every_line_is_an_event_that_the_documentation_names() {
-    // A support ends on Γ.
+    // The scene has a support that ends on Γ.
     let case = granite("");
     let report_file = case.folder().join("report.json");
     for ranks in [0, 2] {
@@ -61,7 +61,7 @@ fn every_line_is_an_event_that_the_documentation_names() {
         assert_eq!(finished["exit_code"], 0);
         let report = report(&case);
         assert_eq!(finished["report"], report);
-        // The bilateral start is one more.
+        // The bilateral start is an additional sweep.
         let sweeps = names.iter().filter(|&&name| name == "sweep").count();
         assert_eq!(sweeps as u64, report["sweeps"].as_u64().unwrap() + 1);
         for key in ["dofs", "interface_dofs", "subdomains", "contact_conditions"] {
@@ -148,7 +148,7 @@ fn a_check_ends_with_what_solving_would_take() {
     for key in ["memory_bytes", "flops", "available_bytes"] {
         assert!(check[key].as_f64().unwrap() > 0.0, "{key}");
     }
-    // What answers for contact conditions, and why, is said before the work and after it in the same words.
+    // The chosen operator for contact constraints, and the reason, are the same in the log and in the report.
     let solved = self::events(&case.run(&["--log", "json"]).stdout);
     let choice = &solved.last().unwrap().1["report"]["interface_choice"];
     let words = choice.as_str().unwrap();

@@ -1,4 +1,4 @@
-//! Wrong files and bad usage.
+//! Wrong files and invalid usage.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::granite;
 use crate::support::process::Running;
 use crate::support::solver::{LIMIT, program};
 
-/// Fails unless the program ends with 2 and an error with all words.
+/// Fails unless the program ends with 2 and an error that contains all words.
 #[track_caller]
 fn refused(args: &[&str], folder: &Path, words: &[&str]) {
     let mut command = program(0);

@@ -1,4 +1,4 @@
-//! The command line goes before the problem file, and both before the defaults.
+//! The command line takes precedence over the problem file, and both over the defaults.
 
 use super::{case, granite, report};
 use crate::support::solution::datasets;

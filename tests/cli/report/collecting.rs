@@ -1,4 +1,4 @@
-//! `scripts/collect`, which makes a table of many reports.
+//! `scripts/collect`, which tabulates many reports.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::report;
 use crate::support::process::{Ended, Running};
 use crate::support::solver::LIMIT;
 
-/// The script's answer to the files; `None` where there is no Python.
+/// The output of the script for these files; `None` without Python.
 fn collect(files: &[&Path]) -> Option<Ended> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/collect");
     if Command::new("python3").arg("--version").output().is_err() {
@@ -40,7 +40,7 @@ fn every_report_is_a_row_of_the_same_columns() {
     assert_eq!(lines.len(), 3, "{table}");
     let columns: Vec<&str> = lines[0].split(',').collect();
     let cells: Vec<&str> = lines[1].split(',').collect();
-    // No cell of it has a comma but the name of the MPI library.
+    // Only the name of the MPI library contains commas.
     let of = |name: &str| {
         let at = columns.iter().position(|column| *column == name);
         at.unwrap_or_else(|| panic!("no column {name} in {columns:?}"))

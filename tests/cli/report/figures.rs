@@ -1,4 +1,4 @@
-//! `scripts/figures`, which draws a result: how far it enlarges what moves.
+//! `scripts/figures`, which draws a result: its magnification of displacements.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::support::process::{Ended, Running};
 use crate::support::scenes::{model, two_block_scene, two_blocks};
 use crate::support::solver::{Case, LIMIT};
 
-/// The two blocks, the upper one a gap above the lower, solved.
+/// The solution for the two blocks, with the upper one above the lower by a gap.
 fn solved(gap: f64) -> Case {
     let blocks = match gap {
         0.0 => two_blocks(),

@@ -1,17 +1,17 @@
-//! The part of docs/report.md that the types make.
+//! The part of docs/report.md that is generated from the types.
 
 use std::fmt::Write as _;
 use std::iter;
 
 use serde_json::Value;
 
-/// Mark behind which the page is generated.
+/// Mark after which the page is generated.
 pub const MARK: &str = "<!-- From here on: WRITE_DOCS=1 cargo test --test cli report -->\n";
 
-/// So many fields of another part aren't told again.
+/// Number of fields of another part from which on they aren't repeated.
 const MANY: usize = 6;
 
-/// The page: what stands `above` the mark, and a table for every part of the report.
+/// The page: the text `above` the mark, and a table for every part of the report.
 pub fn below(above: &str, schema: &Value) -> String {
     let mut page = format!("{above}{MARK}\n## The report\n\n{}", table(schema));
     let names = parts(schema);
@@ -19,7 +19,7 @@ pub fn below(above: &str, schema: &Value) -> String {
         let mut part = schema["$defs"][name].clone();
         let text = part["description"].as_str().unwrap_or_default();
         let _ = write!(page, "\n## {}\n\n{text}\n\n", heading(name));
-        // What has most fields of the report or of an earlier part says so.
+        // A part that has most fields of the report or of an earlier part refers to it.
         let report = ("report", "the-report", schema);
         let earlier = (names[..k].iter()).map(|name| (&**name, "", &schema["$defs"][name]));
         for (earlier, link, other) in iter::once(report).chain(earlier) {
@@ -41,7 +41,7 @@ pub fn below(above: &str, schema: &Value) -> String {
     page
 }
 
-/// Leaves out the fields that another part has, too, and names them, where they are many.
+/// Removes the fields that another part has, too, and returns their names, if they are many.
 fn leave_out(part: &mut Value, other: &Value) -> Vec<String> {
     let names = |part: &Value| fields(part).map(|(name, _)| name.to_owned()).collect();
     let (own, others): (Vec<String>, Vec<String>) = (names(part), names(other));
@@ -75,7 +75,7 @@ fn anchor(name: &str) -> String {
     heading(name).to_lowercase().replace(' ', "-")
 }
 
-/// Fields in the order in which they are written.
+/// Fields in the order of the report.
 fn fields(part: &Value) -> impl Iterator<Item = (&str, &Value)> {
     let names = part["required"].as_array().into_iter().flatten();
     names.map(|name| {
@@ -100,14 +100,14 @@ fn table(part: &Value) -> String {
     let mut table = String::from("| field | | meaning |\n|---|---|---|\n");
     for (name, field) in fields(part) {
         let text = field["description"].as_str().unwrap_or_default();
-        // ‖ |K| |u| ‖ would be three cells.
+        // ‖ |K| |u| ‖ would become three cells.
         let text = text.replace('|', "\\|");
         let _ = writeln!(table, "| `{name}` | {} | {text} |", kind(field));
     }
     table
 }
 
-/// The type of a field in words.
+/// The type of a field in plain words.
 fn kind(field: &Value) -> String {
     if let Some(name) = reference(field) {
         return format!("[{}](#{})", heading(name).to_lowercase(), anchor(name));
@@ -117,7 +117,7 @@ fn kind(field: &Value) -> String {
         return words.join(" or ");
     }
     match &field["type"] {
-        // The page says once what becomes of infinity.
+        // The page explains infinity in a single place.
         Value::Array(types) if types[0] == "number" => word("number").to_owned(),
         Value::Array(types) => {
             let words: Vec<&str> = types.iter().filter_map(Value::as_str).map(word).collect();
@@ -145,7 +145,7 @@ fn reference(field: &Value) -> Option<&str> {
     field["$ref"].as_str()?.strip_prefix("#/$defs/")
 }
 
-/// The parts of the report in the order in which they are first named.
+/// The parts of the report in the order of their first reference.
 fn parts(schema: &Value) -> Vec<String> {
     fn visit(schema: &Value, part: &Value, names: &mut Vec<String>) {
         for (_, field) in fields(part) {

@@ -1,4 +1,4 @@
-//! The schema of the report, from the types.
+//! The schema of the report, generated from the types.
 
 use contact_dd_mpi::output::report::Report;
 use schemars::Schema;
@@ -6,7 +6,7 @@ use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use serde_json::{Value, json};
 
-/// The schema as it stands in the docs: a later version may write more fields than it names.
+/// The schema in the docs, which allows additional fields, as later versions may write more.
 pub fn published() -> Value {
     let settings = SchemaSettings::draft2020_12()
         .for_serialize()
@@ -19,20 +19,20 @@ pub fn published() -> Value {
     schema
 }
 
-/// The types as JSON has them: a number that isn't finite is null.
+/// The types in their JSON form: a number that isn't finite is null.
 fn as_written(schema: &mut Schema) {
-    // Names of Rust's types are no formats of JSON.
+    // Rust's type names aren't formats of JSON.
     schema.remove("format");
     if schema.get("type") == Some(&json!("number")) {
         schema.insert("type".into(), json!(["number", "null"]));
     }
-    // Lines of a doc comment end where it suits the source.
+    // Line breaks in doc comments have no meaning.
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = text.replace('\n', " ");
     }
 }
 
-/// Forbids all fields that aren't named.
+/// Forbids all unknown fields.
 pub fn close(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

@@ -1,4 +1,4 @@
-//! `scripts/summary`, which puts a run on one page.
+//! `scripts/summary`, which summarizes a run on one page.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::support::process::{Ended, Running};
 use crate::support::scenes::built_in_model;
 use crate::support::solver::{Case, LIMIT};
 
-/// True if there is a Python that can draw: the script would install one.
+/// True if a Python with plotting exists; the script would install one.
 pub fn can_draw() -> bool {
     let draws = ["python3", "/usr/bin/python3"].iter().any(|python| {
         let mut imported = Command::new(python);
@@ -27,7 +27,7 @@ pub fn can_draw() -> bool {
 
 fn summary(args: &[&Path]) -> Ended {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/summary");
-    // Where there is much else to do, starting Python and its packages takes most of it.
+    // On a busy machine most of the time is the start of Python and its packages.
     Running::start(Command::new(script).args(args)).wait(4 * LIMIT)
 }
 
@@ -81,7 +81,7 @@ fn what_is_no_result_gets_no_page() {
     assert!(!file.with_extension("html").exists());
 }
 
-/// Marks a result as one of a scene in mm, N and MPa.
+/// Declares mm, N and MPa as the units of a result.
 pub fn set_millimetres(result: &Path) {
     let file = hdf5::File::open_rw(result).unwrap();
     let attribute = file.attr("units");
@@ -105,7 +105,7 @@ fn a_page_has_the_units_of_the_scene() {
     let in_m = page();
     set_millimetres(&case.result());
     let in_mm = page();
-    // With the space before it: base64 of a picture can have the three letters in a row.
+    // With the preceding space, as base64 of a picture may contain the three letters in sequence.
     assert!(in_m.contains("-5 N/m<") && !in_m.contains(" MPa"));
     assert!(in_mm.contains("-5 N/mm<") && in_mm.contains(" MPa"));
 }

@@ -1,8 +1,8 @@
-//! A block of code on a page, and what is done with it.
+//! A block of code on a page, and its treatment.
 
 use super::page::{Inline, Page};
 
-/// The mark right before a block.
+/// The mark immediately before a block.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Preface {
     #[default]
@@ -25,29 +25,29 @@ pub struct Block {
 /// Treatment of a block.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Action<'a> {
-    /// Nothing, for a reason that stands on the page.
+    /// Not run, for a reason given on the page.
     Skip(&'a str),
-    /// Nothing: it is no code.
+    /// Not run, as it isn't code.
     Read,
-    /// Write the text to this file.
+    /// Written to this file.
     Write(&'a str),
-    /// The block before has to print it.
+    /// Compared with the output of the block before.
     Compare,
-    /// It is run by a shell, and has to end with 0.
+    /// Run by a shell; it has to end with 0.
     Script,
-    /// Run the commands in a shell; they have to print what stands below them.
+    /// Run as commands in a shell, whose output has to be that below them.
     Session,
-    /// It is run by the documents' Python.
+    /// Run by the documents' Python.
     Python,
 }
 
 impl Preface {
-    /// `None` where a piece of HTML is no such comment.
+    /// The mark in an HTML comment; `None` for any other HTML.
     pub fn of_comment(html: &str) -> Option<Self> {
         Self::not_run("not run:", html)
     }
 
-    /// The same for a comment that holds for all blocks below it.
+    /// The mark in a comment that applies to all following blocks.
     pub fn of_page(html: &str) -> Option<Self> {
         Self::not_run("none of this page is run:", html)
     }
@@ -73,7 +73,7 @@ impl Block {
     /// Treatment of the block.
     ///
     /// # Errors
-    /// If the page doesn't say.
+    /// A block whose treatment the page doesn't determine.
     pub fn action(&self) -> Result<Action<'_>, String> {
         match (&self.preface, self.language.as_str()) {
             (Preface::NotRun(reason), _) if reason.is_empty() => {
@@ -106,7 +106,7 @@ impl Block {
     }
 }
 
-/// A test: what a page says is done with its blocks.
+/// A test: blocks are treated as the page requests.
 pub fn are_split() {
     let text = "# Title\n\nA scene, `scene.toml`:\n\n```toml\na = 1\n```\n\n```sh\nls\n```\n\nIt prints:\n\n\
                 ```text\nscene.toml\n```\n\n<!-- not run: needs a\n     cluster -->\n```sh\nsrun\n```\n\n\

@@ -1,4 +1,4 @@
-//! The book that `scripts/book` makes of the pages.
+//! The book that `scripts/book` generates from the pages.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -9,10 +9,10 @@ use super::links::in_repository;
 use super::page::{Page, root};
 use super::run::Folder;
 
-/// The contents of the book.
+/// The table of contents of the book.
 const SUMMARY: &str = "docs/SUMMARY.md";
 
-/// A test: each page is in the book, once.
+/// A test: each page is in the book exactly once.
 pub fn holds_every_page(pages: &[Page]) {
     let summary = pages.iter().find(|page| page.name == SUMMARY).unwrap();
     let mut chapters: Vec<String> = (summary.links.iter())
@@ -25,7 +25,7 @@ pub fn holds_every_page(pages: &[Page]) {
     assert_eq!(chapters, wanted);
 }
 
-/// A test: the book is made, its links lead to files and headings, and its search finds words.
+/// A test: the book is complete, its links lead to files and headings, and its search finds words.
 pub fn is_whole() {
     let folder = Folder::new();
     let book = folder.path().join("book");
@@ -35,7 +35,7 @@ pub fn is_whole() {
     files_in(&book, &mut files);
     let pages: BTreeMap<&PathBuf, String> = (files.iter())
         .filter(|file| file.extension().is_some_and(|ending| ending == "html"))
-        // Only these two aren't made of one page.
+        // Only these two don't correspond to one page.
         .filter(|file| !file.ends_with("404.html") && !file.ends_with("print.html"))
         .map(|file| (file, fs::read_to_string(file).unwrap()))
         .collect();
@@ -65,7 +65,7 @@ pub fn is_whole() {
         name.starts_with("searchindex")
     });
     let index = fs::read_to_string(index.unwrap()).unwrap();
-    // The last three are made of the docstrings of the Python package, of the notebook, and of a case.
+    // The last three are generated from the docstrings of the Python package, from the notebook, and from a case.
     for page in [
         "docs/coming-from.html#",
         "docs/python-reference.html#model",
@@ -76,7 +76,7 @@ pub fn is_whole() {
     }
 }
 
-/// The values of an attribute, as they stand in the text.
+/// The unparsed values of an attribute.
 fn values<'a>(html: &'a str, name: &str) -> impl Iterator<Item = &'a str> {
     let start = format!(" {name}=\"");
     let found: Vec<&str> = html.split(&start).skip(1).collect();

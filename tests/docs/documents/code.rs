@@ -1,12 +1,11 @@
-//! Names of code on the pages: a link whose text is code and that leads to a Rust file names something that
-//! is defined there.
+//! Names of code on the pages: a link from code to a Rust file has to name an item defined there.
 
 use std::fs;
 
 use super::links::in_repository;
 use super::page::{Page, root};
 
-/// A test: the names are defined where the links lead.
+/// A test: the names are defined in the linked files.
 pub fn names_exist(page: &Page) {
     for link in page.links.iter().filter(|link| link.file.ends_with(".rs")) {
         let Some(name) = link.code.as_ref().filter(|name| !name.contains('/')) else {
@@ -20,7 +19,7 @@ pub fn names_exist(page: &Page) {
             link.line,
             file.display()
         );
-        // Of `Type::function` the type may be defined elsewhere.
+        // The type of `Type::function` may be defined elsewhere.
         match name.split_once("::") {
             Some((kind, function)) => {
                 assert!(

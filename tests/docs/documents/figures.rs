@@ -1,14 +1,14 @@
-//! Measured figures of README: each stands in the section of a page that its line links.
+//! Measured figures of README: each has to occur in the section that its line links.
 
 use std::fs;
 
 use super::links::anchor_of;
 use super::page::root;
 
-/// Most lines of README.
+/// Largest number of lines of README.
 const LONGEST: usize = 120;
 
-/// A test: README is short, and the section behind each of its measured figures has that figure.
+/// A test: README is short, and the linked section contains each of its measured figures.
 pub fn of_readme() {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     let lines = readme.lines().count();
@@ -39,7 +39,7 @@ pub fn of_readme() {
     assert!(found > 15, "README.md has {found} figures only");
 }
 
-/// A test: figures are told from others and from parts of others.
+/// A test: figures are distinguished from others and from parts of others.
 pub fn are_told_apart() {
     let line = "- **3-D**: 46 875 dofs in 1.24 s, `quad9` ([here](docs/a.md#b)), and 7 more";
     let claims: Vec<_> = claims(line).collect();
@@ -56,7 +56,7 @@ pub fn are_told_apart() {
     }
 }
 
-/// The parts of a line, each with the target of the link that ends it.
+/// The parts of a line, each with the target of the link at its end.
 fn claims(line: &str) -> impl Iterator<Item = (&str, Option<&str>)> {
     line.split_inclusive(')').map(|part| {
         let link = part
@@ -80,7 +80,7 @@ fn section(target: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The figures of a text: numbers that stand beside each other are one, with its thousands apart.
+/// The figures of a text: adjacent numbers form one figure, with spaces between thousands.
 fn figures(text: &str) -> Vec<Vec<&str>> {
     let words = words(text);
     let runs = words.split(|word| !is_figure(word));
@@ -89,12 +89,12 @@ fn figures(text: &str) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// True if a figure is among the words of a page, as a whole.
+/// True if a figure occurs among the words of a page as a whole.
 fn holds(page: &[&str], figure: &[&str]) -> bool {
     page.split(|word| !is_figure(word)).any(|run| run == figure)
 }
 
-/// The words of a text, numbers with sign and exponent, and other signs as words of their own.
+/// The words of a text: numbers with sign and exponent, and other signs as separate words.
 fn words(text: &str) -> Vec<&str> {
     let inside = |c: char| c.is_alphanumeric() || "-._".contains(c);
     let separate = text.split_inclusive(|c| !inside(c)).flat_map(|part| {
@@ -104,7 +104,7 @@ fn words(text: &str) -> Vec<&str> {
     separate.filter(|word| !word.is_empty()).collect()
 }
 
-/// True if a word is a number, which `3-D` isn't.
+/// True if a word is a number, unlike `3-D`.
 fn is_figure(word: &&str) -> bool {
     word.starts_with(|c: char| c.is_ascii_digit()) && !word.ends_with("-D")
 }

@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::page::{Page, root};
 
-/// A test: files that a page links exist, and headings, too.
+/// A test: linked files and headings exist.
 pub fn lead_somewhere(page: &Page, pages: &[Page]) {
     let wrong: Vec<String> = page
         .links
@@ -27,7 +27,7 @@ pub fn lead_somewhere(page: &Page, pages: &[Page]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The path from the root of what a page links.
+/// The path of a link's target, relative to the root.
 pub fn in_repository(page: &Page, file: &str) -> PathBuf {
     if file.is_empty() {
         return PathBuf::from(&page.name);
@@ -42,7 +42,7 @@ pub fn in_repository(page: &Page, file: &str) -> PathBuf {
     path
 }
 
-/// GitHub's anchor of a heading: small letters, blanks as hyphens, no other punctuation.
+/// GitHub's anchor of a heading: lower case, blanks as hyphens, no other punctuation.
 pub fn anchor_of(heading: &str) -> String {
     let kept = heading
         .trim()

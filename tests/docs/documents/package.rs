@@ -7,7 +7,7 @@ use std::process::Command;
 use super::page::root;
 use super::run::{Folder, python};
 
-/// The files of tests.
+/// The test files.
 pub fn tests() -> Vec<PathBuf> {
     let files = fs::read_dir(root().join("python/tests")).unwrap();
     let files = files.map(|file| PathBuf::from(file.unwrap().file_name()));
@@ -18,7 +18,7 @@ pub fn tests() -> Vec<PathBuf> {
     files
 }
 
-/// A test: pytest passes, nothing left out.
+/// A test: pytest passes, without skipped tests.
 pub fn passes(file: &Path) {
     let folder = Folder::new();
     let mut command = Command::new(python().expect("ignored without it"));

@@ -8,14 +8,14 @@ use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
 
 use super::block::{Block, Preface};
 
-/// A link to something that isn't on the web.
+/// A link within the repository.
 pub struct Link {
     pub line: usize,
-    /// The printed text, if it is nothing but code.
+    /// The printed text, if it is only code.
     pub code: Option<String>,
     /// The file, relative to the page; empty for the page itself.
     pub file: String,
-    /// Text behind `#`.
+    /// Text after `#`.
     pub anchor: Option<String>,
 }
 
@@ -31,7 +31,7 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The pages at the root, all under `docs`, and those of the built-in scenes, by name.
+/// The pages in the root, all under `docs`, and those of the built-in scenes, by name.
 pub fn all() -> Vec<Page> {
     let mut paths = Vec::new();
     pages_in(root(), false, &mut paths);
@@ -58,7 +58,7 @@ fn pages_in(folder: &Path, with_folders: bool, paths: &mut Vec<PathBuf>) {
 }
 
 impl Page {
-    /// Splits the text of a page.
+    /// Parses the text of a page.
     pub fn parse(name: &str, text: &str) -> Self {
         let mut page = Self {
             name: name.to_owned(),

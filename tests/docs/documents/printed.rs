@@ -1,10 +1,10 @@
-//! Comparison of output with that on a page.
+//! Comparison of output with the output shown on a page.
 
-/// The sign for any text.
+/// The placeholder for any text.
 const ANYTHING: char = '…';
 
-/// True if `printed` is what the page shows. `…` stands for anything within a line, and as a line for any
-/// number of lines; blanks at ends of lines and empty lines at the end don't count.
+/// True if `printed` agrees with the page. `…` stands for anything within a line, and as a line for any number of
+/// lines; trailing blanks and empty lines at the end are ignored.
 pub fn is_shown(shown: &str, printed: &str) -> bool {
     lines_match(&lines(shown), &lines(printed))
 }
@@ -33,7 +33,7 @@ fn line_matches(shown: &str, printed: &str) -> bool {
     let Some(mut rest) = printed.strip_prefix(head) else {
         return false;
     };
-    // The first place that fits leaves most for what follows; the last piece has to be at the end.
+    // The first match of each piece leaves most text for the following ones; the last piece has to match the end.
     while let Some((piece, more)) = tail.split_once(ANYTHING) {
         let Some((_, after)) = rest.split_once(piece) else {
             return false;
@@ -43,7 +43,7 @@ fn line_matches(shown: &str, printed: &str) -> bool {
     rest.ends_with(tail)
 }
 
-/// A test: what dots stand for, and what they don't.
+/// A test: which texts dots stand for, and which not.
 pub fn dots() {
     for (shown, printed) in [
         ("a\nb", "a\nb\n"),

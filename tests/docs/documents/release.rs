@@ -1,4 +1,4 @@
-//! The packages that `scripts/release` makes of built programs.
+//! The packages that `scripts/release` builds from compiled programs.
 
 use std::fs;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use super::page::root;
 use super::run::{Folder, programs};
 
-/// A test: the package and the tarball hold both programs, which solve, with their manuals and licences.
+/// A test: the package and the tarball contain both programs, which solve, with their manuals and licences.
 pub fn solves() {
     if Command::new("dpkg-shlibdeps")
         .arg("--version")
@@ -19,7 +19,7 @@ pub fn solves() {
     let folder = Folder::new();
     let mut release = Command::new(root().join("scripts/release"));
     release.arg("made").env("PROGRAMS", programs());
-    // Half of the time goes into the compression of programs that nobody gets.
+    // Compression of packages that are discarded would take half of the time.
     release
         .env("DPKG_DEB_COMPRESSOR_TYPE", "none")
         .env("GZIP", "-1");

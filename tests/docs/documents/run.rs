@@ -1,4 +1,4 @@
-//! Runs a page as a reader does, block by block, in a folder of its own.
+//! Runs a page like a reader, block by block, in a separate folder.
 
 use std::env;
 use std::ffi::OsString;
@@ -17,24 +17,23 @@ use super::page::{Page, root};
 use super::printed::is_shown;
 use crate::process::{Ended, Running};
 
-/// Longer than any block takes on a machine that is busy with other tests.
+/// Time limit above that of any block on a busy machine.
 const LIMIT: Duration = Duration::from_secs(180);
 
-/// Longer than it takes to build the programs.
+/// Time limit above that of building the programs.
 const BUILD_LIMIT: Duration = Duration::from_secs(1800);
 
-/// Files of the repository that are at hand where the commands are run.
+/// Files of the repository available to the commands.
 const CHECKOUT: [&str; 3] = ["scripts", "docs", "hostfile.example"];
 
-/// The documents' Python, if there is one.
+/// The documents' Python, if available.
 pub fn python() -> Option<PathBuf> {
     let named = env::var_os("DOCUMENTS_PYTHON").filter(|name| !name.is_empty())?;
     Some(PathBuf::from(named))
 }
 
-/// The folder with both programs. Cargo builds that of the other package along with its own tests only, so
-/// that it is asked to build some, with what all tests are built with; there is nothing to do where all
-/// tests are run.
+/// The folder with both programs. Cargo builds the programs of the other package only along with its tests, so that one
+/// of these is built, with the features of all tests; if all tests are run, everything exists already.
 pub fn programs() -> &'static Path {
     static BUILT: Once = Once::new();
     let folder = Path::new(env!("CARGO_BIN_EXE_contact-dd-mpi"))
@@ -56,7 +55,7 @@ pub fn programs() -> &'static Path {
     folder
 }
 
-/// A test: every block of the page does what the page says. The folder holds what they left.
+/// A test: every block of the page is treated as it requests. Returns the folder with the results.
 pub fn as_printed(page: &Page) -> Folder {
     let folder = Folder::new();
     let mut printed = String::new();
@@ -88,10 +87,10 @@ pub fn as_printed(page: &Page) -> Folder {
     folder
 }
 
-/// The folder in which a page is run, with what its commands find there and on the path.
+/// The folder in which a page is run, with the files and the path of its commands.
 pub struct Folder {
     at: TempDir,
-    /// Programs that stand before those of the system.
+    /// Programs that precede those of the system in the path.
     programs: TempDir,
 }
 
@@ -104,7 +103,7 @@ impl Folder {
         for name in CHECKOUT {
             symlink(root().join(name), folder.path().join(name)).unwrap();
         }
-        // Pages say mpirun; where another MPI's launcher is named, that is what they mean.
+        // Pages use mpirun; another MPI's launcher is substituted for it.
         let launcher = env::var("MPIEXEC").unwrap_or_default();
         if !["", "mpirun"].contains(&launcher.as_str()) {
             let mpirun = folder.programs.path().join("mpirun");
@@ -124,7 +123,7 @@ impl Folder {
         fs::write(path, text).unwrap();
     }
 
-    /// Runs a command here, as `source scripts/environment` has it.
+    /// Runs a command here, in the environment of `source scripts/environment`.
     pub fn run(&self, command: &mut Command) -> Ended {
         let python = python().and_then(|python| Some(python.parent()?.to_path_buf()));
         let mut places = vec![self.programs.path().to_path_buf(), programs().to_path_buf()];
@@ -144,7 +143,7 @@ impl Folder {
         Running::start(command).wait(LIMIT)
     }
 
-    /// Runs a shell script, which has to succeed, and returns what it printed.
+    /// Runs a shell script, which has to succeed, and returns its output.
     fn script(&self, place: &str, text: &str) -> String {
         let mut shell = Command::new("bash");
         succeeded(
@@ -153,12 +152,12 @@ impl Folder {
         )
     }
 
-    /// Runs the commands behind `$ ` in one shell and compares what they print.
+    /// Runs the commands after `$ ` in one shell and compares their output.
     fn session(&self, text: &str) -> Result<(), String> {
         let exchanges = exchanges(text)?;
         let mut script = "exec 2>&1\nstatus=0\n".to_owned();
         for (index, (command, _)) in exchanges.iter().enumerate() {
-            // Each command sees the exit code of the one before as $?.
+            // Each command gets the exit code of the previous one as $?.
             let _ = writeln!(
                 script,
                 "(exit $status)\n{command}\nstatus=$?\nprintf '\\036%s\\036' {index}:$status"
@@ -198,7 +197,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Leaves what was made for a look, where that was asked for.
+    /// Copies the results for inspection, if requested.
     fn keep(&self, page: &Page) {
         let Some(kept) = env::var_os("DOCUMENTS_KEEP") else {
             return;
@@ -214,7 +213,7 @@ impl Folder {
     }
 }
 
-/// Fails unless a block ended with 0; what it printed.
+/// Fails unless a block ended with 0; returns its output.
 fn succeeded(place: &str, ended: Ended) -> String {
     assert_eq!(
         ended.code(),
@@ -226,7 +225,7 @@ fn succeeded(place: &str, ended: Ended) -> String {
     ended.stdout
 }
 
-/// The commands of a session, each with what is shown below it.
+/// The commands of a session, each with the output shown below it.
 fn exchanges(text: &str) -> Result<Vec<(String, String)>, String> {
     let mut exchanges: Vec<(String, String)> = Vec::new();
     for line in text.lines() {
@@ -244,7 +243,7 @@ fn exchanges(text: &str) -> Result<Vec<(String, String)>, String> {
     Ok(exchanges)
 }
 
-/// A test: a command that fails is shown to fail, with what it prints.
+/// A test: a failing command is reported, with its output.
 pub fn show_failures() {
     let folder = Folder::new();
     for honest in [

@@ -1,4 +1,4 @@
-//! The page for troubleshooting: the messages that it explains are those of the programs, and it explains them all.
+//! The page for troubleshooting: it explains exactly the messages of the programs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use super::page::root;
 
 const PAGE: &str = "docs/troubleshooting.md";
 
-/// Openings of calls and statements whose next string is a message.
+/// Beginnings of calls and statements whose next string is a message.
 const CALLS: [&str; 22] = [
     "Failure::internal(",
     "Failure::input(",
@@ -36,19 +36,19 @@ const CALLS: [&str; 22] = [
     "#[error(",
 ];
 
-/// Words that an error, and nothing else, has in any call.
+/// A word that occurs only in errors, in any call.
 const EXPECTED: &str = "expected ";
 
 /// Folders of the two programs.
 const EXPLAINED: [&str; 2] = ["src", "partition/src"];
 
-/// A message with less of its own words is made of others.
+/// Length of fixed text below which a message is a combination of others.
 const SHORTEST: usize = 12;
 
-/// A reason that is a message of its own, and ends the one that takes it.
+/// A reason that is itself a message, at the end of another message.
 const REASON: &str = "{why}";
 
-/// A test: the first column of tables of messages quotes the sources.
+/// A test: the first column of the tables quotes messages of the sources.
 pub fn quotes_messages() {
     let sources: String = (EXPLAINED.iter())
         .flat_map(|folder| sources(folder))
@@ -75,7 +75,7 @@ pub fn explains_every_message() {
     assert!(without.is_empty(), "{PAGE} has no entry for {without:#?}");
 }
 
-/// A test: messages are found in calls, without their comments and continuations, and by what they expect.
+/// A test: messages are found in calls, without comments and continuations, and by their expectations.
 pub fn finds_messages() {
     let source = "// warnings.push(\"no message\")\n\
         warnings.push(format!(\n \"body '{}' isn't held: \\\n   hold it\", name));\n\
@@ -91,7 +91,7 @@ pub fn finds_messages() {
     assert_eq!(found, expected);
 }
 
-/// The parts between dots of what the page quotes.
+/// The parts between dots of the messages on the page.
 fn quoted() -> Vec<String> {
     let page = fs::read_to_string(root().join(PAGE)).unwrap();
     let mut is_of_messages = false;
@@ -109,8 +109,8 @@ fn quoted() -> Vec<String> {
     quoted
 }
 
-/// The messages of a source, each once: strings with words of their own in calls that take one, or that name what was
-/// expected.
+/// The messages of a source, without repetition: strings with enough fixed text in calls that take a message, or with
+/// an expectation.
 fn messages(source: &str) -> BTreeSet<String> {
     let calls = CALLS.iter().flat_map(|call| source.match_indices(call));
     let in_calls = calls.filter_map(|(at, call)| {
@@ -119,7 +119,7 @@ fn messages(source: &str) -> BTreeSet<String> {
         let string = &rest[start + 1..];
         is_inside(&rest[..start]).then(|| &string[..string.find('"').unwrap_or(0)])
     });
-    // Within a line, as a quote that a comment leaves open would turn all that follows inside out.
+    // Line by line, as an unpaired quote in a comment would exchange strings and code in all that follows.
     let strings = (source.lines()).flat_map(|line| line.split('"').skip(1).step_by(2));
     let expecting = strings.filter(|string| string.contains(EXPECTED));
     let has_words = |message: &String| {
@@ -134,7 +134,7 @@ fn messages(source: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// True if a text begins within a call and doesn't leave it.
+/// True if a text ends within the call in which it begins.
 fn is_inside(text: &str) -> bool {
     let mut depth = 0;
     text.chars().all(|c| {
@@ -143,7 +143,7 @@ fn is_inside(text: &str) -> bool {
     })
 }
 
-/// The sources in a folder, without their tests.
+/// The sources in a folder, without unit tests.
 fn sources(folder: &str) -> impl Iterator<Item = String> {
     let mut files = Vec::new();
     files_in(&root().join(folder), &mut files);
@@ -155,7 +155,7 @@ fn sources(folder: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// The sources of the Python package in a folder, as they stand there.
+/// The sources of the Python package in a folder, unprocessed.
 fn python_sources(folder: &str) -> impl Iterator<Item = String> {
     let entries = fs::read_dir(root().join(folder)).unwrap();
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -165,8 +165,8 @@ fn python_sources(folder: &str) -> impl Iterator<Item = String> {
         .map(|path| fs::read_to_string(path).unwrap())
 }
 
-/// A source without comments and continued strings; quotes within strings as U+0001, other escapes and quotes that are
-/// characters as U+0002.
+/// A source without comments and continued strings; quotes within strings become U+0001, other escapes and quote
+/// characters U+0002.
 fn joined(source: &str) -> String {
     let code = source
         .lines()

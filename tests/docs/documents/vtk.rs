@@ -1,11 +1,11 @@
-//! Results and problem files opened by VTK's own reader, as ParaView and PyVista do.
+//! Results and problem files opened by VTK's reader, as in ParaView and PyVista.
 
 use std::process::Command;
 
 use super::page::root;
 use super::run::{Folder, python};
 
-/// A built-in scene that is solved and opened.
+/// A built-in scene to be solved and opened.
 pub struct Case {
     pub name: &'static str,
     ranks: usize,
@@ -47,8 +47,8 @@ pub const CASES: [Case; 9] = [
 /// Number of subdomains of the cases.
 const SUBDOMAINS: &str = "6";
 
-/// A test: `vtkHDFReader` finds the same partitions, points, cells and fields as h5py, in the result and in
-/// the problem file.
+/// A test: `vtkHDFReader` finds the same partitions, points, cells and fields as h5py, in the result and in the problem
+/// file.
 pub fn reads_the_same(case: &Case) {
     let folder = Folder::new();
     let ranks = case.ranks.to_string();

@@ -1,16 +1,16 @@
 //! A row of a page's table of numbers.
 
-/// A number that a run gives.
+/// A number from a run.
 pub struct Expected {
-    /// In words.
+    /// Description.
     name: String,
     /// The number.
     found: f64,
-    /// One in its last digit.
+    /// One unit in its last digit.
     last_digit: f64,
-    /// A number from elsewhere, and by which share the run may be off from it.
+    /// A number from theory, and the allowed relative deviation from it.
     theory: Option<(f64, f64)>,
-    /// Place in the run's output.
+    /// Position in the run's output.
     pub place: String,
 }
 
@@ -36,10 +36,10 @@ impl Expected {
         }
     }
 
-    /// The fault of a number of a run, if it has one.
+    /// The error of a run's number, if any.
     pub fn fault(&self, number: f64) -> Option<String> {
         let Self { name, found, .. } = self;
-        // One in the last digit of a whole number is a difference.
+        // A difference of one in the last digit of a whole number isn't allowed.
         let is_found = (number - found).abs() < (1.0 - 1e-9) * self.last_digit;
         let is_theory =
             (self.theory).is_none_or(|(theory, off)| (number - theory).abs() <= off * theory.abs());
@@ -51,7 +51,7 @@ impl Expected {
     }
 }
 
-/// A number, and one in its last digit.
+/// A number, and one unit in its last digit.
 fn number(text: &str) -> (f64, f64) {
     let text = text.replace('−', "-");
     let value = text.parse();
@@ -68,14 +68,14 @@ fn row(found: &str, theory: &str, off: &str) -> Expected {
     Expected::parse(&["a number", found, theory, off, "somewhere"].map(str::to_owned))
 }
 
-/// A test.
+/// A test: results agree with the last digit.
 pub fn to_the_last_digit() {
     assert_eq!(row("31", "", "").fault(31.0), None);
     assert_eq!(row("8.32e6", "", "").fault(8.3249e6), None);
     assert_eq!(row("−1.80e7", "-1.8e7", "0.1 %").fault(-1.80001e7), None);
 }
 
-/// A test.
+/// A test: deviations from theory are bounded.
 pub fn off() {
     assert!(row("31", "", "").fault(32.0).is_some());
     assert!(row("8.32e6", "", "").fault(8.331e6).is_some());

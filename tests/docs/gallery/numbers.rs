@@ -1,4 +1,4 @@
-//! The numbers of a run: what the report and the result have of them.
+//! The numbers of a run in its report and result.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::expected::Expected;
 
-/// Fails unless report and result in a folder have all of the numbers.
+/// Fails unless report and result in a folder contain all of the numbers.
 pub fn has_numbers(folder: &Path, expected: &[Expected]) {
     assert!(!expected.is_empty(), "a page without numbers");
     let report = fs::read_to_string(the_one(folder, "json")).unwrap();
@@ -26,7 +26,7 @@ pub fn has_numbers(folder: &Path, expected: &[Expected]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The file with an ending.
+/// The only file with an extension.
 fn the_one(folder: &Path, ending: &str) -> PathBuf {
     let files = fs::read_dir(folder).unwrap();
     let mut files = files.map(|entry| entry.unwrap().path());
@@ -51,7 +51,7 @@ fn in_report(report: &Value, path: &str) -> f64 {
     number.unwrap_or_else(|| panic!("the report has no number at {path}"))
 }
 
-/// The largest length of a dataset's rows, where these are vectors, else its largest absolute value.
+/// The largest length of a dataset's rows, if these are vectors, otherwise its largest absolute value.
 fn largest(result: &File, path: &str) -> f64 {
     let dataset = result.dataset(&format!("VTKHDF/{path}"));
     let dataset = dataset.unwrap_or_else(|_| panic!("the result has no {path}"));

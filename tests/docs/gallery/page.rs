@@ -9,13 +9,13 @@ use super::expected::Expected;
 
 /// The parts of a page.
 pub struct Page {
-    /// The part of its scene that it shows.
+    /// The lines of its scene on the page.
     pub scene: Vec<String>,
     /// The rows of its table.
     pub expected: Vec<Expected>,
 }
 
-/// The folder of the scenes' folders.
+/// The folder with the folders of the scenes.
 pub fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("partition/src/example")
 }
@@ -57,7 +57,7 @@ impl Page {
                 Event::End(TagEnd::TableCell) => row.push(std::mem::take(&mut words)),
                 Event::End(TagEnd::TableHead) => row.clear(),
                 Event::End(TagEnd::TableRow) => {
-                    // Tables of pictures and the like have other widths.
+                    // Tables of pictures and others have different numbers of columns.
                     if let Ok(cells) = <[String; 5]>::try_from(std::mem::take(&mut row)) {
                         page.expected.push(Expected::parse(&cells));
                     }

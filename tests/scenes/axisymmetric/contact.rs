@@ -1,4 +1,4 @@
-//! Contact of what is the same all around an axis.
+//! Axisymmetric contact.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use crate::support::solids::solid;
 use crate::support::solver::{Case, solve, solve_steps};
 use crate::support::sorts::{SORTS, sort};
 
-/// Two bodies on a floor, all around pressed alike, with `text` for the joint between them.
+/// Two bodies on a floor under uniform pressure all around, with `text` for the joint between them.
 fn pressed(upper: &str) -> String {
     format!(
         "
@@ -84,7 +84,7 @@ fn uniform_compression_goes_through_conical_joints_of_all_cells() {
     }
 }
 
-/// The pressure between rings that were pressed into each other, of which each is free to expand along the axis or not.
+/// The pressure between shrink-fitted rings, with free or prevented axial expansion of each.
 fn fit(delta: f64, [inner, joint, outer]: [f64; 3], held: bool) -> f64 {
     let (young, poisson) = match held {
         true => (YOUNG / (1.0 - POISSON * POISSON), POISSON / (1.0 - POISSON)),
@@ -129,7 +129,8 @@ fn rings_pressed_into_each_other_press_as_lame_says() {
     }
 }
 
-/// A ring in a rigid tube that is too narrow by δ, pushed along the axis: friction holds it up to μ times the force.
+/// A ring in a rigid tube that is too narrow by δ, pushed along the axis: friction holds it up to μ times the normal
+/// force.
 #[test]
 fn friction_holds_a_ring_in_a_tube_up_to_its_bound() {
     let mesh = || sort("quad9").of(&rectangle("ring", [1.0, 2.0], [0.0, 0.5], [8, 6]));
@@ -150,7 +151,7 @@ value = [0.0, {push}]
     };
     let quiet = solve(&model(&text(0.0), mesh()), 3);
     let normal: f64 = quiet.points().map(|point| point.force).sum();
-    // As a free ring under plane stress would be: without friction the pressure is the same along it.
+    // Like a free ring under plane stress: without friction the pressure is uniform along the axis.
     let area = PI * (4.0 - 1.0);
     for share in [0.3, 0.9] {
         let push = share * 0.2 * normal / area;
@@ -164,7 +165,7 @@ value = [0.0, {push}]
         let findings = judged(&model, &solve_steps(&model, 2));
         assert!(findings.difference <= Some(1e-11), "{findings:?}");
         let mut faults = findings.faults();
-        // Around an axis radial forces balance themselves.
+        // Around an axis radial forces are self-equilibrated.
         faults.retain(|fault| !fault.starts_with("balance"));
         assert!(faults.is_empty(), "{faults:?}");
     }
@@ -219,7 +220,7 @@ fn partly_open_joints_around_an_axis_are_the_monolithic_solution() {
                 .all(|point| point.area > 0.0),
             "{name}"
         );
-        // On the axis they can only approach along it.
+        // On the axis they can only approach axially.
         let on_axis = solution
             .points()
             .find(|point| point.position[0] == 0.0)
@@ -228,7 +229,8 @@ fn partly_open_joints_around_an_axis_are_the_monolithic_solution() {
     }
 }
 
-/// The same rings as half a section and as a sector of 30° in space, whose curved faces quadratic cells follow nearly.
+/// The same rings as a meridian section and as a sector of 30° in space, whose curved faces quadratic cells approximate
+/// closely.
 #[test]
 fn a_section_is_what_a_sector_in_space_is() {
     let scene = |top: &str, supports: &str| {
@@ -300,7 +302,7 @@ value = '1e6*(1.28-hypot(x,{}))'
         let there = nodes
             .iter()
             .filter(|(at, _)| (at[0] - r).hypot(at[1] - z) < 1e-9);
-        // At the joint there are two.
+        // At the joint two nodes coincide.
         let off = there.map(|(_, of)| (of[0] - radial).hypot(of[1] - u[2]));
         let off = off.fold(f64::INFINITY, f64::min);
         assert!(off < 1e-3 * size, "{x} {y} {z}: {off:e} of {size:e}");

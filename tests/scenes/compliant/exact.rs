@@ -1,4 +1,4 @@
-//! Columns on compliant joints sink by pressure over stiffness.
+//! Columns on compliant joints settle by pressure over stiffness.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron10};
 use contact_dd_partition::mesh::Mesh;
@@ -40,7 +40,7 @@ value = {PRESSURE:?}
     )
 }
 
-/// Fails unless the upper part, above `joint` along an `axis`, sinks by gap and overlap more than the lower one.
+/// Fails unless the upper part, above `joint` along an `axis`, settles by gap and overlap more than the lower one.
 #[track_caller]
 fn sinks(text: &str, mesh: Mesh, axis: usize) {
     let model = model(text, mesh);
@@ -151,7 +151,7 @@ y = 0.0
     }
 }
 
-/// A block that is pressed into a soft wall by what is prescribed, where nothing of it is free.
+/// A block pressed into a compliant wall by prescribed displacements, without free nodes.
 #[test]
 fn what_is_prescribed_on_both_sides_makes_pressures() {
     let mesh = Blocks::new()
@@ -180,7 +180,7 @@ y = {:?}
         for point in solution.points() {
             close(point.pressure, STIFFNESS * depth, 1e-10 * STIFFNESS * depth);
         }
-        // What holds the bottom carries it all.
+        // The support of the bottom carries the whole force.
         let reaction = &solution.report["reactions"][0]["force"][1];
         close(
             reaction.as_f64().unwrap(),

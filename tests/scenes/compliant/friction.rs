@@ -1,4 +1,4 @@
-//! Friction on compliant contacts: sticking sides move by shear stress over stiffness, if they have one along tangents.
+//! Friction on compliant contacts: sticking sides move by shear stress over tangential stiffness, if there is one.
 
 use contact_dd_partition::element::ElementKind::Hexahedron8;
 use contact_dd_partition::mesh::Mesh;
@@ -14,7 +14,7 @@ const YOUNG: f64 = 20e9;
 const PRESSURE: f64 = 3e6;
 const STIFFNESS: f64 = 5e10;
 
-/// A block on a wall, or on a plate that is held, under pressure and a traction along its bottom: uniform stresses.
+/// A block on a wall, or on a fixed plate, under pressure and a traction along its bottom: uniform stresses.
 fn sheared(dim: usize, friction: f64, tangential: Option<f64>) -> String {
     let keys = tangential.map_or(String::new(), |k| format!(", tangential = {k:?}"));
     let (plane, held, sides, top) = match dim {
@@ -61,7 +61,7 @@ value = {load}
     .replace("on = 'lower'", &format!("on = {}", all_sides(dim)))
 }
 
-/// The sides of the lower block, all of whose nodes lie on them.
+/// The sides of the lower block, which contain all of its nodes.
 fn all_sides(dim: usize) -> &'static str {
     match dim {
         2 => "['lower bottom', 'lower top']",
@@ -95,7 +95,7 @@ fn blocks(dim: usize, of_upper: usize) -> Mesh {
     }
 }
 
-/// The resultant of what sticks moves by itself over the stiffness, whatever turns and bends.
+/// The resultant displacement of sticking points is force over stiffness, whatever the rotation and bending.
 #[test]
 fn what_sticks_moves_by_shear_stress_over_stiffness() {
     let tangential = 2e10;
@@ -111,7 +111,7 @@ fn what_sticks_moves_by_shear_stress_over_stiffness() {
             work += point.force;
             let area = point.force / point.pressure;
             let u = solution.displacement[&point.tags[0]];
-            // What is left of the jump beside that of the spring: nothing slides.
+            // Except for the spring's part the jump vanishes: nothing slides.
             for (k, u) in u.iter().enumerate().take(dim - 1) {
                 close(
                     *u,
@@ -125,7 +125,7 @@ fn what_sticks_moves_by_shear_stress_over_stiffness() {
     }
 }
 
-/// Without a stiffness along tangents what sticks doesn't move, and beyond the bound it slips.
+/// Without tangential stiffness sticking points don't move, and at the bound they slip.
 #[test]
 fn what_is_rigid_along_tangents_sticks_and_slips_as_ever() {
     for (dim, of_upper) in [(2, 4), (3, 2)] {

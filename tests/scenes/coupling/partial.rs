@@ -15,7 +15,7 @@ const YOUNG: f64 = 20e9;
 const POISSON: f64 = 0.3;
 const SIZE: [f64; 3] = [0.6, 0.4, 1.0];
 
-/// A block whose three lower sides don't leave their planes.
+/// A block with symmetry conditions on its three lower sides.
 const BLOCK: &str = "
 materials.rock = {young = 20e9, poisson = 0.3}
 bodies.block = {material = 'rock'}
@@ -23,15 +23,15 @@ bodies.block = {material = 'rock'}
 on = ['block x0', 'block y0', 'block z0']
 ";
 
-/// Axes turned about y and then about z, with cosines of 3-4-5 triangles.
+/// Axes rotated about y and then about z, by angles of 3-4-5 triangles.
 const AXES: [[f64; 3]; 3] = [[0.48, 0.64, -0.6], [-0.8, 0.6, 0.0], [0.36, 0.48, 0.8]];
 
 fn turned(x: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| (0..3).map(|axis| x[axis] * AXES[axis][k]).sum())
 }
 
-/// A side that follows the point along its normal alone leaves the block its lateral contraction: the stress is uniform, also
-/// where its axes are skew, and whatever else is prescribed of the point.
+/// A side that follows the point only along its normal allows lateral contraction: the stress is uniform, also with
+/// skew axes, and for any other prescribed components of the point.
 #[test]
 fn a_side_that_follows_along_its_normal_contracts_freely() {
     let force = 3e6;
@@ -69,7 +69,7 @@ fn a_side_that_follows_along_its_normal_contracts_freely() {
     }
 }
 
-/// Fails unless the skew block is stretched by a uniform stress along its third axis.
+/// Fails unless the skew block is under uniform uniaxial stress along its third axis.
 #[track_caller]
 fn uniform(model: &Model, strain: f64) {
     let nodes = model.mesh.points.len() - 3;
@@ -87,7 +87,7 @@ fn uniform(model: &Model, strain: f64) {
     }
 }
 
-/// All directions, however they are turned, are the coupling without any.
+/// A coupling in three rotated directions equals the one in all directions.
 #[test]
 fn all_directions_are_all_displacements() {
     let mesh = solid("block", Hexahedron8, [3, 2, 3], between([0.0; 3], SIZE));
@@ -110,7 +110,7 @@ fn all_directions_are_all_displacements() {
     (0..6).for_each(|k| close(one[k], other[k], 1e-8 * 5e5));
 }
 
-/// A block on a wall with friction whose upper side a plate guides that moves along x and z, and turns.
+/// A block on a wall with friction, with its upper side guided by a plate that moves along x and z, and rotates.
 fn guided() -> Model {
     let text = "
 materials.rock = {young = 20e9, poisson = 0.22}

@@ -1,5 +1,5 @@
-//! Equations of nodes of no body, supports along local axes, and what comes and goes with the steps, each beside a deck that says
-//! the same in another way.
+//! Equations of nodes without cells, supports along local axes, and activation and deactivation in steps, each compared
+//! with an equivalent deck.
 
 use super::couplings::{BAR, same};
 use super::{COLUMN, refused, solved};
@@ -43,7 +43,7 @@ fn a_node_of_no_body_moves_others_and_hands_on_its_force() {
     }
 }
 
-/// What is fixed stays where it was when the loads go, and what was held already does so, too.
+/// A fixed node keeps its displacement when the loads are removed, also if it was held before.
 #[test]
 fn what_is_fixed_stays_where_it_was() {
     let steps = [
@@ -74,7 +74,7 @@ fn what_is_fixed_stays_where_it_was() {
     }
 }
 
-/// Elements of a distribution have the axes that a section of their own would give them.
+/// Elements of a distribution have the same axes as with a separate section.
 #[test]
 fn a_distribution_turns_the_axes_of_some_elements() {
     let (mesh, rest) = BAR.split_once("*MATERIAL").unwrap();
@@ -108,7 +108,7 @@ fn a_distributing_coupling_shares_a_force_by_weights() {
     same(&found[0], &solved(&format!("{BAR}{shared}"))[0], 1e-10);
 }
 
-/// Supports and equations along local axes do what they do in the bar turned by that angle.
+/// Supports and equations along local axes act as in the bar rotated by that angle.
 #[test]
 fn local_axes_turn_what_is_held_and_equated() {
     let (c, s) = (0.8, 0.6);
@@ -143,7 +143,7 @@ fn local_axes_turn_what_is_held_and_equated() {
     }
 }
 
-/// Without friction the way doesn't matter: every step is that of a deck that has it alone.
+/// Without friction the load path doesn't matter: every step has the solution of a deck with this step only.
 #[test]
 fn supports_come_and_go_with_the_steps() {
     let foot = "*BOUNDARY, OP=NEW\nFoot, 1, 3\n";
@@ -182,14 +182,14 @@ fn laws_and_pairs_change_with_the_steps() {
         let expected = -pressure / stiffness - pressure / 500.0;
         close(solution.displacement[&15][2], expected, 1e-10);
     }
-    // Moved away and back while nothing is between them, the cubes touch where they did.
+    // After being moved apart and back while the contact is inactive, the cubes touch at the same positions.
     let pair = |what: &str| format!("*MODEL CHANGE, TYPE=CONTACT PAIR, {what}\nHigh, Low\n");
     let lifted = step(&format!("{}*BOUNDARY\nTop, 3, 3, 0.1\n", pair("REMOVE")));
     let pressed = step(&format!("{}*BOUNDARY\nTop, 3, 3, -0.02\n", pair("ADD")));
     let found = solved(&format!("{model}{lifted}{pressed}"));
     close(found[0].displacement[&11][2], 0.1, 1e-12);
     close(found[1].displacement[&11][2], -0.01, 1e-10);
-    // Elements that go leave the others without load.
+    // Removed elements leave the others without load.
     let gone = "*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nUpper\n";
     let found = solved(&format!("{model}{}{}", step(press), step(gone)));
     close(found[0].displacement[&5][2], -0.02, 1e-12);
@@ -204,7 +204,7 @@ fn stress_that_is_there_at_first_makes_a_bar_longer() {
     let found = solved(&format!("{bar}{held}{stress}{}", step("")));
     close(found[0].displacement[&6][2], 5.0 / 1000.0, 1e-12);
     close(found[0].displacement[&16][2], 13.0 / 1000.0, 1e-12);
-    // CalculiX has a line for every point of integration.
+    // CalculiX has a line for every integration point.
     let points: String = (1..9)
         .map(|k| format!("1, {k}, -5., -5., -5., 0., 0., 0.\n"))
         .collect();
@@ -235,14 +235,14 @@ fn nodes_follow_around_an_axis() {
         let u = around[0].displacement[&tag];
         close((x * u[1] - y * u[0]) / 0.5, 0.01, 1e-9);
     }
-    // By symmetry corners move around the axis alone, as all of them do if they are rigid.
+    // By symmetry corners only move around the axis, as all nodes do if they are rigid.
     let rigid = solved(&deck(
         "*COUPLING, CONSTRAINT NAME=Hub, REF NODE=100, SURFACE=Roof\n*KINEMATIC\n1, 3\n",
     ));
     same(&around[0], &rigid[0], 1e-9);
 }
 
-/// Every kind, beside what it says of the nodes that move, and of those that moved at will beside.
+/// Every kind of `*MPC`, with its equation between the displacements, and other nodes free to move.
 #[test]
 fn constraints_of_several_nodes_hold() {
     let loads = step("*CLOAD\n15, 1, 2.\n16, 2, 3.\n17, 3, -4.\n18, 1, 1.\n6, 3, 5.\n");
@@ -275,7 +275,7 @@ fn constraints_of_several_nodes_hold() {
         a + c - b - d
     });
     assert_eq!(checks, 4);
-    // A rotation that all of them have is their mean one, also where it is prescribed.
+    // A common rotation of all nodes is their average rotation, also if it is prescribed.
     let turned = "MEANROT, 15, 15, 15, 16, 16, 16, 17, 17, 17, 18, 18, 18, 100\n";
     let deck = format!(
         "{BAR}*NODE\n100, 0., 0., 4.\n*MPC\n{turned}{}",

@@ -1,10 +1,10 @@
-//! Reference nodes of decks beside what says the same node by node.
+//! Reference nodes of decks, compared with equivalent conditions on the single nodes.
 
 use super::solved;
 use crate::support::close::close;
 use crate::support::solution::Solution;
 
-/// A bar of two cubes that share their nodes, held at its foot.
+/// A bar of two cubes with common nodes, fixed at its foot.
 pub const BAR: &str = "\
 *NODE
  1, 0, 0, 0
@@ -38,7 +38,7 @@ Foot, 1, 3
 0., 0., 2., 1.
 ";
 
-/// Fails unless nodes of the bar move alike.
+/// Fails unless nodes of the bar have the same displacements.
 #[track_caller]
 pub fn same(one: &Solution, other: &Solution, slack: f64) {
     let scale = one.largest_displacement();

@@ -1,4 +1,4 @@
-//! Contact of nodes that span no faces, beside equations that say the same.
+//! Contact of nodes without faces, compared with equivalent equations.
 
 use super::solved;
 use crate::support::close::close;
@@ -64,7 +64,7 @@ fn pair(interaction: &str) -> String {
     )
 }
 
-/// Three feet of the upper cube stand on the face of the lower one, where that has no nodes.
+/// Three feet of the upper cube stand inside the face of the lower one, away from its nodes.
 #[test]
 fn nodes_stand_on_the_face_that_they_are_in_front_of() {
     let equations: String = [(11, 0.2, 0.3), (12, 0.8, 0.3), (14, 0.2, 0.9)]
@@ -95,7 +95,7 @@ fn nodes_stand_on_the_face_that_they_are_in_front_of() {
     }
 }
 
-/// A soft law has the areas of all faces around the nodes.
+/// A softened law uses the areas of all faces around the nodes.
 #[test]
 fn soft_feet_sink_in_by_their_force_over_the_stiffness() {
     let soft = pair("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n50.\n");

@@ -1,9 +1,9 @@
-//! A bolt of a deck, and a sector of a ring.
+//! Bolts and cyclic symmetry in decks.
 
 use super::solved;
 use crate::support::close::close;
 
-/// A bar of two cubes that share a face, which is the cut, between two walls.
+/// A bar of two cubes between two walls, with their common face as the cut.
 const BOLT: &str = "\
 *NODE
  1, 0, 0, 0
@@ -35,7 +35,7 @@ Ends, 1, 3
 *PRE-TENSION SECTION, SURFACE=Cut, NODE=99
 ";
 
-/// Pulled to a force, kept at the length that it has then, stretched by a wall that goes away, and let go.
+/// Tightened by a force, locked, stretched by a receding wall, and released.
 #[test]
 fn a_bolt_is_tightened_by_its_node_and_fixed() {
     let steps = "\
@@ -71,7 +71,7 @@ Ends, 1, 3
         close(bolt["force"].as_f64().unwrap(), force, 1e-10);
         close(bolt["shortening"].as_f64().unwrap(), shortening, 1e-12);
     }
-    // A positive force pulls where the direction points away from the elements of the surface.
+    // A positive force is tensile if the direction points away from the elements of the surface.
     for (direction, force) in [("0., 0., -1.", "-20."), ("0., 0., 2.", "20.")] {
         let deck =
             format!("{BOLT}{direction}\n*STEP\n*STATIC\n*CLOAD\n99, 1, {force}\n*END STEP\n");
@@ -83,7 +83,7 @@ Ends, 1, 3
     close(bolt["force"].as_f64().unwrap(), 20.0, 1e-10);
 }
 
-/// A quarter of a square that is turned at its outer faces: the sides move alike, turned.
+/// A quarter of a square under torsion at its outer faces: the displacements of its sides are equal after rotation.
 #[test]
 fn a_quarter_of_a_square_does_what_the_others_do() {
     let deck = "\

@@ -1,4 +1,4 @@
-//! Cycles of load: what they take is what friction dissipates.
+//! Load cycles: their work equals the dissipation by friction.
 
 use contact_dd_partition::model::Model;
 
@@ -8,7 +8,7 @@ use crate::support::energy::{Works, checked_works};
 use crate::support::scenes::{BODIES, HELD, JOINT, model};
 use crate::support::solver::solve_steps;
 
-/// A block that is pressed on another one and moved to and fro by its top, so many steps a quarter.
+/// A block pressed on another one and moved back and forth by its top, with `steps` steps for a quarter of the cycle.
 fn driven(law: &str, largest: f64, steps: usize, cycles: usize) -> Model {
     let mut text = format!(
         "{BODIES}{HELD}
@@ -41,7 +41,7 @@ fn driven(law: &str, largest: f64, steps: usize, cycles: usize) -> Model {
     model(&text, blocks.mesh)
 }
 
-/// From the second cycle on every cycle ends where it began, so that no energy is left in the bodies.
+/// From the second cycle on the initial and final states are equal, so that no energy is stored in the bodies.
 #[test]
 fn what_a_cycle_takes_is_what_friction_dissipates() {
     for law in ["friction = 0.3", "tresca = 1e5"] {
@@ -68,7 +68,7 @@ fn what_a_cycle_takes_is_what_friction_dissipates() {
     }
 }
 
-/// Beyond the bound everywhere, the friction of every increment is the bound times the way.
+/// With slip everywhere, the dissipation in every increment is the bound times the slip distance.
 #[test]
 fn a_block_that_slides_back_and_forth_dissipates_force_times_way() {
     let model = driven("tresca = 1e5", 1e-3, 1, 2);
@@ -95,7 +95,7 @@ fn a_block_that_slides_back_and_forth_dissipates_force_times_way() {
     }
 }
 
-/// Pressure on part of the way of a gap that opens or closes takes energy, too.
+/// Pressure during a part of the opening or closing of a gap does work, too.
 #[test]
 fn a_report_says_where_energy_goes_where_gaps_open() {
     let mut text = format!("{BODIES}{HELD}{JOINT}\ngap = 1e-6\nfriction = 0.4\n");

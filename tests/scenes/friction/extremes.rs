@@ -1,4 +1,4 @@
-//! Numbers at the ends of what arithmetic allows: the answer, or the reason why there is none.
+//! Extreme numbers: a solution, or the reason why there is none.
 
 use contact_dd_partition::model::Model;
 
@@ -9,7 +9,7 @@ use crate::support::solver::{Case, solve};
 
 const PRESSURE: f64 = 1e5;
 
-/// A block on another one, pressed and pushed, of these stiffnesses and this Poisson's ratio.
+/// A block on another one, under pressure and shear, with these stiffnesses and this Poisson's ratio.
 fn stacked([lower, upper]: [f64; 2], poisson: f64, law: &str, push: f64) -> Model {
     let blocks = Blocks::new()
         .rectangle("lower", [0.0, 1.0], [0.0, 0.3], [4, 2])
@@ -41,7 +41,7 @@ fn what_presses_is_held_by_any_friction() {
             close(along, -push, 1e-10 * PRESSURE);
             solution.points().map(|p| p.force).collect::<Vec<f64>>()
         };
-        // All sticks from some coefficient on.
+        // All points stick above some coefficient.
         let (some, most) = (of(1e2), of(1e12));
         for (a, b) in some.iter().zip(&most) {
             close(*a, *b, 1e-9 * PRESSURE);
@@ -49,7 +49,7 @@ fn what_presses_is_held_by_any_friction() {
     }
 }
 
-/// The stiffness against a change of volume is 1e15 times that of shape: of forces nothing is left, and nothing slides.
+/// The bulk stiffness is 1e15 times the shear stiffness: the forces are pure round-off, and nothing slides.
 #[test]
 fn what_round_off_makes_of_a_scene_is_not_said_to_slide() {
     let model = stacked([1e9; 2], 0.499999999999999, ", friction = 0.5", 1e4);

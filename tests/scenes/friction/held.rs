@@ -1,4 +1,4 @@
-//! Bodies that friction holds, and bodies that slide off.
+//! Bodies held by friction, and bodies that slide off.
 
 use contact_dd_partition::model::Model;
 
@@ -9,12 +9,12 @@ use crate::support::scenes::model;
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve, solve_steps};
 
-/// A wide block on a plane at `angle` to the horizontal, under its own weight; `law` is that of its base.
+/// A wide block on a plane inclined by `angle`, under its weight; `law` is the friction of its base.
 fn incline(angle: f64, body_force: [f64; 2], law: &str, n: [usize; 2]) -> Model {
     above(0.0, angle, body_force, law, n)
 }
 
-/// The same block so far above the plane.
+/// The same block, lifted above the plane by `gap`.
 fn above(gap: f64, angle: f64, body_force: [f64; 2], law: &str, n: [usize; 2]) -> Model {
     let (sin, cos) = angle.sin_cos();
     let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.5], [0.0, 0.5]];
@@ -52,7 +52,7 @@ fn slides(ended: &Ended, name: &str) {
 
 const WEIGHT: f64 = 26e3;
 
-/// Gravity turned against a level plane, and a plane turned against gravity.
+/// Inclined gravity on a level plane, and an inclined plane under vertical gravity.
 fn inclines(slope: f64, law: &str, n: [usize; 2]) -> [Model; 2] {
     [
         incline(0.0, [WEIGHT * slope, -WEIGHT], law, n),
@@ -74,12 +74,12 @@ fn a_block_slides_down_a_plane_that_is_steeper_than_its_friction_angle() {
 
 #[test]
 fn a_block_slides_that_pulls_more_than_given_friction_and_cohesion_hold() {
-    // The base is 2 m long, the block 1 m² in area: it weighs 26 kN.
+    // The base is 2 m long, and the block has an area of 1 m²: it weighs 26 kN.
     let pulls = |force: f64, law| run(&incline(0.0, [force, -WEIGHT], law, [8, 2]), 2);
     slides(&pulls(2e4 * (1.0 + 1e-12), "tresca = 1e4"), "block");
     let law = "friction = 0.5\ncohesion = 1e4";
     slides(&pulls(3.3e4 * (1.0 + 1e-12), law), "block");
-    // Rigid bodies would stand this, but corners that lift lose their cohesion.
+    // Rigid bodies would stay, but corners that lift lose their cohesion.
     slides(&pulls(3.3e4 * 0.99, law), "block");
 }
 
@@ -122,7 +122,7 @@ fn given_friction_and_cohesion_hold_a_pull_up_to_their_bounds() {
     }
 }
 
-/// It falls askew, and what it slipped in the air is nothing that friction would know of.
+/// It falls obliquely, and its slip before the contact has no friction.
 #[test]
 fn a_block_that_falls_on_a_plane_stands_on_it_as_one_that_was_there() {
     let n = [8, 2];
@@ -141,7 +141,7 @@ fn a_block_that_falls_on_a_plane_stands_on_it_as_one_that_was_there() {
     }
 }
 
-/// Fails unless both are stressed in the same way and slip as far.
+/// Fails unless both have the same stresses and slip.
 #[track_caller]
 fn alike(first: &Solution, second: &Solution, slack: f64) {
     let slack = |size: f64| slack * size;
@@ -156,8 +156,8 @@ fn alike(first: &Solution, second: &Solution, slack: f64) {
     }
 }
 
-/// A block that is pushed up a wedge with tan α = 0.1 at μ = 0.3 by F begins to slide at F/G = 0.412371, as
-/// (tan α + μ)/(1 − μ tan α) says; NAFEMS benchmark CGS-4.
+/// A block pushed up a wedge with tan α = 0.1 at μ = 0.3 by F begins to slide at F/G = (tan α + μ)/(1 − μ tan α) =
+/// 0.412371; NAFEMS benchmark CGS-4.
 #[test]
 fn a_wedge_begins_to_slide_as_the_nafems_benchmark_says() {
     let limit = 0.4 / 0.97;
@@ -187,12 +187,12 @@ sides = ['block left']
 obstacle = {point = [-0.2, 0.0], normal = [1.0, 0.0]}
 ";
 
-/// A step with a pressure on a side of the block: 26 kPa are what friction at its base holds.
+/// A step with a pressure on a side of the block: at 26 kPa friction at its base is at its limit.
 fn push(side: &str, pressure: f64) -> String {
     format!("[[step]]\n[[step.pressure]]\non = 'block {side}'\nvalue = {pressure:e}\n")
 }
 
-/// The place of the middle of the block's base, in every step.
+/// Checks the position of the centre of the block's base, in every step.
 #[track_caller]
 fn goes(steps: &[(&str, f64, f64)]) {
     let blocks = Blocks::new().rectangle("block", [0.0, 2.0], [0.0, 0.5], [8, 2]);
@@ -229,7 +229,7 @@ fn a_block_on_a_rough_floor_stays_where_a_push_took_it() {
     ]);
 }
 
-/// Between two clamped plates, the upper one pressed on it, a plate is held by twice the friction of either.
+/// A plate between two fixed plates, pressed by the upper one, is held by twice the friction of either.
 #[test]
 fn a_plate_between_two_others_is_held_by_friction_alone() {
     let blocks = || {
@@ -306,7 +306,7 @@ fn squeezed(interference: f64, friction: f64, gap: f64) -> Model {
     model(&text, blocks.mesh)
 }
 
-/// The walls alone could hold it if they were pressed as they aren't: that is left to the solver.
+/// The walls alone could hold it if their pressure were larger: the rigid-body analysis leaves that to the solver.
 #[test]
 fn a_block_between_two_walls_hangs_if_they_squeeze_it_enough_and_slides_to_the_floor_if_not() {
     let weight = 0.5 * WEIGHT;
@@ -321,7 +321,8 @@ fn a_block_between_two_walls_hangs_if_they_squeeze_it_enough_and_slides_to_the_f
     }
 }
 
-/// Of the positions between walls that it doesn't touch a block gets the nearest, without friction of their pressure.
+/// Of the positions between walls without contact a block gets the nearest one, without friction from an earlier
+/// pressure.
 #[test]
 fn what_moves_away_from_a_wall_leaves_no_friction_there() {
     for count in [1, 3] {

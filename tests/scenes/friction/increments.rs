@@ -1,4 +1,4 @@
-//! Every increment of scenes of many kinds is right, as the judge of random scenes says.
+//! Every increment of various scenes is right according to the judge of random scenes.
 
 use contact_dd_partition::model::Model;
 
@@ -9,7 +9,7 @@ use crate::support::solver::solve_steps;
 use crate::support::sorts::sort;
 use crate::support::uneven::block;
 
-/// Pressed and pushed aside, to and fro.
+/// Pressure, and a shear that changes its sign.
 const LOADS: &str = "
 [[displacement]]
 on = 'lower bottom'
@@ -32,7 +32,7 @@ scale = { traction = -1.0 }
 scale = { traction = 0.4, pressure = 0.4 }
 ";
 
-/// Fails unless all increments of the scene are right; returns how many points slip in each.
+/// Fails unless all increments of the scene are right; returns the number of slipping points in each.
 #[track_caller]
 fn agrees(model: &Model, count: usize) -> Vec<usize> {
     let solutions = solve_steps(model, count);
@@ -112,7 +112,7 @@ fn quadratic_cells_are_right() {
     }
 }
 
-/// A block between a floor and a lid that it hardly touches; given friction acts where it has left them, too.
+/// A block between a floor and a lid that it barely touches; Tresca friction also acts without contact.
 #[test]
 fn obstacles_with_friction_are_right() {
     for law in ["friction = 0.3", "tresca = 8e3"] {

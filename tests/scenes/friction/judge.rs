@@ -1,4 +1,5 @@
-//! The judge of random scenes, which knows nothing of the program, finds what is right right and every breach of a law.
+//! The judge of random scenes, which is independent of the program, accepts correct solutions and finds every violation
+//! of a law.
 
 use contact_dd_partition::model::Model;
 
@@ -10,7 +11,7 @@ use crate::support::solver::solve_steps;
 use crate::support::stress::Balance;
 use crate::support::stress::judge::Findings;
 
-/// A block that is pushed to and fro on another one.
+/// A block pushed back and forth on another one.
 fn pushed(law: &str) -> Model {
     let text = format!(
         "{BODIES}{HELD}
@@ -98,7 +99,7 @@ fn the_judge_finds_every_breach_of_the_law_of_friction() {
     }
 }
 
-/// The law is about the slip since the step before: against that since the start the second step is wrong.
+/// The law uses the slip since the previous step: with the slip from the start the second step would be wrong.
 #[test]
 fn the_judge_looks_at_increments() {
     let whole = pushed("friction = 0.25");

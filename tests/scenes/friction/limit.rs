@@ -11,7 +11,7 @@ use crate::support::solver::Case;
 const FRICTION: f64 = 0.1;
 const PRESSURE: f64 = 1e5;
 
-/// A block on another one that is held below, with `more` acting on it.
+/// A block on another one that is fixed below, with the loads `more`.
 fn on_a_block(more: &str) -> Model {
     let mesh = joined(
         solid(
@@ -50,12 +50,12 @@ fn on_a_block(more: &str) -> Model {
     model(&text, mesh)
 }
 
-/// With a share of all that it can give: where the block slides to nothing tells.
+/// Loaded by a share of the largest friction force: at the limit the position of the block is indeterminate.
 #[test]
 fn a_block_that_friction_holds_with_all_that_it_has_is_said_to_be_at_the_limit() {
     let most = FRICTION * PRESSURE;
     for (share, is_at_limit) in [(0.99, false), (1.0 - 1e-9, true)] {
-        // Pushed where it lies, so that its pressure stays what it is.
+        // Pushed at the height of the joint, so that the pressure stays uniform.
         let push = share * most;
         let push = format!("[[traction]]\non = 'b1 z0'\nvalue = [0, {push:e}, 0]");
         let solution = Case::of(&on_a_block(&push), 2).solve(&[]);
@@ -67,8 +67,8 @@ fn a_block_that_friction_holds_with_all_that_it_has_is_said_to_be_at_the_limit()
     }
 }
 
-/// Pairs of plates side by side, the upper one of each pushed between two directions of the polygon that friction's cone is
-/// enclosed by, with a share of what friction can give.
+/// Pairs of plates side by side, the upper one of each pushed between two directions of the outer polygon of the
+/// friction cone, by a share of the largest friction force.
 fn pairs_of_plates(pairs: usize, share: f64) -> Model {
     const WEIGHT: f64 = 2e4;
     let (mut bodies, mut conditions, mut mesh) = (String::new(), String::new(), None);

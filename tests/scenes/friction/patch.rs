@@ -1,4 +1,4 @@
-//! States that every mesh has exactly: stuck joints, and joints that slip evenly.
+//! States represented exactly by every mesh: sticking joints, and joints with uniform slip.
 
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
@@ -22,7 +22,7 @@ fn stacked(sort: Sort) -> Blocks {
     }
 }
 
-/// A joint that can't slip is no joint: the same mesh with one node for two has the same displacements.
+/// A joint that can't slip has no effect: the mesh with merged nodes has the same displacements.
 #[test]
 fn a_joint_that_sticks_is_glued() {
     let scene = "
@@ -78,7 +78,7 @@ fn a_joint_that_sticks_is_glued() {
     }
 }
 
-/// Displacements by place.
+/// Displacements by position.
 fn places(mesh: &Mesh, solution: &Solution) -> Vec<([i64; 2], [f64; 3])> {
     let nodes = mesh.points.iter().zip(&mesh.node_tags);
     nodes
@@ -94,8 +94,8 @@ fn places(mesh: &Mesh, solution: &Solution) -> Vec<([i64; 2], [f64; 3])> {
 const YOUNG: f64 = 20e9;
 const POISSON: f64 = 0.25;
 
-/// Displacement of a body in uniform plane strain under σ_yy = −p, σ_xy = τ, σ_xx = 0, but for a rigid part: that
-/// along x is c y + e x, that along y is d y.
+/// Displacement of a body in uniform plane strain under σ_yy = −p, σ_xy = τ, σ_xx = 0, except for a rigid-body motion:
+/// c y + e x along x, d y along y.
 fn uniform(shear: f64) -> [f64; 3] {
     let modulus = YOUNG / (1.0 - POISSON * POISSON);
     let across = POISSON / (1.0 - POISSON);
@@ -103,8 +103,8 @@ fn uniform(shear: f64) -> [f64; 3] {
     [shear / g, across * PRESSURE / modulus, -PRESSURE / modulus]
 }
 
-/// Two blocks, the upper one pressed and its top moved by so much further than the lower one's; uniform stress with the
-/// shear that `law` allows is the solution.
+/// Two blocks, the upper one under pressure, with its top displaced by an additional `by`; the solution is the uniform
+/// stress with the shear that `law` allows, and uniform slip by `by`.
 fn slipping(mesh: Mesh, law: &str, shear: f64, by: f64, sides: &str) -> Model {
     let [c, e, d] = uniform(shear);
     let text = format!(
@@ -146,7 +146,7 @@ fn slips_evenly(model: &Model, shear: f64, by: f64, upper_is_a: bool) {
     for (point, condition) in points.iter().zip(&model.contacts[0].points) {
         assert!(point.closed && point.slipping, "{point:?}");
         close(point.pressure, PRESSURE, 1e-10 * PRESSURE);
-        // Friction on the upper side pulls back.
+        // Friction on the upper side acts backwards.
         let force = if upper_is_a { -shear } else { shear };
         close(
             point.tangential_force[0],

@@ -16,11 +16,11 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// It may not converge, which it says.
+    /// It may fail to converge, if it reports that.
     #[test]
     fn a_random_scene_with_friction_is_not_answered_wrongly(seed in 0_u64..1_000_000) {
         let mut drawn = draw_frictional(seed, 4);
-        // Tests of several ranks stand elsewhere.
+        // Runs on several ranks are tested elsewhere.
         drawn.ranks = 0;
         let trial = Trial::of(&drawn, built(), LIMIT, None);
         let is_fair = match trial.verdict {
@@ -32,8 +32,8 @@ proptest! {
     }
 }
 
-/// Stiffnesses are so far apart that the sweeps know forces to less than round-off (895), get no further (603) or
-/// don't even know what sticks (865), of what has no pressure at times (626): refinement has to.
+/// Stiffnesses are so different that the sweeps' forces are below round-off (895), that the sweeps stall (603) or can't
+/// determine sticking points (865), in places without pressure (626): refinement has to.
 #[test]
 fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {
     for seed in [603, 626, 865, 895] {
@@ -46,8 +46,9 @@ fn a_badly_conditioned_scene_with_friction_is_refined_to_round_off() {
     }
 }
 
-/// Given friction far below the forces that bodies are deformed by holds them alone: the sweeps' round-off exceeds it (930013,
-/// 930048), lets blocks drift away (906018) or leaves a cone of friction (930027). The problem is convex and has a solution.
+/// Bodies are held only by Tresca friction far below the forces that deform them: the sweeps' round-off exceeds it
+/// (930013, 930048), lets blocks drift away (906018) or violates the friction cone (930027). The problem is convex and
+/// has a solution.
 #[test]
 fn given_friction_that_is_round_off_of_what_deforms_is_solved_for() {
     let drawn = [
@@ -65,8 +66,8 @@ fn given_friction_that_is_round_off_of_what_deforms_is_solved_for() {
     }
 }
 
-/// Cohesion that is lost as contacts open leaves points at the verge of opening, which Newton's steps don't find and Lemke's path
-/// does.
+/// Cohesion that is lost when contacts open leaves points at the limit of opening, which Newton's method doesn't find
+/// but Lemke's path does.
 #[test]
 fn cohesion_that_is_lost_as_contacts_open_is_solved_for_in_space() {
     for seed in [930_030, 961_070] {
@@ -77,9 +78,9 @@ fn cohesion_that_is_lost_as_contacts_open_is_solved_for_in_space() {
     }
 }
 
-/// Friction a thousandth of the pressure leaves blocks a Newton step away from sliding 800 m, where round-off resists
-/// (7112840); Lemke's path has to end where bounds fall by their own cohesion, however large what all contacts would hold
-/// (7112946).
+/// Friction of a thousandth of the pressure leaves blocks one Newton step from sliding 800 m, where only round-off
+/// resists (7112840); Lemke's path has to end where bounds decrease with their own cohesion, however large the total
+/// bound of all contacts (7112946).
 #[test]
 fn slight_friction_holds_blocks_where_they_are() {
     for seed in [7_112_840, 7_112_946] {
@@ -90,8 +91,8 @@ fn slight_friction_holds_blocks_where_they_are() {
     }
 }
 
-/// Where all points may slip at once a slip is of any size, and its terms hide that forces miss their bounds: Lemke's path
-/// leads to where they don't.
+/// Where all points may slip at once, the slip is indeterminate, and its large terms hide that forces violate their
+/// bounds: Lemke's path leads to forces within the bounds.
 #[test]
 fn forces_keep_to_bounds_far_below_the_terms_of_a_slip() {
     let mut drawn = draw_frictional(8_100_009, 12);
@@ -100,7 +101,7 @@ fn forces_keep_to_bounds_far_below_the_terms_of_a_slip() {
     assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
 }
 
-/// Friction far below the forces of an interference fit holds to its own bound, between clusters, too.
+/// Friction far below the forces of an interference fit fulfils its own bound, also with iterations between clusters.
 #[test]
 fn given_friction_below_an_interference_fit_keeps_to_its_bound_between_clusters() {
     for seed in [961_004, 961_060] {

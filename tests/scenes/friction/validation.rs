@@ -1,4 +1,4 @@
-//! Scenes with friction that have exact or well-known answers; docs/validation.md has the long form.
+//! Scenes with friction and exact or well-known solutions; docs/validation.md has the long form.
 
 use crate::support::close::close;
 use crate::support::solver::solve;
@@ -24,7 +24,7 @@ fn the_nafems_roller_with_friction_presses_as_it_should() {
     roller::with_friction().check();
 }
 
-/// cot 20° = 2.747: below it slips a little, above not at all.
+/// cot 20° = 2.747: below it the crack slips slightly, above not at all.
 #[test]
 fn a_closed_crack_sticks_above_its_threshold() {
     for (friction, sticks) in [(2.74, false), (2.75, true), (5.0, true)] {

@@ -1,4 +1,4 @@
-//! The choice between the solvers, and what takes over where one doesn't converge.
+//! The choice of the interface solver, and the fallback without convergence.
 
 use contact_dd_partition::element::ElementKind::Hexahedron8;
 use contact_dd_partition::model::Model;
@@ -39,7 +39,7 @@ fn the_operator_that_takes_least_time_is_chosen_and_said_to_be() {
             _ => "iterations between clusters: ",
         };
         assert!(choice.starts_with(operator), "{name}: {choice}");
-        // Numbers with exponents are times, that of the choice first.
+        // Numbers with exponents are times, starting with that of the choice.
         let words = choice.split(' ').filter(|word| word.contains('e'));
         let times: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
         assert!(!times.is_empty(), "{name}: {choice}");
@@ -47,7 +47,7 @@ fn the_operator_that_takes_least_time_is_chosen_and_said_to_be() {
             times.iter().all(|time| *time >= times[0]),
             "{name}: {choice}"
         );
-        // Nothing is left out without a word.
+        // Excluded solvers are mentioned with a reason.
         assert!(
             times.len() == 3 || choice.contains("; "),
             "{name}: {choice}"
@@ -55,7 +55,7 @@ fn the_operator_that_takes_least_time_is_chosen_and_said_to_be() {
     }
 }
 
-/// Two blocks that friction holds on each other, far below a ball that one active set would lift the upper one to.
+/// Two blocks held together by friction, far below a ball to which one active set would lift the upper one.
 fn blocks_below_a_ball(steps: &str, cells: [usize; 3]) -> Model {
     let block = |name, z: f64| {
         let box_of = between([0.0, 0.0, z], [2.0, 1.0, z + 1.0]);
@@ -135,8 +135,8 @@ fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
     }
 }
 
-/// In a later load step, by ranks that own other groups than those that solved the steps before: friction goes on from
-/// the slips that these left.
+/// In a later load step, on ranks that own other groups than in the steps before: friction continues from the slips of
+/// the previous step.
 #[test]
 fn the_direct_solver_goes_on_from_the_slips_of_before_on_any_number_of_ranks() {
     let mut drawn = draw_frictional(685_154, 12);

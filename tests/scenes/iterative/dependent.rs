@@ -1,4 +1,4 @@
-//! Conditions that depend on others where fixed active sets are solved for: in the tree of fronts, and between clusters.
+//! Linearly dependent contact constraints with fixed active sets: in the tree of fronts, and between clusters.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::support::solver::{Case, LIMIT, built};
 use crate::support::stress::draw_frictional;
 use crate::support::stress::trial::{Interface, Trial, Verdict};
 
-/// Three blocks that meet in a node, with these `words` of every contact.
+/// Three blocks that meet in a node, with the keys `words` in every contact.
 fn junction(words: &str) -> Model {
     let (scene, mesh) = built_in("junction", 0);
     model(
@@ -21,9 +21,8 @@ fn junction(words: &str) -> Model {
     )
 }
 
-/// Forces of all contacts on every node where no support takes them, by its tag: of conditions that depend on each
-/// other it is known, of each alone it isn't, and of those whose jump supports prescribe in part neither is what these
-/// hold.
+/// Forces of all contacts on every node without a support, by its tag: the total of linearly dependent constraints is
+/// unique, the single forces aren't; nor are they where supports prescribe a part of the jump.
 fn forces_on_nodes(model: &Model, solution: &Solution) -> BTreeMap<i64, [f64; 3]> {
     let mut sums: BTreeMap<i64, [f64; 3]> = BTreeMap::new();
     for point in solution.points() {
@@ -75,7 +74,7 @@ fn conditions_that_depend_on_others_have_the_dense_answer_in_the_tree_and_betwee
     }
 }
 
-/// Supports leave two conditions with friction one and the same jump, each with a bound of its own.
+/// Supports leave two constraints with friction the same jump, each with a separate bound.
 #[test]
 fn conditions_with_friction_that_share_a_jump_are_solved_between_clusters() {
     let drawn = draw_frictional(125_777, 12);

@@ -1,4 +1,4 @@
-//! The order of two sides doesn't change how far they go through each other.
+//! The order of two sides doesn't affect their penetration.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -27,17 +27,17 @@ fn estimate(solution: &Solution) -> f64 {
         .unwrap()
 }
 
-/// The largest penetration that the report names, where it is seen at the nodes of the side without conditions.
+/// The largest penetration in the report, measured at the nodes of the side without constraints.
 fn penetrates(solution: &Solution) -> f64 {
     solution.report["contacts"][0]["penetration"]
         .as_f64()
         .unwrap()
 }
 
-/// Detail that the meshes of the sides can't resolve adds to the error: by the penetration at most, which is warned of
-/// where it is what counts.
+/// Features below the resolution of the sides' meshes add to the error: at most the penetration, with a warning if it
+/// dominates.
 ///
-/// `PUNCHES=100 cargo test --workspace --test scenes -- both_orders --nocapture` takes as many pairs of meshes, from
+/// `PUNCHES=100 cargo test --workspace --test scenes -- both_orders --nocapture` tests that many pairs of meshes, from
 /// `SEED` on.
 #[test]
 fn both_orders_of_sides_agree_within_the_estimate_of_the_error_and_the_penetration() {
@@ -104,7 +104,7 @@ fn a_punch_narrower_than_a_facet_goes_as_deep_as_on_a_fine_mesh() {
                 (depth / fine - 1.0).abs() < slack,
                 "{kind:?} {sides:?}: {depth} {fine}"
             );
-            // Forces act on the side that is named first, whichever has the conditions.
+            // Forces act on the side named first, whichever carries the constraints.
             let on_a = &solution.report["contacts"][0]["force"];
             let up = on_a[if kind.dim() == 3 { 2 } else { 1 }].as_f64().unwrap();
             assert_eq!(up < 0.0, sides[0] == block, "{on_a}");
@@ -120,7 +120,7 @@ fn a_punch_narrower_than_a_facet_goes_as_deep_as_on_a_fine_mesh() {
     }
 }
 
-/// The largest penetration of nodes of the punch into the block, of hexahedra in as many cells.
+/// The largest penetration of the punch's nodes into the block, for hexahedra with `cells` cells.
 fn penetration(solution: &Solution, mesh: &Mesh, cells: usize) -> f64 {
     let size = BLOCK / cells as f64;
     let up = |node: usize| solution.displacement[&mesh.node_tags[node]][2];
@@ -173,7 +173,7 @@ fn what_penetrates_where_no_condition_holds_it_is_said() {
     }
 }
 
-/// A block that reaches over the end of a table topples where its middle does.
+/// A block that protrudes over the end of a table topples if its centre does.
 #[test]
 fn a_block_topples_where_its_middle_has_nothing_below() {
     let text = |plane: &str, bottom: &str, sides: [&str; 2]| {

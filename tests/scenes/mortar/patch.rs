@@ -1,4 +1,4 @@
-//! A uniform pressure passes exactly.
+//! A uniform pressure is transferred exactly.
 
 use contact_dd_partition::model::Model;
 
@@ -9,7 +9,7 @@ use crate::support::solver::solve;
 use crate::support::sorts::{SORTS, Sort, sort};
 use crate::support::uneven::{PRESSURE, block, materials, turned_pressure, two_sorts};
 
-/// Blocks that lie on each other, from below.
+/// Blocks on top of each other, from below.
 struct Pile {
     names: Vec<&'static str>,
     x: Vec<[f64; 2]>,
@@ -18,8 +18,8 @@ struct Pile {
 }
 
 impl Pile {
-    /// Blocks 1 m high with so many cells along x. Each is held at its left end, the lowest at its
-    /// bottom, the uppermost is pressed upon. `upside_down`: the lower one is side a.
+    /// Blocks 1 m high with n cells along x. Each is held at its left end, the lowest at its bottom, and the uppermost
+    /// is under pressure. With `upside_down` the lower side is side a.
     fn new(x: &[[f64; 2]], n: &[usize], upside_down: bool) -> Self {
         let names: Vec<&str> = ["zero", "one", "two", "three"][..x.len()].to_vec();
         let mut text = materials(&names) + "[[bilateral]]\non = 'zero bottom'\n";
@@ -43,7 +43,7 @@ impl Pile {
                     [upper, lower]
                 };
                 text += &format!("[[contact]]\nname = 'joint {i}'\nsides = ['{a}', '{b}']\n");
-                // Round-off of coordinates isn't much less than the displacements are.
+                // Round-off of coordinates isn't much smaller than the displacements.
                 text += "gap = 0.0\n";
             }
         }
@@ -57,7 +57,7 @@ impl Pile {
         }
     }
 
-    /// The pile turned by an angle, pressed upon wherever nothing lies on it.
+    /// The pile rotated by an angle, under pressure wherever its surface is uncovered.
     fn model(&self, angle: f64) -> Model {
         let (sin, cos) = angle.sin_cos();
         let mesh = moved(self.blocks.mesh.clone(), |[x, y]| {
@@ -109,7 +109,7 @@ impl Pile {
     }
 }
 
-/// Fails unless everything is under the uniform pressure, all contacts closed, to within 1e-10.
+/// Fails unless the pressure is uniform and all contacts are closed, to within 1e-10.
 #[track_caller]
 fn is_uniform(solution: &Solution, angle: f64) {
     let [xx, yy, xy] = turned_pressure(angle);
@@ -122,10 +122,10 @@ fn is_uniform(solution: &Solution, angle: f64) {
     solution.check_pressure(PRESSURE, 1e-10 * PRESSURE);
 }
 
-/// Blocks on each other along x, numbers of cells, angles, and numbers of subdomains.
+/// Extents of stacked blocks along x, numbers of cells, angles, and numbers of subdomains.
 type Patch = (Vec<[f64; 2]>, Vec<usize>, Vec<f64>, Vec<usize>);
 
-/// Sides that end together on meshes of any sizes, sides that overlap in part, three blocks in any position.
+/// Sides that end together with meshes of any size, sides with partial overlap, three blocks in any position.
 fn patches() -> Vec<Patch> {
     let two = |lower, upper, n: [usize; 2]| (vec![lower, upper], n.to_vec(), vec![0.0], vec![2]);
     let whole = [[4, 7], [9, 2], [5, 5], [1, 6], [3, 40], [40, 3]];
@@ -163,7 +163,7 @@ fn a_uniform_pressure_passes_between_blocks_however_they_lie_on_each_other() {
     }
 }
 
-/// A plate with a crack along y = 0 from tip to tip, its sides of n[0] facets below and n[1] above.
+/// A plate with a crack along y = 0 from tip to tip, with n[0] facets on its lower and n[1] on its upper side.
 fn cracked_plate(n: [usize; 2], text: &str, cells: Sort) -> Model {
     let mut blocks = Blocks::new();
     for (column, x, cells) in [
@@ -235,7 +235,7 @@ fn a_uniform_pressure_passes_between_cells_of_any_kinds() {
     }
 }
 
-/// The user's own partition cuts through the contact: all subdomains around it are one group.
+/// The user's partition cuts through the contact: all subdomains around it form one group.
 #[test]
 fn a_uniform_pressure_passes_where_a_cut_meets_the_contact() {
     let blocks = block(Blocks::new(), "west", [0.0, 1.0], [0.0, 1.0], [3, 3], 5);

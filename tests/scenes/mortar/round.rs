@@ -1,4 +1,4 @@
-//! Round bodies: statics and Lamé.
+//! Round bodies: equilibrium and Lamé's solution.
 
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
@@ -71,14 +71,14 @@ fn rollers_carry_each_other_as_statics_says() {
         close(on("floor right")[1], weight("right") + y_2, slack);
         close(on("wall left")[0], -x, slack);
         close(on("wall right")[0], x, slack);
-        // Two polygons press on each other along a line that is theirs to within half a facet.
+        // Two polygons press on each other along a line that is determined to within half a facet.
         let angle = f64::atan2(apart, height);
         close(f64::atan2(x, y).abs(), std::f64::consts::PI - angle, 0.06);
         close(f64::atan2(x_2, y_2).abs(), angle, 0.06);
     }
 }
 
-/// A ring of n cells around and 8 across, its seam at an angle.
+/// A ring of n cells around and 8 across, with its seam at an angle.
 fn ring(blocks: Blocks, name: &str, radii: [f64; 2], n: usize, seam: f64) -> Blocks {
     blocks.mapped(name, [n, 8], |[s, t]| {
         let (sin, cos) = (seam - std::f64::consts::TAU * s).sin_cos();
@@ -93,11 +93,11 @@ fn shrunk_rings_press_on_each_other_as_lame_says_and_turn_freely() {
     let [a, b, c] = [1.0_f64, 2.0, 3.0].map(|r| r * r);
     let stiffness = young / (1.0 - poisson * poisson);
     let pressure = stiffness * interference / 2.0 * (b - a) * (c - b) / (2.0 * b * (c - a));
-    // Odd numbers, so that no node lies on the other's seam.
+    // Odd numbers, so that no node lies on the other ring's seam.
     let blocks = ring(Blocks::new(), "inner", [1.0, 2.0], 75, 0.0);
     let blocks = ring(blocks, "outer", [2.0, 3.0], 91, std::f64::consts::PI);
     let mesh = blocks.glued(|_, y| y.abs() < 1e-9).mesh;
-    // Facets of a finer side a feel each kink of side b.
+    // Facets of a finer side a resolve each kink of side b.
     for (sides, slack) in [
         ("'inner top', 'outer bottom'", 0.04),
         ("'outer bottom', 'inner top'", 0.1),
@@ -123,7 +123,7 @@ fn shrunk_rings_press_on_each_other_as_lame_says_and_turn_freely() {
             let [u, v, _] = solution.displacement[tag];
             close((x * v - y * u) / x.hypot(y), 0.0, 0.01 * size);
         }
-        // Three motions of both and one against the other.
+        // Three common motions and one relative motion.
         let warnings = solution.report["warnings"].as_array().unwrap();
         let free =
             "unconstrained rigid-body motion, not loaded: 4 rigid motions of 'inner', 'outer';";

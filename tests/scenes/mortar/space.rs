@@ -1,4 +1,4 @@
-//! A uniform pressure passes exactly between cells of space.
+//! A uniform pressure is transferred exactly between cells in space.
 
 use std::f64::consts::PI;
 
@@ -34,7 +34,7 @@ fn scene(sides: &str) -> String {
     format!("{SCENE}[[contact]]\nname = 'joint'\nsides = [{sides}]\ngap = 0.0\n")
 }
 
-/// A box whose linear cells have faces of irregular shape. Edges of quadratic ones stay straight.
+/// A box of irregular cells, whose faces are irregular for linear kinds; edges of quadratic ones stay straight.
 fn block(name: &str, kind: ElementKind, n: [usize; 3], low: [f64; 3], high: [f64; 3]) -> Mesh {
     let mesh = solid(name, kind, n, |x| x);
     let amount = if [Tetrahedron4, Hexahedron8].contains(&kind) {
@@ -50,7 +50,7 @@ fn block(name: &str, kind: ElementKind, n: [usize; 3], low: [f64; 3], high: [f64
     moved(mesh, |x| place(uneven(x)))
 }
 
-/// Fails unless everything is under the uniform pressure, all contacts closed, to within 1e-10.
+/// Fails unless the pressure is uniform and all contacts are closed, to within 1e-10.
 #[track_caller]
 fn is_uniform(solution: &Solution) {
     let n = turned([0.0, 0.0, 1.0]);
@@ -75,10 +75,10 @@ fn a_uniform_pressure_passes_between_solids_of_any_cells() {
     }
 }
 
-/// A part of the plane, along x and y.
+/// A rectangle in the plane, along x and y.
 type Rectangle = [[f64; 2]; 2];
 
-/// ∫ N over the part of a side of rectangles that lies in one: node and value.
+/// ∫ N over the part of a side of rectangular facets that lies in a rectangle: node and value.
 fn integrals(mesh: &Mesh, side: &str, part: Rectangle) -> Vec<(u32, f64)> {
     let mut list = Vec::new();
     for &facet in &mesh.groups[side].members {
@@ -103,7 +103,7 @@ fn integrals(mesh: &Mesh, side: &str, part: Rectangle) -> Vec<(u32, f64)> {
                 .iter()
                 .map(|(_, [from, to])| 0.5 * (to - from))
                 .product();
-            // The reference coordinates of x, along the edges from the first corner.
+            // The reference coordinates of x, along the edges at the first corner.
             let along = |end: usize| {
                 let edge = [0, 1].map(|axis| at(end)[axis] - at(0)[axis]);
                 let way = [0, 1].map(|axis| x[axis] - at(0)[axis]);
@@ -122,7 +122,7 @@ fn integrals(mesh: &Mesh, side: &str, part: Rectangle) -> Vec<(u32, f64)> {
     list
 }
 
-/// The model with the pressure wherever a side isn't covered.
+/// The model with the pressure wherever a side is uncovered.
 fn pressed_beside(text: &str, mesh: &Mesh, covered: Rectangle) -> Model {
     let mut model = model(text, moved(mesh.clone(), turned));
     let everywhere = [[-9.0, 9.0]; 2];
@@ -173,7 +173,7 @@ fn a_uniform_pressure_passes_where_solids_overlap_in_part() {
     }
 }
 
-/// The same nodes on both sides are the corners of quadrilaterals here, of triangles there.
+/// The nodes of both sides coincide, but are the corners of quadrilaterals on one and of triangles on the other.
 #[test]
 fn a_uniform_pressure_passes_where_nodes_match_but_facets_do_not() {
     for (lower, upper) in [(Hexahedron8, Tetrahedron4), (Tetrahedron10, Hexahedron27)] {
@@ -195,7 +195,7 @@ fn a_uniform_pressure_passes_where_nodes_match_but_facets_do_not() {
     }
     let tetrahedra = |name, low, high| solid(name, Tetrahedron4, [2, 2, 1], between(low, high));
     let lower = tetrahedra("lower", [0.0; 3], [2.0, 2.0, 1.0]);
-    // Turned by a quarter its diagonals are the others.
+    // Rotated by 90°, its faces have the other diagonals.
     let upper = moved(
         tetrahedra("upper", [0.0, 0.0, 1.0], [2.0; 3]),
         |[x, y, z]| [2.0 - y, x, z],

@@ -1,4 +1,4 @@
-//! One system for the whole mesh has the program's solution.
+//! The solution agrees with that of a single system for the whole mesh.
 
 use contact_dd_partition::model::Model;
 
@@ -10,7 +10,7 @@ use crate::support::scenes::{model, two_block_scene, two_blocks};
 use crate::support::solver::solve;
 use crate::support::uneven::{block, materials};
 
-/// Two blocks of different heights that part at one end, side a above or below.
+/// Two blocks of different heights that open at one end, with side a above or below.
 fn lifting(n: [usize; 2], young: [f64; 2], upside_down: bool, text: &str) -> Model {
     let blocks = block(Blocks::new(), "zero", [0.0, 2.0], [0.0, 1.0], [n[0], 4], 3);
     let blocks = block(blocks, "one", [0.4, 2.5], [1.0, 1.6], [n[1], 4], 4);
@@ -72,7 +72,7 @@ fn a_stiff_side_a_on_a_soft_side_b_keeps_the_certificate() {
     }
 }
 
-/// All of side a is prescribed: its own unknowns can't be those of its conditions.
+/// All of side a is prescribed: none of its unknowns can be eliminated for its constraints.
 #[test]
 fn a_side_a_that_is_held_presses_all_the_same() {
     for n in [[10, 7], [7, 10], [15, 4]] {
@@ -85,7 +85,7 @@ fn a_side_a_that_is_held_presses_all_the_same() {
     }
 }
 
-/// A base, two blocks on it that touch, and one on both of them; no two meshes match.
+/// A base, two blocks on it that touch each other, and one on both of them; no two meshes match.
 #[test]
 fn four_blocks_with_nodes_in_several_contacts_are_as_one_system_for_all_says() {
     let blocks = block(Blocks::new(), "zero", [0.0, 4.0], [0.0, 1.0], [13, 4], 1);
@@ -125,7 +125,7 @@ fn four_blocks_with_nodes_in_several_contacts_are_as_one_system_for_all_says() {
     }
 }
 
-/// Where nodes match, both ways of pairing find the same.
+/// For matching nodes, both discretizations give the same solution.
 #[test]
 fn matching_meshes_need_no_mortar_and_lose_nothing_by_it() {
     let scene = two_block_scene();

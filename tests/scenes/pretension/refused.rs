@@ -1,4 +1,4 @@
-//! Pretensions that can't be.
+//! Invalid pretensions.
 
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;

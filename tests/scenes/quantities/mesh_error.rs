@@ -1,4 +1,4 @@
-//! The estimated error of the mesh in a quantity against that of a fine mesh.
+//! The estimated error of the mesh in a quantity, compared with the difference from a fine mesh.
 
 use serde_json::Value;
 
@@ -8,10 +8,10 @@ use crate::support::scenes::model;
 use crate::support::solver::solve;
 use crate::support::sorts::sort;
 
-/// Cells along sides over those of the coarsest mesh, of which the last stands for the exact solution.
+/// Numbers of cells along sides relative to the coarsest mesh; the last one represents the exact solution.
 const FINE: [usize; 4] = [1, 2, 4, 16];
 
-/// A block between rollers that a smooth pressure bends down onto a curved obstacle.
+/// A block between rollers that a smooth pressure presses down onto a curved obstacle.
 fn scene(law: &str) -> String {
     format!(
         "plane = 'strain'
@@ -69,7 +69,7 @@ fn estimated_errors_of_quantities_are_those_of_meshes() {
                     "{law}, {fine}, {name}: {share} of {error:e}"
                 );
             }
-            // All of the load, on any mesh.
+            // The total force is exact on any mesh.
             let pressed = number(&mesh["pressed"], "value");
             assert!(number(&mesh["pressed"], "error").abs() < 1e-9 * pressed);
             assert_eq!(mesh["point"]["error"], Value::Null);

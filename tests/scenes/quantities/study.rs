@@ -1,4 +1,4 @@
-//! Studies: many cases by the factors of one run.
+//! Parameter studies: many cases with the factorizations of one run.
 
 use contact_dd_partition::model::Model;
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use crate::support::blocks::Blocks;
 use crate::support::scenes::model;
 use crate::support::solver::Case;
 
-/// The scene in the plane with this coefficient of friction and an addition to the gap of its joint.
+/// The scene in the plane with this coefficient of friction and increment of its joint's gap.
 fn scene(friction: f64, gap: f64) -> Model {
     let knobs: Vec<&Knob> = KNOBS.iter().chain([&FRICTION]).collect();
     let text = plane()
@@ -18,7 +18,7 @@ fn scene(friction: f64, gap: f64) -> Model {
     varied(&text, &law, &in_plane("quad4"), &knobs, None)
 }
 
-/// The table of a study on so many ranks, and how the run ended.
+/// The table of a study on `ranks` ranks, and the exit code and messages of the run.
 fn table(case: &Case, ranks: usize, asked: &Value, args: &[&str]) -> (Option<Value>, i32, String) {
     let path = case.folder().join("cases.json");
     std::fs::write(&path, asked.to_string()).unwrap();
@@ -88,7 +88,7 @@ fn a_case_without_friction_slips_as_without_any() {
         .zip(none.as_array().unwrap())
     {
         let [found, none] = [found, none].map(|of| of.as_f64().unwrap());
-        // Of what is sheared nothing is left.
+        // Nothing remains of the shear.
         assert!(
             (found - none).abs() <= 1e-8 * none.abs() + 1e-4,
             "{found:e}, {none:e}"
@@ -96,7 +96,7 @@ fn a_case_without_friction_slips_as_without_any() {
     }
 }
 
-/// Nothing but an obstacle below holds a block, which a load lifts in the second case.
+/// Only an obstacle below holds a block, which the load of the second case lifts.
 #[test]
 fn cases_without_equilibrium_are_told_of_and_the_others_solved() {
     let mesh = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [3, 3]);

@@ -1,4 +1,5 @@
-//! Stress intensity factors as quantities: their values are those of the report, their derivatives differences of runs.
+//! Stress intensity factors as quantities: their values agree with the report, their derivatives with differences of
+//! runs.
 
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
@@ -12,11 +13,11 @@ use crate::support::scenes::model;
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
-/// Factors of the body force, the traction and the pressure, of the stiffness, what is added to the gap (m), the coefficient of
-/// friction.
+/// Factors of the body force, the traction and the pressure, of the stiffness, the increment of the gap (m), the
+/// coefficient of friction.
 type Numbers = [f64; 6];
 
-/// Small changes of these, and the beginning of the parameters' names.
+/// Small changes of these, and the prefixes of the parameters' names.
 const KNOBS: [(f64, &str); 6] = [
     (1e-5, "bodies.plate.body_force"),
     (1e-5, "traction[1]"),
@@ -38,7 +39,7 @@ fn orthotropic(factor: f64) -> String {
     )
 }
 
-/// An edge crack along x, held below, pressed and sheared above.
+/// An edge crack along x, fixed below, with pressure and shear above.
 fn scene(
     material: fn(f64) -> String,
     [weight, push, press, stiff, gap, friction]: Numbers,
@@ -91,7 +92,7 @@ fn solved(mesh: &Mesh, text: &str) -> Value {
     solve(&model(text, mesh.clone()), 5).report
 }
 
-/// Compares the values with the report's, and all derivatives with central differences of whole runs.
+/// Compares the values with the report, and all derivatives with central differences of complete runs.
 #[track_caller]
 fn check(cells: &str, material: fn(f64) -> String, numbers: Numbers) {
     let mesh = plate(3.0, cells, 1);
@@ -133,7 +134,7 @@ fn check(cells: &str, material: fn(f64) -> String, numbers: Numbers) {
             assert_eq!(found.len(), 1, "{parameter}");
             let factor = match parameter {
                 "materials.rock" => found[0]["at"].as_f64().unwrap(),
-                // The derivative is that by a factor of the load as it is.
+                // The derivative is that with respect to a factor of the current load.
                 "pressure[1]" => 1.0 / numbers[k],
                 _ => 1.0,
             };

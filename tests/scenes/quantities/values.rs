@@ -1,4 +1,4 @@
-//! Values of quantities, against the fields that they are taken from, and what can't be one.
+//! Values of quantities, compared with the fields of the result, and invalid quantities.
 
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
@@ -45,7 +45,7 @@ fn quantities_are_those_of_the_fields() {
             .map(|point| point.pressure)
             .fold(0.0, f64::max),
     );
-    // Mean pressures in windows of 0.3 m to both sides.
+    // Average pressures in windows of 0.3 m to both sides.
     let joint = varied.contacts.iter().find(|of| of.name == "joint");
     let joint = &joint.unwrap().points;
     let window = |at: f64, x: f64| (1.0 - (at - x).abs() / 0.3).max(0.0);
@@ -78,13 +78,13 @@ fn quantities_are_those_of_the_fields() {
         report["reactions"][0]["force"][1].as_f64().unwrap(),
     );
     let norm = report["error_estimate"]["energy_norm"].as_f64().unwrap();
-    // The estimate adds its own part to the energy of the displacement.
+    // The energy norm of the estimate includes the estimated error.
     let error = report["error_estimate"]["error"].as_f64().unwrap();
     let stored = all["stored"]["value"].as_f64().unwrap();
     assert!((stored - 0.5 * norm * norm).abs() <= 0.5 * error * error + 1e-9 * stored);
 }
 
-/// A load step's derivative is that of its own loads, without friction.
+/// The derivative in a load step is with respect to its own loads, without friction.
 #[test]
 fn quantities_are_those_of_every_load_step_and_friction_in_a_later_one_has_no_derivatives() {
     let steps = "[[step]]\nscale = 0.5\n[[step]]\nscale.pressure = 2.0\n";
@@ -194,7 +194,7 @@ fn what_is_no_quantity_is_refused_with_what_there_is() {
     }
 }
 
-/// A wall that touches without a force, as the block beside it has Poisson's ratio 0.
+/// A wall that touches without force, as the adjacent block has Poisson's ratio 0.
 #[test]
 fn points_about_to_change_are_named() {
     let scene = "

@@ -13,7 +13,7 @@ use crate::support::scenes::model;
 use crate::support::solids::{SOLIDS, between, solid};
 use crate::support::solver::solve;
 
-/// A block that rests on another by its weight.
+/// A block resting on another one by its weight.
 const RESTING: &str = "
 materials.rock = {young = 20e9, poisson = 0.25}
 bodies.lower.material = 'rock'
@@ -28,7 +28,7 @@ name = 'joint'
 sides = ['upper z0', 'lower z1']
 ";
 
-/// The same, pushed so that it rocks: a part of the joint opens.
+/// The same scene with a load that makes the block rock: the joint opens in part.
 pub fn rocking_scene() -> String {
     format!(
         "{RESTING}[[displacement]]
@@ -148,7 +148,7 @@ obstacle = {{{obstacle}}}
                 (1..points.len()).contains(&solution.closed()),
                 "{kind:?} {obstacle}"
             );
-            // On the other quadratic faces conditions are of several nodes.
+            // On the other quadratic faces constraints involve several nodes.
             if matches!(kind, Tetrahedron10 | Hexahedron20) {
                 continue;
             }
@@ -156,7 +156,7 @@ obstacle = {{{obstacle}}}
                 let u = solution.displacement[&point.tags[0]];
                 let x = advance(point.position, 1.0, u);
                 let away = distance(x);
-                // Linearized at the nearest point, to second order in u.
+                // Linearization at the nearest point has an error of second order in u.
                 let slack = 4.0 * dot(u, u) + 1e-14;
                 assert!(away > -slack, "{kind:?} {obstacle}: {away:e}");
                 if point.closed {

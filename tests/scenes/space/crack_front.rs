@@ -1,4 +1,4 @@
-//! Cracks at whose front a facet of one side shares most of its nodes, or all its corners, with one of the other.
+//! Cracks at whose front facets of the two sides share most of their nodes, or all corners.
 
 use contact_dd_partition::element::ElementKind::{self, *};
 use contact_dd_partition::mesh::{Group, Mesh};
@@ -10,7 +10,7 @@ use crate::support::scenes::model;
 use crate::support::solids::{between, solid};
 use crate::support::solver::solve;
 
-/// A block with a crack in its middle, free to widen.
+/// A block with a crack in its middle, free to expand laterally.
 const CRACKED: &str = "
 materials.rock = {young = 20e9, poisson = 0.25}
 bodies.lower.material = 'rock'
@@ -22,8 +22,8 @@ name = 'crack'
 sides = ['crack of lower', 'crack of upper']
 ";
 
-/// The unit cube with a square crack in the plane z = 1/2, of two facets in each direction: in cells of 8 nodes one
-/// node of either side is the crack's own.
+/// The unit cube with a square crack in the plane z = 1/2, of two facets in each direction: in cells of 8 nodes each
+/// side has only one node that the other side lacks.
 fn cracked(kind: ElementKind) -> Mesh {
     let n = [4, 4, 1];
     let lower = solid("lower", kind, n, between([0.0; 3], [1.0, 1.0, 0.5]));
@@ -72,7 +72,7 @@ fn an_open_crack_is_that_of_a_monolithic_solve() {
         let solution = solve(&model, 4);
         compare(&model, &reference, &solution);
         assert_eq!(solution.closed(), 0, "{kind:?}");
-        // Wider than nothing: the sides aren't joined.
+        // The crack is open: its sides aren't joined.
         assert!(solution.points().all(|point| point.gap > 1e-6), "{kind:?}");
     }
 }

@@ -21,12 +21,12 @@ use crate::support::solver::{Case, solve, solve_steps};
 use crate::support::sorts::sort;
 use crate::support::stress::judge::Findings;
 
-/// A vector as a scene has it.
+/// A vector in the syntax of a scene.
 fn vector(v: [f64; 3]) -> String {
     format!("[{:?}, {:?}, {:?}]", v[0], v[1], v[2])
 }
 
-/// A low block on a plane, all turned about no special axis, under a push per area along the base and its weight.
+/// A low block on a plane, all in a general orientation, under a shear load per area of the base and its weight.
 fn on_plane(kind: ElementKind, law: &str, push: [f64; 2], pressure: f64) -> Model {
     let mesh = moved(
         solid("block", kind, [3, 2, 1], between([0.0; 3], [1.5, 1.0, 0.1])),
@@ -148,7 +148,8 @@ fn to(x: f64, y: f64) -> String {
     )
 }
 
-/// A block on a plane in uniform compression and shear, τ = μ p against the way since the step before, which turns.
+/// A block on a plane in uniform compression and shear, τ = μ p opposite to the slip increment, whose direction changes
+/// from step to step.
 #[test]
 fn what_slips_evenly_is_pulled_back_by_the_bound_whatever_way_it_goes() {
     let (mu, pressure, high, shear_modulus) = (0.3, 2e6, 0.5, 10e9);
@@ -218,7 +219,7 @@ fn what_slips_evenly_is_pulled_back_by_the_bound_whatever_way_it_goes() {
     }
 }
 
-/// A closed way on which a joint sticks and slips; in the end it comes back to where it began.
+/// A closed path along which a joint sticks and slips; in the end it is periodic.
 #[test]
 fn what_a_cycle_in_space_takes_is_what_friction_dissipates() {
     let corners = [[2e-4, 0.0], [2e-4, 2e-4], [-2e-4, 1e-4], [0.0, -2e-4]];
@@ -260,7 +261,7 @@ fn a_joint_that_sticks_is_glued() {
     }
 }
 
-/// A scene, turned: lengths of forces and slips are the same.
+/// A rotated scene: magnitudes of forces and slips are unchanged.
 #[test]
 fn an_answer_turns_with_its_scene() {
     let scene = |to: fn([f64; 3]) -> [f64; 3], kind| {
@@ -321,7 +322,7 @@ fn an_answer_turns_with_its_scene() {
     }
 }
 
-/// Between planes that hold it along z, nodes within it free: plane strain is exact.
+/// Between planes that prevent displacement along z, with the inner nodes free: plane strain is exact.
 #[test]
 fn extruded_scenes_with_friction_have_the_answers_of_the_plane() {
     let (raous, _) = built_in("raous", 0);

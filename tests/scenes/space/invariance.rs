@@ -1,4 +1,4 @@
-//! Invariance of solutions: place, size, stiffness and numbering of a scene play no part.
+//! Invariance of solutions under motion, scaling, change of stiffness and renumbering of a scene.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -16,10 +16,10 @@ use crate::support::solids::{between, moved, solid, turned};
 use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::solve;
 
-/// Two blocks, pressed on each other and pushed aside; the lower side of the upper one is bent.
+/// Two blocks under pressure and shear; the lower side of the upper one is curved.
 struct Blocks {
     kinds: [ElementKind; 2],
-    /// True if nodes match; else the upper block covers a part of the lower one.
+    /// True for matching nodes; otherwise the upper block covers a part of the lower one.
     is_even: bool,
     friction: &'static str,
 }

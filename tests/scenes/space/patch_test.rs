@@ -1,6 +1,6 @@
 //! The patch test of MacNeal and Harder, "A proposed standard set of problems to test finite element accuracy", Finite
-//! Elements in Analysis and Design 1 (1985): a cube of seven hexahedra, one of which has a Jacobian below zero at a
-//! corner, and linear displacements on its faces.
+//! Elements in Analysis and Design 1 (1985): a cube of seven hexahedra, one of which has a negative Jacobian at a
+//! corner, with linear displacements prescribed on its faces.
 
 use std::fmt::Write as _;
 
@@ -22,7 +22,7 @@ const INNER: [[f64; 3]; 8] = [
     [0.165, 0.745, 0.702],
 ];
 
-/// The faces of a hexahedron, seen from outside counter-clockwise.
+/// The faces of a hexahedron, counter-clockwise seen from outside.
 const FACES: [[usize; 4]; 6] = [
     [0, 3, 2, 1],
     [4, 5, 6, 7],

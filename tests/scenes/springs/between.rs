@@ -12,7 +12,7 @@ use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::Case;
 
-/// The report's entry of a contact by its name: its kind and its force.
+/// A contact in the report, by its name: its kind and its force.
 fn of_report(solution: &Solution, name: &str) -> (String, [f64; 3]) {
     let contacts = solution.report["contacts"].as_array().unwrap();
     let found = contacts.iter().find(|of| of["name"] == name).unwrap();
@@ -34,7 +34,7 @@ fn with_points(mut mesh: Mesh, points: &[(&str, &[[f64; 3]])]) -> Mesh {
     mesh
 }
 
-/// Two bars with a spring between them, pulled: they lengthen by F (1/k + 2 L/EA), however the spring is given.
+/// Two bars with a spring between them under tension: they lengthen by F (1/k + 2 L/EA), for every form of the spring.
 #[test]
 fn two_bars_and_a_spring_are_in_series() {
     let (young, side, force, k) = (20e9, 0.5, 3e5, 4e9);
@@ -86,7 +86,7 @@ between = ['left right', 'right left']
     }
 }
 
-/// A spring along a skew line pulls along it: what can go along x alone gives way by F/(k e_x²).
+/// A spring along a skew line acts along that line: an end that moves only along x is displaced by F/(k e_x²).
 #[test]
 fn a_spring_pulls_along_its_line() {
     let (k, force) = (2e6, 3e2);
@@ -133,7 +133,7 @@ between = ['p', 'q']
 axial = {k:?}"
     );
     let model = model(&text, mesh);
-    // From p to q it is (1, 2, 0).
+    // The vector from p to q is (1, 2, 0).
     let along = 0.2_f64.sqrt();
     let expected = force / (k * along * along);
     for count in [2, 6] {
@@ -151,7 +151,7 @@ axial = {k:?}"
     }
 }
 
-/// A free block on a table with friction, which a spring pulls by a corner of another one that is moved.
+/// A free block on a table with friction, pulled at a corner by a spring to another block, which is moved.
 fn pulled() -> Model {
     let sled = solid(
         "sled",
@@ -218,12 +218,12 @@ fn ranks_and_solvers_make_no_difference() {
     let pulls: Vec<f64> = (steps.iter())
         .map(|step| of_report_of_step(step, "rope"))
         .collect();
-    // The table can't hold more than its friction.
+    // The table can't exert more than its friction.
     assert!(pulls[0] > 0.0 && pulls[1] > pulls[0], "{pulls:?}");
     case.is_the_same_on_all_ranks_and_by_iteration(1e-7);
 }
 
-/// The force of a spring along x, from the table of its conditions.
+/// The force of a spring along x, from the table of its constraints.
 fn of_report_of_step(step: &Solution, name: &str) -> f64 {
     step.contacts[name].iter().map(|row| row.force).sum()
 }

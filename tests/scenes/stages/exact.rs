@@ -7,7 +7,7 @@ use crate::support::solution::Solution;
 use crate::support::solver::solve_steps;
 use crate::support::sorts::sort;
 
-/// A bar of two layers under its own weight, the second one put on the first: exact.
+/// A bar of two layers under its weight, the second one added on the first: exact.
 #[test]
 fn a_bar_built_in_layers_settles_as_it_should() {
     let text = "
@@ -29,7 +29,7 @@ fn a_bar_built_in_layers_settles_as_it_should() {
     let model = model(text, sort("quad4").of(&blocks.mesh));
     let steps = solved(&model, 4, &[]);
     let (weight, young) = (20e3, 20e6);
-    // The first layer, of height 2, under its own weight and what stands on it, at y.
+    // The first layer, of height 2, under its weight and the weight above, at y.
     let first = |y: f64, on: f64| -(weight * (2.0 * y - 0.5 * y * y) + on * y) / young;
     let second = |y: f64| {
         let h = y - 2.0;
@@ -48,8 +48,8 @@ fn a_bar_built_in_layers_settles_as_it_should() {
     }
 }
 
-/// A tunnel in ground that is stressed: nothing moves before the core is dug out, the ground converges as Lamé says, the
-/// lining that comes then carries nothing of that, and of what comes later its share.
+/// A tunnel in stressed ground: nothing moves before the core is excavated, the ground converges by Lamé's solution,
+/// the lining installed then carries none of that, and its share of later loads.
 #[test]
 fn a_lining_carries_what_comes_after_it() {
     let text = "
@@ -87,7 +87,7 @@ fn a_lining_carries_what_comes_after_it() {
     let (p, a, b, c) = (1e6, 1.0f64, 3.0f64, 0.8f64);
     let (young, poisson) = (1e9, 0.3);
     let shear = young / (2.0 * (1.0 + poisson));
-    // Per pressure: how far the ground comes in when it is taken off, and the lining when it is put on.
+    // Displacement per pressure: of the ground when a pressure is removed, and of the lining when it is applied.
     let ground = (1.0 / a - a / (b * b))
         / (2.0 * shear * (1.0 / (a * a) + 1.0 / ((1.0 - 2.0 * poisson) * b * b)));
     let lining = 1.2 / 30e9 * a * (0.6 * a * a + c * c) / (a * a - c * c);

@@ -1,4 +1,4 @@
-//! A cantilever of two halves whose meshes don't match, against one mesh.
+//! A cantilever of two tied halves with non-matching meshes, compared with a single mesh.
 
 use crate::support::blocks::{Blocks, glued};
 use crate::support::scenes::model;
@@ -17,7 +17,7 @@ on = ['lower right', 'upper right']
 value = [0.0, -1e5]
 ";
 
-/// The deflection of the middle of the end, of halves of so many cells along the beam.
+/// The deflection at the middle of the end, with these numbers of cells along the halves.
 fn deflection(cells: [usize; 2], kind: &str, tied: bool) -> f64 {
     let blocks = Blocks::new()
         .rectangle(
@@ -48,8 +48,8 @@ fn deflection(cells: [usize; 2], kind: &str, tied: bool) -> f64 {
     solution.displacement[tag][1]
 }
 
-/// Tied halves converge to the same deflection as fast as one mesh does: with the square of the size of linear cells, and
-/// faster than that with quadratic ones.
+/// The deflection of tied halves converges at the order of a single mesh: with the square of the size of linear cells,
+/// and faster with quadratic ones.
 #[test]
 fn tied_halves_of_a_cantilever_converge_as_one_mesh_does() {
     let exact = deflection([16, 16], "quad9", false);
@@ -62,7 +62,7 @@ fn tied_halves_of_a_cantilever_converge_as_one_mesh_does() {
             let found = (pair[0] / pair[1]).log2();
             assert!(found > order || pair[1] < 2e-5, "{kind}: {errors:?}");
         }
-        // No worse than the coarser half alone would be, which both halves as coarse are.
+        // At most the error with both halves as coarse as the coarser one.
         let coarse = sizes.map(|[n, _]| (deflection([n, n], kind, false) / exact - 1.0).abs());
         for (tied, one) in errors.iter().zip(coarse) {
             assert!(

@@ -1,4 +1,4 @@
-//! Ties beside contact with friction, in load steps and stages, and of bodies without a support of their own.
+//! Ties combined with frictional contact, with load steps and stages, and with bodies without supports.
 
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
@@ -16,7 +16,7 @@ x = 0.0
 y = 0.0
 ";
 
-/// Two tied blocks, and a third one on them.
+/// Two tied blocks, and a third one on top of them.
 fn three_blocks(upper: usize) -> Blocks {
     Blocks::new()
         .rectangle("lower", [0.0, 1.0], [0.0, 1.0], [6, 6])
@@ -39,7 +39,7 @@ on = 'third top'
 value = [2e5, -1e6]
 ";
 
-/// Where sides match, friction elsewhere is that of the mesh that shares their nodes, in both load steps.
+/// For matching sides, the friction elsewhere is that of the mesh with merged nodes, in both load steps.
 #[test]
 fn friction_elsewhere_and_load_steps() {
     let two = three_blocks(6);
@@ -85,7 +85,7 @@ fn friction_elsewhere_has_the_same_bits_on_any_ranks_with_any_solver() {
     }
 }
 
-/// A block that is tied to others after they have deformed is put on them free of stress, and takes part from then on.
+/// A block tied to others after their deformation is added free of stress, and carries load from then on.
 #[test]
 fn what_comes_is_tied_as_things_are() {
     let text = format!(
@@ -127,7 +127,7 @@ value = [1e5, 1e6]
     close(force(2), -0.6e6, 1e-3);
 }
 
-/// Bodies that a tie alone holds together hang together: what is left free is the motion of all of them.
+/// Bodies joined only by a tie form one body: what remains free is their common motion.
 #[test]
 fn tied_bodies_move_as_one() {
     let mesh = Blocks::new()

@@ -1,4 +1,4 @@
-//! Equations against what they say.
+//! Linear equations between displacements.
 
 use contact_dd_partition::mesh::{Group, Mesh};
 
@@ -53,7 +53,7 @@ terms = [
 ]
 ";
 
-/// Equations between several components, of several bodies, are those of the whole system with multipliers.
+/// Equations between several components, of several bodies, are equivalent to Lagrange multipliers in the whole system.
 #[test]
 fn equations_are_what_lagrange_multipliers_make_of_the_whole_mesh() {
     let model = model(&format!("{ROCK}{TEXT}"), mesh());
@@ -75,8 +75,8 @@ fn equations_are_what_lagrange_multipliers_make_of_the_whole_mesh() {
     }
 }
 
-/// A value is that of the sum, and the force of the equation is what holds it: a block that is drawn out by its mean
-/// displacement is one under the pressure that does the same.
+/// A value prescribes the sum, and the equation has the required force: a block stretched by its average displacement
+/// has the solution of the corresponding pressure.
 #[test]
 fn a_value_prescribes_the_mean_of_a_side() {
     let mesh = Blocks::new()
@@ -120,7 +120,7 @@ fn ranks_and_solvers_make_no_difference_to_equations() {
     case.is_the_same_on_all_ranks_and_by_iteration(1e-9);
 }
 
-/// Every step has the value that it gives, as if it were the only one.
+/// Every step has its own value, independent of the other steps.
 #[test]
 fn a_value_goes_with_the_steps() {
     let named = TEXT.replace(

@@ -1,4 +1,4 @@
-//! A uniform stress passes exactly.
+//! A uniform stress is transferred exactly.
 
 use contact_dd_partition::element::ElementKind::{Hexahedron8, Tetrahedron4};
 
@@ -15,7 +15,7 @@ use super::{ROCK, WELD};
 const YOUNG: f64 = 20e9;
 const POISSON: f64 = 0.22;
 
-/// Fails unless displacements are those of a `gradient`.
+/// Fails unless displacements have the constant `gradient`.
 #[track_caller]
 fn is_linear(solution: &Solution, points: &[([f64; 3], i64)], gradient: [[f64; 3]; 3]) {
     let scale = solution.largest_displacement();
@@ -43,7 +43,7 @@ fn applied(stress: [[f64; 3]; 3], normal: [f64; 3]) -> [f64; 3] {
     stress.map(|row| row.iter().zip(normal).map(|(s, n)| s * n / size).sum())
 }
 
-/// `displacement` of a field that is linear.
+/// `displacement` tables of a linear field.
 fn held(on: &str, gradient: [[f64; 3]; 3], dim: usize) -> String {
     let mut text = format!("[[displacement]]\non = '{on}'\n");
     for (name, row) in ["x", "y", "z"].iter().zip(gradient).take(dim) {
@@ -77,7 +77,7 @@ fn in_the_plane_whatever_the_cells_are() {
         .quadrilateral("lower", corners(0.0, 1.0), [3, 4])
         .quadrilateral("upper", corners(1.0, 2.5), [5, 3])
         .mesh;
-    // In plane strain the third stress follows.
+    // In plane strain the third stress follows from the others.
     let mut stress = [[3e6, 1e6, 0.0], [1e6, -2e6, 0.0], [0.0, 0.0, 0.0]];
     stress[2][2] = POISSON * (stress[0][0] + stress[1][1]);
     let gradient = strain(stress);
@@ -100,7 +100,7 @@ fn in_the_plane_whatever_the_cells_are() {
     }
 }
 
-/// A tube under a pull along its axis: u_y = ε y, u_x = −ν ε x.
+/// A tube under axial tension: u_y = ε y, u_x = −ν ε x.
 #[test]
 fn around_an_axis() {
     let mesh = Blocks::new()
@@ -127,7 +127,7 @@ fn in_space_whatever_the_cells_are() {
     let sheared = |[x, y, z]: [f64; 3]| [x + 0.1 * y, y, z + 0.2 * x + 0.1 * y];
     let stress = [[3e6, 1e6, 0.5e6], [1e6, -2e6, -1e6], [0.5e6, -1e6, 1e6]];
     let gradient = strain(stress);
-    // Normals of the images of faces.
+    // Normals of the transformed faces.
     let [x, y, z] = [[1.0, -0.1, 0.0], [0.0, 1.0, 0.0], [-0.2, -0.08, 1.0]];
     let back = |n: [f64; 3]| n.map(|c| -c);
     let text = [

@@ -1,4 +1,4 @@
-//! Ties and equations that can't be.
+//! Invalid ties and equations.
 
 use contact_dd_partition::mesh::{Group, Mesh};
 use contact_dd_partition::model::Model;
@@ -49,7 +49,7 @@ fn sides_that_are_apart() {
     );
 }
 
-/// Moved nodes leave no gap, and forces balance.
+/// Moved nodes leave no gap, and forces are in equilibrium.
 #[test]
 fn adjusted_sides_touch() {
     let text = format!("{ROCK}{LOADED}{WELD}tolerance = 0.2\nadjust = true\n");
@@ -92,7 +92,7 @@ y = 1e-3
     let message = refused(&text, mesh.clone());
     assert!(message.contains("tie 'weld': at node"), "{message}");
     assert!(message.contains("contradict it, by 1.000e-3"), "{message}");
-    // In the same place nothing is wrong.
+    // With the sides in contact the scene is valid.
     let case = Case::of(&model(&text.replace("1e-3", "0.0"), mesh), 4);
     assert_eq!(case.run(&[]).code(), 0);
 }

@@ -1,4 +1,4 @@
-//! Couplings of a deck on their way to the scene.
+//! Translation of couplings to the scene.
 
 use std::collections::BTreeMap;
 
@@ -14,15 +14,15 @@ use crate::error::InputError;
 use crate::name;
 use crate::scene::coupling::COMPONENTS;
 
-/// A coupling in the words of the scene.
+/// A coupling in the syntax of the scene.
 pub(in crate::deck) struct SceneCoupling {
     name: String,
     on: String,
     point: [f64; 3],
     is_rigid: bool,
-    /// The directions along which nodes follow; none where they do along all.
+    /// The directions in which nodes follow; empty for all.
     directions: Vec<[f64; 3]>,
-    /// A point and the direction of the axis around which these turn.
+    /// A point of the axis, and its direction, of cylindrical directions.
     axis: Option<([f64; 3], [f64; 3])>,
     dim: usize,
     /// Loads and supports of the reference node by step.
@@ -30,12 +30,12 @@ pub(in crate::deck) struct SceneCoupling {
 }
 
 impl Couplings {
-    /// The couplings with the groups of their nodes and what the `steps` say of their points, under names that are
-    /// none of `names`.
+    /// The couplings with the groups of their nodes and the loads and supports of their points in `steps`, under names
+    /// that aren't in `names`.
     ///
     /// # Errors
-    /// A reference node that is one of a body or turned by one of `systems`, nodes of no body, supports that begin or end
-    /// with a step.
+    /// A reference node that belongs to a body or has one of the local `systems`, nodes without cells, supports that
+    /// hold in some of the steps only.
     pub(in crate::deck) fn in_scene(
         &self,
         groups: &mut Groups,
@@ -88,7 +88,7 @@ impl Couplings {
                  same place"
             ),
             Coupled::Surface(surface) => {
-                // Nodes have equal shares where no faces say others.
+                // Nodes have equal shares unless faces determine them.
                 let points = groups
                     .of_node_surface(surface)
                     .filter(|_| coupling.kind == Some(Kind::Distributing))
@@ -117,7 +117,7 @@ impl Couplings {
         Err(groups.error(coupling.place, &format!("*{keyword}: {message}")))
     }
 
-    /// Refuses couplings where there can be none, around an axis.
+    /// Refuses couplings around an axis that are impossible there.
     pub(in crate::deck) fn check_plane(
         &self,
         places: &Places,
@@ -135,10 +135,10 @@ impl Couplings {
 }
 
 impl Coupling {
-    /// The orientation among those of the deck.
+    /// The orientation, from those of the deck.
     ///
     /// # Errors
-    /// One that isn't there, or of a distributing coupling whose axes aren't the same everywhere.
+    /// A missing orientation, or one of a distributing coupling whose axes vary in space.
     fn system(
         &self,
         groups: &Groups,
@@ -159,7 +159,7 @@ impl Coupling {
         Err(groups.error(self.place, &message))
     }
 
-    /// The directions along which its nodes follow, none where these are all.
+    /// The directions in which its nodes follow; empty for all.
     fn directions(&self, groups: &Groups, system: Option<System>) -> Vec<[f64; 3]> {
         let axes = match system {
             Some(System::Rectangular(axes)) => axes,
@@ -175,7 +175,8 @@ impl Coupling {
             .collect()
     }
 
-    /// The loads on its reference node in every step, per thickness of plane sections; of distributing ones along their own axes.
+    /// The loads on its reference node in every step, per thickness of plane sections; for distributing couplings along
+    /// their local axes.
     fn acting(
         &self,
         groups: &Groups,
@@ -213,7 +214,7 @@ impl Coupling {
 }
 
 impl SceneCoupling {
-    /// Writes the coupling, with what acts on its point in the first step.
+    /// Writes the coupling, with the loads and supports of its point in the first step.
     pub(in crate::deck) fn write(&self, document: &mut Document) {
         document.table("[[coupling]]");
         document.key("name", quoted(&self.name));
@@ -238,7 +239,7 @@ impl SceneCoupling {
         self.acts(0, document);
     }
 
-    /// Writes what acts on its point in a step.
+    /// Writes the loads and supports of its point in a step.
     pub(in crate::deck) fn write_step(&self, step: usize, document: &mut Document) {
         let acts = |at: &AtReference| at.load != [0.0; FREEDOMS] || at.held != [None; FREEDOMS];
         if self.acting.iter().any(acts) {

@@ -6,20 +6,20 @@ use crate::decompose::flow::{Region, cheapest_cuts};
 use crate::decompose::graph::Graph;
 use crate::lists::Lists;
 
-/// The aggregates near a cut, and on which side of it their cells are.
+/// The aggregates near a cut, and the side of their cells.
 pub(super) struct Near {
     /// Side of every aggregate; those between the sides have cells on both.
     pub places: Vec<Region>,
     /// The number of the first cell of every aggregate between the sides.
     pub first: Vec<u32>,
-    /// The cells between the sides, and a vertex for each side.
+    /// The graph of the cells between the sides, with one vertex for each side.
     pub graph: Graph,
     pub left: Vec<bool>,
 }
 
 impl Near {
-    /// The side of the cut that a place of an aggregate is on, true on the left, and its vertex there: that of the aggregate,
-    /// or, between the sides, that of its cell.
+    /// The side of a cell, given by its index in an aggregate, true for left, and its vertex there: that of the
+    /// aggregate or, between the sides, of the cell.
     pub fn vertex_at(
         &self,
         (aggregate, place): (usize, usize),
@@ -37,7 +37,7 @@ impl Near {
 }
 
 impl Aggregates<'_> {
-    /// The aggregates near a cut, and where the cheapest cut runs through them.
+    /// The aggregates near a cut, and the cheapest cut through them.
     pub(super) fn near(&self, left: &[bool], aim: Aim) -> Near {
         let places = band(&self.graph, left, aim);
         let fine = &self.all.graph;
@@ -94,7 +94,7 @@ impl Aggregates<'_> {
         }
     }
 
-    /// The number of the first cell of every aggregate between the sides, and how many cells these have.
+    /// The number of the first cell of every aggregate between the sides, and the total number of their cells.
     fn first_cells(&self, places: &[Region]) -> (Vec<u32>, u32) {
         let mut first = vec![NONE; places.len()];
         let mut count = 0;
@@ -107,7 +107,7 @@ impl Aggregates<'_> {
         (first, count)
     }
 
-    /// Adds what lies beyond the aggregates near a cut to their graph, a vertex for each side.
+    /// Adds one vertex for each side, for everything beyond the aggregates near a cut, to their graph.
     fn add_sides(&self, places: &[Region], graph: &mut Graph, was_left: &mut Vec<bool>) {
         for side in [Region::Left, Region::Right] {
             let whole = || (0..places.len()).filter(|&aggregate| places[aggregate] == side);

@@ -1,4 +1,4 @@
-//! Bodies, which are connected through shared nodes, and disconnected subdomains.
+//! Connected bodies, which may share nodes, and disconnected subdomains.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use crate::magnitude::short;
 use crate::mesh::bounding_box::BoundingBox;
 use crate::model::Model;
 
-/// The bodies of a mesh, in the order of their first cell.
+/// The connected bodies of a mesh, in the order of their first cell.
 pub(super) struct Bodies {
     /// Name of every body.
     pub names: Vec<String>,
@@ -18,8 +18,9 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Finds the bodies and names each after the scene's body: those of a piece that holds several
-    /// are joined by "+", the pieces of one that falls apart are numbered "#1", "#2" ... and told by a point inside.
+    /// Finds the connected bodies and names each after the scene's body. The names of several scene bodies in one
+    /// connected body are joined by "+"; the parts of a disconnected scene body are numbered "#1", "#2" ... and
+    /// identified by a point inside.
     pub fn new(model: &Model) -> Self {
         let cells = &model.mesh.cells;
         let mut sets = DisjointSets::new(model.mesh.points.len());
@@ -60,7 +61,7 @@ impl Bodies {
     }
 }
 
-/// A point inside of every body: the middle of the cell that is nearest to the middle of the box around it.
+/// A point inside every body: the middle of the cell nearest to the middle of the body's bounding box.
 fn points_inside(model: &Model, of_cell: &[usize]) -> Vec<[f64; 3]> {
     let mesh = &model.mesh;
     let points = |cell: usize| {
@@ -97,7 +98,7 @@ fn points_inside(model: &Model, of_cell: &[usize]) -> Vec<[f64; 3]> {
 }
 
 impl Bodies {
-    /// The bodies that consist of these bodies of the scene, ascending.
+    /// The connected bodies that consist of these scene bodies only, ascending.
     pub fn among(&self, model: &Model, of_scene: &[u32]) -> Vec<u32> {
         let cells = self.of_cell.iter().zip(&model.cell_body);
         let among = cells.filter(|(_, body)| of_scene.contains(body));
@@ -106,7 +107,7 @@ impl Bodies {
     }
 }
 
-/// Numbers the names that occur more than once, and adds a point of each.
+/// Numbers the names that occur more than once, and adds a point inside each body.
 fn numbered(names: &[String], points: &[[f64; 3]], dim: usize) -> Vec<String> {
     let mut total: BTreeMap<&str, usize> = BTreeMap::new();
     for name in names {
@@ -125,7 +126,7 @@ fn numbered(names: &[String], points: &[[f64; 3]], dim: usize) -> Vec<String> {
         .collect()
 }
 
-/// The warning of the user's own subdomains that aren't connected across facets.
+/// The warning of subdomains prescribed by the user that aren't connected across facets.
 pub(super) fn scattered(model: &Model, decomposition: &Decomposition) -> Option<String> {
     model.prescribed_subdomains.as_ref()?;
     let of = &decomposition.subdomain;

@@ -1,24 +1,24 @@
-//! Groups: the subdomains that contact links.
+//! Contact groups: the subdomains linked by contact.
 
 use super::owners::Owners;
 use crate::disjoint_sets::DisjointSets;
 use crate::error::InputError;
 use crate::model::Model;
 
-/// The groups in contact, numbered by their lowest subdomain.
+/// The contact groups, numbered in the order of their lowest subdomain.
 pub(super) struct Groups {
     /// Number of groups.
     pub count: usize,
-    /// Group of every subdomain; `None` for a linear one.
+    /// Group of every subdomain; `None` for a subdomain without contact.
     pub of: Vec<Option<usize>>,
 }
 
 impl Groups {
-    /// Links the subdomains of every contact condition, among them all that share one of its
-    /// nodes, so that no node of a condition lies between a group and the rest.
+    /// Links the subdomains of every contact constraint, including all that share one of its nodes, so that no node of
+    /// a constraint lies on the interface between a group and the rest.
     ///
     /// # Errors
-    /// A condition without nodes.
+    /// A constraint without nodes.
     pub fn new(model: &Model, owners: &Owners) -> Result<Self, InputError> {
         let mut sets = DisjointSets::new(owners.count);
         let mut in_contact = vec![false; owners.count];

@@ -1,17 +1,17 @@
-//! Subdomains that have each node.
+//! The subdomains of each node.
 
 use crate::decompose::Decomposition;
 use crate::error::InputError;
 use crate::lists::Lists;
 use crate::model::Model;
 
-/// Subdomains that have each node.
+/// The subdomains of each node.
 pub(super) struct Owners {
     /// Number of subdomains.
     pub count: usize,
-    /// Subdomains of every node, ascending, with its local number.
+    /// Subdomains of every node, ascending, each with the node's local number there.
     pub of: Lists<(u32, u32)>,
-    /// Number of every node on Γ.
+    /// Number on Γ of every node.
     pub interface: Vec<Option<u32>>,
     /// Number of nodes of Γ.
     pub interface_nodes: usize,

@@ -6,7 +6,7 @@ use crate::contact_point::ContactPoint;
 use crate::problem::{PointNode, Problem, Subdomain, SubdomainNode};
 
 impl Problem {
-    /// Finds what the catalog says of the nodes of its contact points.
+    /// Fills in the catalog's data on the nodes of its contact points.
     pub(super) fn describe_points(&mut self) {
         let on_interface = |s: &Subdomain| {
             let nodes = s.interface.iter();

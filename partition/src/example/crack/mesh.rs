@@ -1,7 +1,7 @@
 //! A closed inclined crack in a wide plate, which slips without friction.
 //!
-//! The plate is turned so that the crack lies along x. Of the far load σ at the angle ψ to the crack
-//! the crack transmits the pressure σ sin²ψ and none of the shear σ sinψ cosψ.
+//! The plate is rotated so that the crack lies along x. Of the far-field stress σ at the angle ψ to the crack, the
+//! crack transmits the pressure σ sin²ψ but not the shear stress σ sinψ cosψ.
 
 use super::Shape;
 use super::pattern::Pattern;

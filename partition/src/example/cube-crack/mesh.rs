@@ -1,4 +1,4 @@
-//! The granite block in space: two inclined edge cracks that end inside the block, across it and along its depth.
+//! The granite block in space: two inclined edge cracks that end inside the block, both across it and along its depth.
 
 use super::Shape;
 use super::cubes::{Cube, along};
@@ -15,9 +15,9 @@ pub(super) const SHAPE: Shape = Shape::Cubes {
 const HEIGHT: f64 = 10.0;
 /// Start and end of the left crack, end and start of the right one: across and up (m).
 const LINE: [[f64; 2]; 4] = [[0.0, 6.5], [3.0, 5.0], [7.0, 5.0], [10.0, 6.5]];
-/// Lines between cells, close to each other at the fronts of the cracks: across the three columns (parts of each), along
-/// the depth from the plane of symmetry to the end of the cracks and on to that of the block (m), and from either end up or
-/// down to the line (parts of the way).
+/// Grid lines, graded towards the fronts of the cracks: across the three columns (fractions of each), along the depth
+/// from the plane of symmetry to the end of the cracks and on to the end of the block (m), and from either end up or
+/// down to the line (fractions of the distance).
 const COLUMNS: [&[f64]; 3] = [
     &[0.0, 0.22, 0.44, 0.64, 0.81, 0.93, 1.0],
     &[0.0, 0.07, 0.2, 0.37, 0.5, 0.63, 0.8, 0.93, 1.0],
@@ -33,7 +33,7 @@ fn cubes() -> Vec<Cube> {
         .collect()
 }
 
-/// A column, in a part of the depth, below or above the line.
+/// A column in a part of the depth, below or above the line.
 fn cube(column: usize, part: usize, upper: bool) -> Cube {
     let [[left, start], [right, end]] = [LINE[column], LINE[column + 1]];
     let map = move |[s, t, r]: [f64; 3]| {

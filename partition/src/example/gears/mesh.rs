@@ -1,7 +1,6 @@
 //! Two spur gears with involute flanks, from a geometry of Gmsh.
 //!
-//! `gears.msh` is what Gmsh makes of `gears.geo`, whose first lines have the command: curved triangles of
-//! six nodes.
+//! `gears.msh` is Gmsh's mesh of `gears.geo`, whose first lines contain the command: curved triangles of six nodes.
 
 use super::Shape;
 

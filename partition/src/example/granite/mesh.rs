@@ -1,8 +1,8 @@
 //! A loaded granite block with two edge cracks: the problem of Daněk's paper.
 //!
-//! Boundary 1-2-8-4-3-5-1 of the square, counter-clockwise from the lower left corner; cracks 5-6
-//! from the left and 7-8 from the right, whose tips 6 and 7 both sides share. The horizontal line
-//! of the mesh at mid-height follows 5-6-7-8, and cells are half as large on both sides of it.
+//! Boundary 1-2-8-4-3-5-1 of the square, counter-clockwise from the lower left corner; cracks 5-6 from the left and 7-8
+//! from the right, whose tips 6 and 7 belong to both sides. The horizontal mesh line at mid-height follows 5-6-7-8, and
+//! cells are half as large on both sides of it.
 
 use super::Shape;
 use super::pattern::Pattern;
@@ -18,13 +18,13 @@ const SIDE: f64 = 10.0;
 /// The points 5, 6, 7 and 8 (m).
 const LINE: [[f64; 2]; 4] = [[0.0, 6.5], [3.0, 5.0], [7.0, 5.0], [10.0, 6.5]];
 
-/// Coarse columns under each of 5-6, 6-7, 7-8; along the line there are twice as many.
+/// Coarse columns under each of 5-6, 6-7, 7-8; there are twice as many along the line.
 const COLUMNS: [usize; 3] = [12, 16, 12];
 
 /// Rows of the coarse and of the fine band on each side of the line.
 const ROWS: (usize, usize) = (15, 7);
 
-/// End of the coarse band and start of the fine one, as fractions of the way to the line.
+/// End of the coarse band and start of the fine one, as fractions of the distance to the line.
 const BANDS: (f64, f64) = (0.768, 0.818);
 
 fn squares() -> Vec<Square> {
@@ -45,7 +45,7 @@ fn squares() -> Vec<Square> {
     squares
 }
 
-/// The part of a column between two fractions of the way from the outside to the line.
+/// The part of a column between two fractions of the distance from the outside to the line.
 fn band(
     column: usize,
     line: [[f64; 2]; 2],

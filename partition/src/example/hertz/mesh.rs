@@ -1,9 +1,8 @@
 //! Line contact: a cylinder on its mirror image, by symmetry a quarter of it on a rigid plane.
 //!
-//! A square stands for the half plane of Hertz's theory: on the sides that cut it off act the
-//! tractions of the half plane (McEwen; K. L. Johnson, *Contact Mechanics*), so that nothing
-//! but the mesh stands between the answer and the theory. The mesh is graded towards the end of the
-//! contact, where the pressure falls to zero like a square root.
+//! A square represents the half-plane of Hertz's theory: the tractions of the half-plane act on its artificial boundary
+//! (McEwen; K. L. Johnson, *Contact Mechanics*), so that only the mesh separates the solution from the theory. The mesh
+//! is graded towards the end of the contact, where the pressure vanishes like a square root.
 
 use std::f64::consts::PI;
 
@@ -18,7 +17,7 @@ pub(super) const SHAPE: Shape = Shape::Squares(squares);
 /// Side of the square (m).
 const SIDE: f64 = 2.0;
 
-/// Sizes of cells grow with the distance from the end of the contact to this power, less one.
+/// The size of cells grows with the distance from the end of the contact to this power minus one.
 const GRADING: f64 = 1.6;
 
 /// Columns under the contact and beside it, and rows.

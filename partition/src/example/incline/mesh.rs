@@ -1,4 +1,4 @@
-//! A block on a slope that is less steep than friction would bear: it stands, and every node of its base sticks.
+//! A block on a slope below the friction angle: it stays, and every node of its base sticks.
 //!
 //! The slope rises by 7 in 24, so that sin α = 7/25 and cos α = 24/25.
 

@@ -1,9 +1,8 @@
-//! Four blocks and three contacts that meet in one point.
+//! Four blocks and three contacts that meet at one point.
 //!
-//! An oblique contact runs through the square; a vertical and a horizontal one start at its middle
-//! and divide what lies above it into a block on the left, one above and a wedge on the right.
-//! Under 1 MPa from the right and from above the pressure is 1 MPa on every contact, and nothing
-//! jumps: u = −p (1+ν)(1−2ν)/E · (x+5, y+5).
+//! An oblique contact runs through the square; a vertical and a horizontal one start at its centre and divide the part
+//! above it into a block on the left, one above and a wedge on the right. Under 1 MPa from the right and from above the
+//! pressure is 1 MPa on every contact, and the displacement has no jumps: u = −p (1+ν)(1−2ν)/E · (x+5, y+5).
 
 use super::Shape;
 use super::pattern::Pattern;
@@ -20,7 +19,7 @@ const HALF: f64 = 5.0;
 /// Height of the oblique contact at the left side, and its depth at the right one (m).
 const RISE: f64 = 3.0;
 
-/// Cells along each contact from the middle on; even.
+/// Cells along each contact from the centre on; even.
 const CELLS: usize = 10;
 
 const MIDDLE: [f64; 2] = [0.0, 0.0];
@@ -65,7 +64,7 @@ fn squares() -> Vec<Square> {
     squares
 }
 
-/// The wedge, a triangle: three quadrilaterals that meet in its centre.
+/// The wedge, a triangle of three quadrilaterals that meet at its centroid.
 fn wedge(east: [f64; 2]) -> [Square; 3] {
     let corners = [MIDDLE, east, [HALF, 0.0]];
     let sides = ["oblique upper", "right", "horizontal lower"];

@@ -1,7 +1,8 @@
-//! Two cylinders pressed on each other and pushed to and fro: partial slip after Cattaneo and Mindlin.
+//! Two cylinders pressed together and sheared back and forth: partial slip after Cattaneo and Mindlin.
 //!
-//! Of each cylinder the piece around the contact is meshed, a rectangle wide beside the contact; the cylinders' shape is
-//! in the gap. Nodes match; cells are as large as each other where the contact is and grow away from it.
+//! Each cylinder is meshed only around the contact, as a rectangle that is wide compared with the contact; the
+//! cylinders' shape enters through the gap. Nodes match; cells are of equal size in the contact region and grow away
+//! from it.
 
 use super::Shape;
 use super::pattern::Pattern;
@@ -15,17 +16,17 @@ pub(super) const SHAPE: Shape = Shape::Squares(squares);
 /// Height of the rectangles, half of their width (mm).
 const SIZE: f64 = 10.0;
 
-/// Half the width of the part with the smallest cells, more than that of the contact (mm).
+/// Half the width of the region of the smallest cells, larger than that of the contact (mm).
 const FINE: f64 = 1.0;
 
 /// Width of the feet at both ends, where the lower rectangle is held (mm).
 const FOOT: f64 = 0.5;
 
-/// Columns of a foot, between it and the smallest cells, of these, and so on; and rows.
+/// Columns of a foot, between it and the smallest cells, of the smallest cells, and the mirror image; and rows.
 const COLUMNS: [usize; 5] = [1, 8, 20, 8, 1];
 const ROWS: usize = 12;
 
-/// A function from 0 to 1 that rises so slowly at first that cells grow out of the smallest ones.
+/// A function from 0 to 1 with so small a slope at first that cells grow smoothly from the smallest ones.
 fn slow_start(s: f64) -> f64 {
     (4.0 * s).sinh() / 4.0_f64.sinh()
 }

@@ -1,7 +1,7 @@
 //! Uniform compression through an inclined contact: the patch test.
 //!
-//! Under the same pressure p from above and from the right the stress is −p I in the plane
-//! whatever the inclination, and u = −p (1+ν)(1−2ν)/E · (x, y).
+//! Under equal pressure p from above and from the right the stress is −p I in the plane for any inclination, and u = −p
+//! (1+ν)(1−2ν)/E · (x, y).
 
 use super::Shape;
 use super::pattern::Pattern;

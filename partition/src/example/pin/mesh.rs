@@ -1,4 +1,4 @@
-//! A plate that hangs on a pin, which sticks out on both sides and rests in a fork: a quarter of both by symmetry.
+//! A plate that hangs on a pin, which protrudes on both sides and rests in a fork: a quarter of both by symmetry.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -19,14 +19,14 @@ const PIN: f64 = 10.0;
 const HOLE: f64 = 10.05;
 /// Half of the edge of the square in the middle of the pin (mm).
 const CORE: f64 = 5.0;
-/// Half of the plate's width, and where its end is pulled (mm).
+/// Half of the plate's width, and the position of its loaded end (mm).
 const WIDTH: f64 = 30.0;
 const END: f64 = 60.0;
-/// Half of the plate's thickness, where the fork begins and where the pin ends (mm).
+/// Half of the plate's thickness, the beginning of the fork and the end of the pin (mm).
 const DEPTHS: [f64; 4] = [0.0, 10.0, 11.0, 21.0];
-/// Cells of the pin along those, along an eighth of its round, and between square and round.
+/// Cells of the pin along these depths, along an eighth of its circumference, and between square and circle.
 const OF_PIN: ([usize; 3], usize, usize) = ([2, 1, 3], 3, 2);
-/// Cells of the plate along its thickness, along an eighth of the hole, from there outwards, and to its end.
+/// Cells of the plate through its thickness, along an eighth of the hole, from there outwards, and to its end.
 const OF_PLATE: (usize, usize, usize, usize) = (2, 4, 3, 2);
 
 type Point = [f64; 2];
@@ -39,8 +39,9 @@ fn on_circle(radius: f64, angle: f64) -> Point {
     [radius * angle.cos(), radius * angle.sin()]
 }
 
-/// The three pieces between half of a square's edge of 2·`edge` and half of a circle, by the place along either and the
-/// part of the way from the one to the other: which axis of a cube leads along, and where its points are.
+/// The three pieces between half the edge of a square of side 2·`edge` and half a circle: the cube's axis along the
+/// circumference, and the points on square and circle. Arguments are the position along either and the fraction of the
+/// distance from one to the other.
 type Around = [(usize, fn(f64, f64, f64) -> [Point; 2]); 3];
 
 const AROUND: Around = [
@@ -114,7 +115,7 @@ fn cubes() -> Vec<Cube> {
     cubes.into_iter().map(Cube::curved).collect()
 }
 
-/// Cells of a piece along an eighth of the round, across and along the depth.
+/// Cells of a piece along an eighth of the circumference, radially and along the depth.
 fn around(axis: usize, [eighth, out, deep]: [usize; 3]) -> [usize; 3] {
     match axis {
         0 => [2 * eighth, out, deep],
@@ -122,7 +123,7 @@ fn around(axis: usize, [eighth, out, deep]: [usize; 3]) -> [usize; 3] {
     }
 }
 
-/// Groups of a piece; those that lead outwards begin at the plane of symmetry.
+/// Groups of a piece; radial lines begin at the plane of symmetry.
 fn sides(
     axis: usize,
     across: [Option<&'static str>; 2],

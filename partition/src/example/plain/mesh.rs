@@ -1,6 +1,6 @@
-//! A quarter of a plate with a hole under tension: no contact at all.
+//! A quarter of a plate with a hole under tension, without contact.
 //!
-//! Kirsch's plate, of finite width: the largest stress at the hole is some 3.14 times the tension.
+//! Kirsch's plate, with finite width: the largest stress at the hole is some 3.14 times the tension.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -29,7 +29,7 @@ fn squares() -> Vec<Square> {
             [Some("horizontal axis"), Some("right"), None, Some("hole")],
         )
         .curved(),
-        // The mirror image, exact to the last bit, so that the axis lies where it should.
+        // The mirror image is exact to the last bit, so that nodes lie exactly on the axis.
         Square::new(
             "plate",
             pattern,

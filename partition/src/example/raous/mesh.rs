@@ -1,6 +1,6 @@
 //! The plate of Raous, pressed on a rigid floor and from the side: it opens, slips and sticks.
 //!
-//! By symmetry a half of it is enough.
+//! By symmetry, one half is modelled.
 
 use super::Shape;
 use super::pattern::Pattern;

@@ -1,8 +1,8 @@
-//! Three rollers of steel between two plates of aluminium, pressed unevenly.
+//! Three rollers of steel between two plates of aluminium, under a non-uniform pressure.
 //!
-//! No nodes match: plates and rollers have meshes of their own, graded towards where they touch. What
-//! a roller carries below it carries above, all three what presses on the upper plate, and the largest
-//! pressure of each contact follows by Hertz from its own force.
+//! Meshes don't match: plates and rollers have separate meshes, graded towards the contacts. A roller transmits the
+//! same force above and below, all three transmit the load on the upper plate, and the largest pressure of each contact
+//! follows from its force by Hertz.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -21,12 +21,11 @@ const RADIUS: f64 = 0.05;
 /// Distance of their axes (m).
 const APART: f64 = 0.12;
 
-/// Height of the plates and what they have beyond the outer axes (m).
+/// Height of the plates and their overhang beyond the outer axes (m).
 const HEIGHT: f64 = 0.08;
 const BEYOND: f64 = 0.08;
 
-/// Cells along a quarter of a roller, from its outside to its core, and between contacts of a plate
-/// and across it.
+/// Cells along a quarter of a roller, from its outside to its core, and between contacts of a plate and across it.
 const QUARTER: usize = 20;
 const INWARD: usize = 12;
 const BETWEEN: usize = 18;
@@ -35,7 +34,7 @@ const ACROSS: usize = 14;
 /// Position of each roller, and of its axis (m).
 const ROLLERS: [(&str, f64); 3] = [("left", -APART), ("middle", 0.0), ("right", APART)];
 
-/// A function from 0 to 1 that rises slowly at first.
+/// A function from 0 to 1 with a small slope at first.
 fn slow_start(s: f64) -> f64 {
     (4.2 * s).sinh() / 4.2_f64.sinh()
 }
@@ -99,7 +98,7 @@ fn plates(place: &str, axis: f64, edge: f64, is_right: bool) -> [Square; 2] {
 fn disc(place: &str, axis: f64) -> Vec<Square> {
     let body = format!("{place} roller");
     let core = 0.45 * RADIUS;
-    // From −1 to 1, slowly in the middle.
+    // From −1 to 1, with a small slope in the middle.
     let along = |s: f64| {
         let w = 2.0 * s - 1.0;
         w.signum() * slow_start(w.abs())
@@ -109,7 +108,7 @@ fn disc(place: &str, axis: f64) -> Vec<Square> {
         .into_iter()
         .enumerate()
         .map(|(quarter, outer)| {
-            // Quarter by quarter counter-clockwise, as seen from the axis downwards.
+            // Quarter by quarter counter-clockwise, relative to the axis, from the bottom.
             let turn = move |[x, y]: [f64; 2]| match quarter {
                 0 => [axis + x, RADIUS + y],
                 1 => [axis - y, RADIUS + x],

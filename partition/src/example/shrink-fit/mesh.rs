@@ -1,4 +1,4 @@
-//! A hub shrunk onto a shaft, half a section around the axis.
+//! A hub shrunk onto a shaft: half a meridian section around the axis.
 
 use super::Shape;
 use super::pattern::Pattern;
@@ -12,7 +12,7 @@ pub(super) const SHAPE: Shape = Shape::Squares(squares);
 /// Radii of shaft and hub (mm).
 const RADII: [f64; 2] = [50.0, 100.0];
 
-/// Length of the shaft, and where the hub sits (mm).
+/// Length of the shaft, and position of the hub (mm).
 const SHAFT: f64 = 120.0;
 const HUB: [f64; 2] = [20.0, 100.0];
 

@@ -23,18 +23,19 @@ const RADIUS: f64 = 8.0;
 const CORE: f64 = 3.6;
 /// Cells along an edge that ends at the pole, along the others, and from the cube to the surface.
 const CELLS: [usize; 3] = [6, 2, 5];
-/// Size of the first cells at the pole, relative to cells all of one size.
+/// Size of the first cells at the pole, relative to uniform cells.
 const FIRST: f64 = 0.28;
 
-/// The part of a length after the part `s` of its cells, of nearly one size under the contact and growing beyond.
+/// The fraction of a length after the fraction `s` of its cells, of nearly uniform size under the contact and growing
+/// beyond it.
 fn graded(s: f64) -> f64 {
     FIRST * s + (1.0 - FIRST) * s.powi(5)
 }
 
-/// The point beneath the cube's at `on` of an edge of 1, at the part `r` of the way to the surface.
+/// The position at the fraction `r` of the distance from a point `on` the surface of the unit cube to the sphere.
 fn between(on: [f64; 3], r: f64) -> [f64; 3] {
     let direction = on.map(|c| (FRAC_PI_4 * c).tan());
-    // In the cube it plays no part.
+    // Inside the cube it has no effect.
     let far = length(direction).max(1.0);
     let out = 1.0 - graded(1.0 - r);
     let [x, y, down] = direction.map(|c| c * (CORE + out * (RADIUS / far - CORE)));

@@ -1,6 +1,6 @@
-//! Three blocks on top of each other, the upper two held by contact alone: semi-coercive.
+//! Three blocks on top of each other, the upper two held only by contact: a semi-coercive problem.
 //!
-//! All loads are vertical, so the two upper blocks are free to slide without load along it.
+//! All loads are vertical, so that the two upper blocks may slide freely but aren't driven to.
 
 use super::Shape;
 use super::pattern::Pattern;

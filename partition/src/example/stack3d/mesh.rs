@@ -1,4 +1,4 @@
-//! Three square blocks on top of each other, the upper two held by contact alone: semi-coercive.
+//! Three square blocks on top of each other, the upper two held only by contact: a semi-coercive problem.
 
 use super::Shape;
 use super::cubes::{Cube, along};
@@ -15,9 +15,9 @@ pub(super) const SHAPE: Shape = Shape::Cubes {
 /// Half of the blocks' widths, from below (m).
 const HALF_WIDTHS: [f64; 3] = [2.0, 1.5, 1.0];
 
-/// Lines between cells from the middle outwards, close to each other at the edges of the upper block (m).
+/// Grid lines from the middle outwards, refined at the edges of the upper block (m).
 const ACROSS: [f64; 10] = [0.0, 0.4, 0.7, 0.87, 0.95, 1.0, 1.06, 1.2, 1.5, 2.0];
-/// Lines between cells of each block upwards, close to each other at the upper joint (m).
+/// Grid lines of each block upwards, refined at the upper joint (m).
 const UPWARDS: [&[f64]; 3] = [
     &[0.0, 0.5, 1.0],
     &[1.0, 1.4, 1.7, 1.87, 1.95, 2.0],

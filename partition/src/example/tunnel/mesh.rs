@@ -1,4 +1,4 @@
-//! A quarter of a tunnel: rock, the core that is dug out of it, and the lining that comes then.
+//! A quarter of a tunnel: rock, the core to be excavated, and the lining installed afterwards.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -16,13 +16,13 @@ const RADIUS: f64 = 3.0;
 const LINING: f64 = 0.5;
 const HALF: f64 = 60.0;
 
-/// Cells along an eighth of the circle, from the tunnel outwards and inwards, and through the lining.
+/// Cells along an eighth of the circle, radially outwards and inwards, and through the lining.
 const ALONG: usize = 12;
 const OUTWARD: usize = 24;
 const INWARD: usize = 6;
 const THROUGH: usize = 3;
 
-/// Side of the square in the middle of the core over the radius.
+/// Side of the square in the middle of the core, relative to the radius.
 const MIDDLE: f64 = 0.5;
 
 /// Size of the outermost cells over that of the innermost ones.
@@ -71,7 +71,7 @@ fn squares() -> Vec<Square> {
     ]
 }
 
-/// Mirror image at the diagonal, exact to the last bit.
+/// Mirror image in the diagonal, exact to the last bit.
 fn mirrored(map: fn([f64; 2]) -> [f64; 2]) -> impl Fn([f64; 2]) -> [f64; 2] {
     move |[s, t]| {
         let [x, y] = map([s, 1.0 - t]);

@@ -1,6 +1,6 @@
-//! A wall of bricks in running bond, every joint of which is a contact, on ground that has sunk under its middle.
+//! A wall of bricks in running bond, with a contact in every joint, on ground that has subsided under its middle.
 //!
-//! No two bricks share a node. A course of five bricks alternates with one of four between two halves.
+//! No two bricks share a node. A course of five bricks alternates with one of four bricks between two halves.
 
 use super::Shape;
 use super::pattern::Pattern;
@@ -20,7 +20,7 @@ const ALONG: usize = 5;
 /// Cells in the height of a brick, and in half its length.
 const CELLS: usize = 4;
 
-/// Courses; every other one has a brick more, of which the outermost are halves.
+/// Courses; every other one has an additional brick, with halves at both ends.
 const COURSES: usize = 6;
 
 fn squares() -> Vec<Square> {
@@ -34,7 +34,7 @@ fn squares() -> Vec<Square> {
             COURSES => "top".to_owned(),
             next => format!("bed joint {next} below"),
         };
-        // Ends of bricks in halves of a brick.
+        // Ends of bricks, in units of half a brick.
         let staggered = course % 2;
         let ends = |brick: usize| (2 * brick - staggered.min(brick)).min(2 * ALONG);
         let bricks = ALONG + staggered;

@@ -1,4 +1,4 @@
-//! A whole deck: parts, the instances of them, and what isn't mesh.
+//! A whole deck: parts, their instances, and other content.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use super::scope::Scope;
 use crate::error::InputError;
 use crate::name;
 
-/// Keywords that make nodes and elements of others, or mean other coordinates than they say.
+/// Keywords that generate nodes and elements from others, or change the meaning of coordinates.
 const REFUSED: [&str; 10] = [
     "NGEN",
     "NFILL",
@@ -24,23 +24,23 @@ const REFUSED: [&str; 10] = [
     "SYMMETRIC MODEL GENERATION",
 ];
 
-/// Keywords without a meaning for the problem: texts, output and ends.
+/// Keywords without effect on the problem: texts, output and ends.
 const SILENT: [&str; 8] = [
     "HEADING", "PREPRINT", "RESTART", "OUTPUT", "PRINT", "FILE", "END ", "ASSEMBLY",
 ];
 
-/// The largest tag that instances may have: another of their tags added to it is still a number.
+/// The largest tag of an instance, so that the sum of two tags doesn't overflow.
 const LARGEST_TAG: i64 = 1 << 60;
 
-/// Instances whose numbers are told one by one.
+/// Largest number of instances whose numbers are listed individually.
 const TOLD: usize = 20;
 
-/// A deck whose parts are instances of one whole.
+/// A deck whose parts are instantiated.
 pub(crate) struct Whole {
     pub(crate) deck: Deck,
     /// Warnings.
     pub(crate) warnings: Vec<String>,
-    /// Keywords that say nothing of the mesh.
+    /// Keywords that don't concern the mesh.
     pub(crate) left_out: Vec<String>,
 }
 
@@ -48,28 +48,28 @@ impl Whole {
     /// Reads the mesh of a deck.
     ///
     /// # Errors
-    /// The fault of the deck, with file and line.
+    /// The error in the deck, with file and line.
     pub(crate) fn read(source: &Source) -> Result<Self, InputError> {
         Assembly::read(source)
     }
 }
 
-/// A deck on its way into one mesh.
+/// A deck being assembled into one mesh.
 #[derive(Default)]
 struct Assembly<'a> {
     whole: Deck,
     /// Nodes and elements that belong to no part and no instance.
     own: Scope<'a>,
     parts: BTreeMap<String, Deck>,
-    /// The part or instance whose blocks are read.
+    /// The part or instance being read.
     open: Option<Open<'a>>,
     skipped: BTreeSet<String>,
 }
 
-/// A part or an instance that isn't at its end yet.
+/// A part or an instance being read.
 struct Open<'a> {
     kind: Kind,
-    /// The part's name in capitals, or the instance's.
+    /// The name of the part or of the instance, in capitals.
     name: String,
     place: LinePlace,
     scope: Scope<'a>,
@@ -166,7 +166,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The part that an `*INSTANCE` is of.
+    /// The name of an `*INSTANCE`'s part.
     fn part(&self, source: &Source, block: &Block, name: &str) -> Result<String, InputError> {
         let part_name = source.required(block, "PART")?;
         let part = part_name.to_uppercase();
@@ -187,7 +187,7 @@ impl<'a> Assembly<'a> {
         Ok(part)
     }
 
-    /// The end of a part or an instance; what an instance has of its own, be it its whole mesh, comes to its part.
+    /// Ends a part or an instance; an instance's own content, possibly its whole mesh, is added to its part.
     fn close(&mut self, source: &Source) -> Result<(), InputError> {
         let Some(open) = self.open.take() else {
             return Ok(());
@@ -204,7 +204,7 @@ impl<'a> Assembly<'a> {
                 };
                 let mut own = None;
                 if !open.scope.is_empty() {
-                    // Notes of the part stand with the part.
+                    // Notes of the part are reported with the part.
                     let own = own.insert(part.clone());
                     own.notes = Notes::default();
                     open.scope.read(source, own)?;
@@ -256,7 +256,7 @@ impl<'a> Assembly<'a> {
 }
 
 impl Deck {
-    /// Adds a part as an instance; tags that are taken already are moved behind the highest.
+    /// Adds a part as an instance; tags that exist already are shifted beyond the highest tag.
     ///
     /// # Errors
     /// Tags or counts that are too large, in words.
@@ -300,7 +300,7 @@ impl Deck {
         Ok(())
     }
 
-    /// The sets and surfaces of a part as those of an instance, whose first node and element these are.
+    /// Adds the sets and surfaces of a part as those of an instance, given its first node and element.
     fn place_sets(&mut self, part: &Self, instance: &str, (first_node, first_element): (u32, u32)) {
         let name = |set: &str| format!("{instance}.{set}");
         for set in part.node_sets.iter() {

@@ -1,4 +1,4 @@
-//! The text of a deck: keywords with their parameters, and the lines of data behind each.
+//! The text of a deck: keywords with their parameters, and the lines of data that follow.
 
 use std::io::Read as _;
 use std::ops::Range;
@@ -8,23 +8,22 @@ use super::notes::Notes;
 use crate::error::InputError;
 use crate::{magnitude, name, source};
 
-/// Files that may include each other, one in the other: those of a deck that includes itself have no end.
+/// Largest nesting of included files, as a deck that includes itself would be endless.
 const DEEPEST: usize = 5;
 
-/// Most inclusions of files.
+/// Largest number of inclusions.
 const INCLUSIONS: usize = 10_000;
 
-/// Size of what is included again and again, all together (bytes): what stands in files once has the size that
-/// its user knows.
+/// Total size of repeated inclusions (bytes); the first inclusion of each file isn't limited.
 const REPEATED: usize = 64 << 20;
 
-/// The largest number of a node or an element: several of them added up are still numbers.
+/// The largest number of a node or an element, so that sums of several don't overflow.
 const LARGEST_TAG: i64 = 1 << 50;
 
-/// Byte order mark that may stand before the text of a file.
+/// Byte order mark at the start of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// Keywords whose data a parameter `INPUT` takes from another file.
+/// Keywords whose parameter `INPUT` names another file with their data.
 const WITH_INPUT: [&str; 4] = ["NODE", "ELEMENT", "NSET", "ELSET"];
 
 /// A line of a file.
@@ -40,11 +39,11 @@ pub(crate) struct Data {
     text: Range<usize>,
 }
 
-/// A keyword and its data.
+/// A keyword with its parameters and data.
 pub(crate) struct Block {
     /// Keyword in capitals, with single blanks.
     pub(crate) keyword: String,
-    /// Names in capitals, and values.
+    /// Names in capitals, with values.
     parameters: Vec<(String, String)>,
     pub(crate) place: LinePlace,
     pub(crate) data: Vec<Data>,
@@ -56,7 +55,7 @@ impl Block {
         self.parameters.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Gives parameters the names that `spelled` says.
+    /// Replaces the names of parameters by those that `spelled` returns.
     pub(crate) fn spell_parameters<'a>(&mut self, spelled: impl Fn(&str) -> Option<&'a str>) {
         for (name, _) in &mut self.parameters {
             if let Some(other) = spelled(name) {
@@ -65,7 +64,7 @@ impl Block {
         }
     }
 
-    /// The value of a parameter, empty where it has none.
+    /// The value of a parameter; empty for a parameter without a value.
     pub(crate) fn parameter(&self, name: &str) -> Option<&str> {
         let found = self.parameters.iter().find(|(key, _)| key == name);
         found.map(|(_, value)| value.as_str())
@@ -76,15 +75,15 @@ impl Block {
 pub(crate) struct Source {
     files: Vec<(PathBuf, String)>,
     pub(crate) blocks: Vec<Block>,
-    /// Notes on parts of the text itself that aren't read.
+    /// Notes on parts of the text that aren't read.
     pub(crate) notes: Notes,
     inclusions: usize,
-    /// Bytes that were read before.
+    /// Total size of repeated inclusions.
     repeated: usize,
 }
 
 impl Source {
-    /// Reads a deck and what it includes.
+    /// Reads a deck and its included files.
     pub(crate) fn read(path: &Path) -> Result<Self, InputError> {
         let mut source = Self {
             files: Vec::new(),
@@ -114,7 +113,7 @@ impl Source {
         InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)
     }
 
-    /// Items between the commas of a line of data, but none behind the last one.
+    /// Comma-separated items of a line of data, without an empty last one.
     pub(crate) fn items(&self, data: &Data) -> impl Iterator<Item = &str> {
         let text = self.files[data.place.file].1[data.text.clone()].trim();
         let text = text.strip_suffix(',').unwrap_or(text);
@@ -135,7 +134,7 @@ impl Source {
             })
     }
 
-    /// A real number, with `e` or Fortran's `d` or nothing before the exponent, as in `5.-1`; nothing at all is 0.
+    /// A real number, with `e`, Fortran's `d` or nothing before the exponent, as in `5.-1`; an empty item is 0.
     pub(crate) fn real(&self, at: LinePlace, item: &str, what: &str) -> Result<f64, InputError> {
         let item = if item.is_empty() { "0" } else { item };
         let shown = || name::shown(item);
@@ -150,7 +149,7 @@ impl Source {
         })
     }
 
-    /// The value of a parameter that has to be there.
+    /// The value of a required parameter.
     pub(crate) fn required<'a>(&self, block: &'a Block, name: &str) -> Result<&'a str, InputError> {
         let value = block.parameter(name).filter(|value| !value.is_empty());
         value.ok_or_else(|| {
@@ -161,7 +160,7 @@ impl Source {
         })
     }
 
-    /// The line of a place in words, with the file where it isn't the deck itself.
+    /// The line as text, with the file unless it is the deck itself.
     pub(crate) fn place(&self, at: LinePlace) -> String {
         match at.file {
             0 => format!("line {}", at.line),
@@ -169,7 +168,7 @@ impl Source {
         }
     }
 
-    /// Appends the blocks of a file; `depth` more may be included in each other.
+    /// Appends the blocks of a file; `depth` is the remaining nesting of inclusions.
     fn add(&mut self, file: usize, depth: usize) -> Result<(), InputError> {
         let lines = lines(&self.files[file].1);
         let mut next = 0;
@@ -223,9 +222,9 @@ impl Source {
         Ok(())
     }
 
-    /// The number of a file that a line includes.
+    /// The number of a file included by a line.
     fn included(&mut self, at: LinePlace, input: &str) -> Result<usize, InputError> {
-        // As Abaqus does, relative to the deck that includes all others.
+        // Relative to the main deck, as in Abaqus.
         let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
         let path = folder.join(input);
         self.inclusions += 1;
@@ -253,7 +252,7 @@ impl Source {
     }
 }
 
-/// A number as Fortran reads it.
+/// A number in Fortran's syntax.
 fn real(item: &str) -> Option<f64> {
     let text = item.replace(['d', 'D'], "e");
     let bytes = text.as_bytes();
@@ -273,19 +272,19 @@ fn text(path: &Path) -> Result<String, InputError> {
     };
     (source::open(path, "a deck of Abaqus or CalculiX").and_then(read))
         .map_err(|error| error.in_file(path))?;
-    // Comments and names may be in any encoding.
+    // Comments and names may have any encoding.
     let mut text = match String::from_utf8(bytes) {
         Ok(text) => text,
         Err(other) => String::from_utf8_lossy(other.as_bytes()).into_owned(),
     };
-    // Editors put a byte order mark before the text.
+    // Some editors write a byte order mark.
     if text.starts_with(BYTE_ORDER_MARK) {
         text.drain(..BYTE_ORDER_MARK.len_utf8());
     }
     Ok(text)
 }
 
-/// The numbers and the trimmed texts of lines that are neither blank nor a comment.
+/// The numbers and the trimmed texts of lines except blank lines and comments.
 fn lines(text: &str) -> Vec<(usize, Range<usize>)> {
     let mut start = 0;
     let mut lines = Vec::new();
@@ -300,7 +299,7 @@ fn lines(text: &str) -> Vec<(usize, Range<usize>)> {
     lines
 }
 
-/// A keyword with its parameters and no data yet; `head` is what stands behind the asterisk.
+/// A keyword with its parameters, without data; `head` is the text after the asterisk.
 fn block(head: &str, place: LinePlace) -> Block {
     let mut quoted = false;
     let mut words = head.split(|c| {

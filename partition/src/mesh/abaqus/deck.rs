@@ -1,4 +1,4 @@
-//! Nodes and elements of a part, or of a deck without parts, and their faults.
+//! Nodes and elements of a part, or of a deck without parts, and their errors.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -17,9 +17,9 @@ const SPRINGS: [&str; 3] = ["SPRING1", "SPRING2", "SPRINGA"];
 /// A part of a surface.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Face {
-    /// The face of an element, by Abaqus' number.
+    /// The face of an element, with Abaqus's number.
     Of(u32, usize),
-    /// The faces of an element that belong to no other.
+    /// The faces of an element that no other element shares.
     Free(u32),
 }
 
@@ -31,40 +31,39 @@ pub(crate) struct Deck {
     pub(crate) node_of: HashMap<i64, u32>,
     pub(crate) elements: Elements,
     pub(crate) element_tags: Vec<i64>,
-    /// Elements that can be sides only.
+    /// For each element whether it can only be a side.
     pub(crate) is_side: Vec<bool>,
-    /// Elements with incompatible modes.
+    /// For each element whether it has incompatible modes.
     pub(crate) has_modes: Vec<bool>,
-    /// Elements of reduced integration.
+    /// For each element whether it has reduced integration.
     pub(crate) is_reduced: Vec<bool>,
     pub(crate) element_of: HashMap<i64, u32>,
     /// The tags of elements that are left out, as they are neither cells nor sides.
     left_out: HashSet<i64>,
     pub(crate) node_sets: Sets<u32>,
-    /// The names of those that are groups of points, also where they have all nodes of faces.
+    /// The names of sets that become groups of points even if they have all nodes of faces.
     pub(crate) point_sets: BTreeSet<String>,
     pub(crate) element_sets: Sets<u32>,
     pub(crate) surfaces: Sets<Face>,
-    /// Surfaces that are told by their nodes.
+    /// Node-based surfaces.
     pub(crate) node_surfaces: Sets<u32>,
-    /// Offsets of the tags of an instance, by its name in capitals, and under an empty one of those of
-    /// the assembly itself.
+    /// Offsets of the tags of an instance, by its name in capitals; the assembly itself has the empty name.
     pub(crate) instances: BTreeMap<String, Offsets>,
     /// The highest tags.
     pub(crate) highest: Offsets,
-    /// Types that are read as others of the same shape, in words.
+    /// Descriptions of types that are replaced by others of the same shape.
     pub(crate) taken_as: BTreeSet<String>,
     pub(crate) notes: Notes,
 }
 
-/// Tags of nodes and elements, or what is added to those of an instance so that all of a deck differ.
+/// Tags of a node and an element, or offsets that make the tags of an instance unique in the deck.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Offsets {
     pub(crate) nodes: i64,
     pub(crate) elements: i64,
 }
 
-/// An element on its way into the deck.
+/// An element being read.
 struct Listed {
     place: LinePlace,
     tag: i64,
@@ -72,7 +71,7 @@ struct Listed {
 }
 
 impl Deck {
-    /// `*NODE`: tag and coordinates a line.
+    /// `*NODE`: tag and coordinates, one node per line.
     pub(crate) fn add_nodes(&mut self, source: &Source, block: &Block) -> Result<(), InputError> {
         if let Some(system) = block
             .parameter("SYSTEM")
@@ -129,7 +128,7 @@ impl Deck {
         node
     }
 
-    /// `*ELEMENT`: tag and nodes of each, on as many lines as it takes.
+    /// `*ELEMENT`: tag and nodes of each element, on one or more lines.
     pub(crate) fn add_elements(
         &mut self,
         source: &Source,
@@ -194,7 +193,7 @@ impl Deck {
                     continue;
                 };
                 if element.nodes.len() == found.kind.nodes() {
-                    // Other programs pass over them, too.
+                    // Other programs ignore these elements, too.
                     let item = format!(
                         "element {} of {name} ({})",
                         element.tag,
@@ -230,7 +229,7 @@ impl Deck {
         }
     }
 
-    /// Passes over elements that neither have a volume nor can be sides; sets may have them.
+    /// Ignores elements that neither have a volume nor can be sides; sets may contain them.
     fn leave_out(&mut self, source: &Source, block: &Block, name: &str) -> Result<(), InputError> {
         let offset = self.own_offsets().elements;
         for data in &block.data {
@@ -239,7 +238,7 @@ impl Deck {
                 self.left_out.insert(offset + tag);
             }
         }
-        // Springs are told by their keyword.
+        // Springs are read with their keyword.
         if !SPRINGS.contains(&&name.to_uppercase()[..]) {
             self.notes.add(
                 "elements that are no cells of a body are left out",
@@ -252,12 +251,12 @@ impl Deck {
         Ok(())
     }
 
-    /// True if there is an element of this tag that is left out.
+    /// True if the element with this tag is left out.
     pub(crate) fn leaves_out(&self, tag: i64) -> bool {
         self.left_out.contains(&tag)
     }
 
-    /// Offsets of tags that belong to no instance: instances have tags of their own.
+    /// Offsets for tags outside of instances, which have separate tags.
     fn own_offsets(&mut self) -> Offsets {
         if self.instances.is_empty() {
             return Offsets::default();
@@ -266,7 +265,7 @@ impl Deck {
         *(self.instances.entry(String::new())).or_insert(highest)
     }
 
-    /// Adds an element that isn't there yet; returns its index.
+    /// Adds an element with a new tag; returns its index.
     fn add_element(
         &mut self,
         source: &Source,
@@ -295,7 +294,7 @@ impl Deck {
         Ok(self.push_tag(*tag, found.is_side, (found.has_modes, found.is_reduced)))
     }
 
-    /// A direction to the outside of a surface of faces: the sum of the ways from the middles of the elements to those of the
+    /// A direction out of a surface of faces: the sum of the vectors from the centres of the elements to those of their
     /// faces.
     pub(crate) fn outward(&self, surface: &str) -> [f64; 3] {
         let middle = |nodes: &[u32]| {
@@ -322,8 +321,8 @@ impl Deck {
         directions.fold([0.0; 3], |sum, direction| advance(sum, 1.0, direction))
     }
 
-    /// Gives the element that was appended last its tag, and says whether it is a side, and whether it has incompatible
-    /// modes, and reduced integration.
+    /// Records the tag of the last element, whether it is a side, and whether it has incompatible modes and reduced
+    /// integration.
     pub(crate) fn push_tag(
         &mut self,
         tag: i64,
@@ -344,7 +343,7 @@ impl Deck {
 /// Checks the name of a set.
 ///
 /// # Errors
-/// A name that isn't allowed, with the line.
+/// An invalid name, with the line.
 pub(crate) fn check_name(source: &Source, at: LinePlace, name: &str) -> Result<(), InputError> {
     name::check_text(name)
         .map_err(|reason| source.error(at, format!("'{}' {reason}", name::shown(name))))

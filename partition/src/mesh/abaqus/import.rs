@@ -1,4 +1,4 @@
-//! Import of a deck: cells, the nodes they use, and the groups.
+//! Import of a deck: cells, their nodes, and the groups.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -44,7 +44,7 @@ pub(crate) fn mesh(deck: &Deck, warnings: Vec<String>) -> Result<Mesh, InputErro
     };
     let (names, facets, notes) = grouping.groups();
     mesh.warnings.extend(notes.warnings());
-    // Loads are summed in the order of facets, which is to be that of cells.
+    // Loads are summed in the order of facets, so that it has to be that of cells.
     let mut order: Vec<usize> = (0..facets.listed.len()).collect();
     order.sort_by_key(|&place| facets.listed[place]);
     let mut new_place = vec![0; order.len()];
@@ -66,8 +66,7 @@ pub(crate) fn mesh(deck: &Deck, warnings: Vec<String>) -> Result<Mesh, InputErro
     Ok(mesh)
 }
 
-/// Gives `mesh` the nodes that its cells use, in ascending order of tags; returns the index there of every node
-/// of the deck.
+/// Adds the nodes of cells to `mesh`, in ascending order of tags; returns the index there of every node of the deck.
 fn add_nodes(deck: &Deck, mesh: &mut Mesh) -> Vec<Option<u32>> {
     let mut index = vec![None; deck.points.len()];
     let mut is_used = vec![false; deck.points.len()];
@@ -86,7 +85,7 @@ fn add_nodes(deck: &Deck, mesh: &mut Mesh) -> Vec<Option<u32>> {
     index
 }
 
-/// Gives `mesh` its cells, in ascending order of tags; returns the index there of every element.
+/// Adds the cells to `mesh`, in ascending order of tags; returns the index there of every element.
 fn add_cells(deck: &Deck, node: &[Option<u32>], mesh: &mut Mesh) -> Vec<Option<u32>> {
     let mut index = vec![None; deck.elements.len()];
     let mut order: Vec<usize> = (0..deck.elements.len())
@@ -115,7 +114,7 @@ struct Facets {
 }
 
 impl Facets {
-    /// The place of a facet in the list, to which it is appended where it isn't there.
+    /// The index of a facet in the list, to which it is appended if missing.
     fn place(&mut self, facet: CellFacet) -> u32 {
         *self.place.entry(facet).or_insert_with(|| {
             self.listed.push(facet);
@@ -139,7 +138,7 @@ impl Boundary {
         ))
     }
 
-    /// The facets between `nodes`, and the nodes that they have.
+    /// The facets all of whose nodes are among `nodes`, and the nodes of these facets.
     fn between(&self, mesh: &Mesh, nodes: &BTreeSet<u32>) -> (Vec<CellFacet>, BTreeSet<u32>) {
         let mut covered = BTreeSet::new();
         let mut side = Vec::new();
@@ -157,7 +156,7 @@ impl Boundary {
 /// Groups by name and dimension.
 type Named = BTreeMap<(String, usize), Vec<u32>>;
 
-/// Data that groups are made of.
+/// Data for building groups.
 struct Grouping<'a> {
     deck: &'a Deck,
     mesh: &'a Mesh,
@@ -220,7 +219,8 @@ impl Grouping<'_> {
         (groups, self.facets, self.notes)
     }
 
-    /// The facets whose nodes all are in a surface of nodes, as a group of its name; its nodes where there are none.
+    /// Adds the facets all of whose nodes are in a node-based surface as a group of its name, or its nodes if there are
+    /// no such facets.
     fn add_side(&mut self, surface: &Set<u32>, name: String, groups: &mut Named) {
         let nodes = self.own_nodes(surface);
         let (side, covered) = self.boundary.between(self.mesh, &nodes);
@@ -241,13 +241,13 @@ impl Grouping<'_> {
             .extend(facets);
     }
 
-    /// The nodes of a set that cells have.
+    /// The nodes of a set that belong to cells.
     fn own_nodes(&self, set: &Set<u32>) -> BTreeSet<u32> {
         let members = set.members.list().iter();
         members.filter_map(|&n| self.node[n as usize]).collect()
     }
 
-    /// The places of facets in the list.
+    /// The indices of facets in the list.
     fn placed(&mut self, facets: Vec<CellFacet>) -> Vec<u32> {
         let facets = facets.into_iter();
         facets.map(|facet| self.facets.place(facet)).collect()
@@ -265,7 +265,7 @@ impl Grouping<'_> {
         nodes.collect()
     }
 
-    /// The `elements` that are facets of cells.
+    /// The facets of cells that coincide with `elements`.
     fn listed(&mut self, elements: &[u32]) -> Vec<u32> {
         let mut found = Vec::new();
         for &element in elements {
@@ -308,7 +308,7 @@ impl Grouping<'_> {
         found
     }
 
-    /// The face of an element by Abaqus' number.
+    /// The face of an element with Abaqus's number.
     fn numbered(&mut self, element: u32, number: usize) -> Option<u32> {
         let kind: ElementKind = self.deck.elements.kind(element as usize);
         let corners = element_type::face(kind, number)?;
@@ -321,7 +321,7 @@ impl Grouping<'_> {
         self.facet_of(&nodes)
     }
 
-    /// The facet of a cell that has these nodes of the deck.
+    /// The facet of a cell with these nodes of the deck.
     fn facet_of(&mut self, nodes: &[u32]) -> Option<u32> {
         let nodes: Option<Vec<u32>> = nodes.iter().map(|&n| self.node[n as usize]).collect();
         let facet = *self.topology.cells_at(&nodes?).first()?;
@@ -329,13 +329,12 @@ impl Grouping<'_> {
     }
 }
 
-/// The sets that a user has made.
+/// The sets defined by the user.
 fn shown<T: Copy + Ord>(sets: &Sets<T>) -> impl Iterator<Item = &Set<T>> {
     sets.iter().filter(|set| !set.internal)
 }
 
-/// Plain names of the sets of a deck, by their names in capitals: without the instance, where no other has
-/// that name.
+/// Plain names of the sets of a deck, by their names in capitals: without the instance if that is unique.
 fn plain_names(deck: &Deck) -> BTreeMap<String, String> {
     let sets = (shown(&deck.element_sets).map(|set| &set.name))
         .chain(shown(&deck.surfaces).map(|set| &set.name))
@@ -368,7 +367,7 @@ fn plain_names(deck: &Deck) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// The groups by their names, with the dimension behind those that groups of several dimensions have.
+/// The groups with their names, with the dimension appended where groups of several dimensions share a name.
 fn named(groups: Named) -> Vec<((String, usize), Vec<u32>)> {
     let mut count: HashMap<String, usize> = HashMap::new();
     for (name, _) in groups.keys() {

@@ -1,4 +1,4 @@
-//! Sets and surfaces: what their lines mean.
+//! Sets and surfaces: the meaning of their lines.
 
 use std::collections::{HashMap, HashSet};
 
@@ -33,7 +33,7 @@ enum Meaning<'a> {
 }
 
 impl Deck {
-    /// The name of a set or surface that a block names and that isn't there.
+    /// The name of a set or surface that a block refers to and that doesn't exist.
     pub(crate) fn lacks<'a>(&self, source: &'a Source, block: &'a Block) -> Option<&'a str> {
         let instance = block.parameter("INSTANCE");
         let of = match block.keyword.as_str() {
@@ -75,7 +75,7 @@ impl Deck {
             let nodes = |&element: &u32| self.elements.nodes_of(element as usize);
             members.extend(elements.iter().flat_map(nodes).copied());
         }
-        // A set that is named again adds nothing.
+        // A repeated reference to a set adds nothing.
         let mut named = HashSet::new();
         for data in &block.data {
             if block.parameter("GENERATE").is_some() {
@@ -117,7 +117,7 @@ impl Deck {
         };
         let (indices, offset) = self.numbered(source, data.place, of, instance)?;
         let count = (last - first) / step;
-        // Numbers without anything are as common as ranges far beyond the last.
+        // Ranges may contain many unused numbers or extend far beyond the last one.
         if count > indices.len() as i64 {
             let is_in = |tag: i64| (first..=last).contains(&tag) && (tag - first) % step == 0;
             let found = indices.iter().filter(|(tag, _)| is_in(**tag - offset));
@@ -129,7 +129,7 @@ impl Deck {
             .collect())
     }
 
-    /// Indices by tag, and what is added to the tags of an instance.
+    /// Indices by tag, and the offset of an instance's tags.
     fn numbered(
         &self,
         source: &Source,
@@ -179,7 +179,8 @@ impl Deck {
         }
     }
 
-    /// The nodes or elements that an item of the set `set` means, in an instance or the whole; what isn't there is left out.
+    /// The nodes or elements of an item in the set `set`, in an instance or in the whole deck; missing ones are left
+    /// out.
     pub(crate) fn members(
         &mut self,
         source: &Source,
@@ -259,7 +260,7 @@ impl Deck {
         self.surfaces.get(name).is_some() || self.node_surfaces.get(name).is_some()
     }
 
-    /// `*SURFACE, COMBINE=UNION`: all of other surfaces.
+    /// `*SURFACE, COMBINE=UNION`: the union of other surfaces.
     fn unite(&mut self, source: &Source, block: &Block, name: &str) -> Result<(), InputError> {
         let internal = block.parameter("INTERNAL").is_some();
         let mut named = HashSet::new();
@@ -294,7 +295,7 @@ impl Deck {
     ) -> Result<Face, InputError> {
         let side = item.to_uppercase();
         let is_side = self.is_side[element as usize];
-        // A shell is a side as a whole, whichever way it is seen.
+        // Either side of a shell is the whole shell.
         if item.is_empty() || is_side && ["SPOS", "SNEG", "S1", "S2"].contains(&side.as_str()) {
             return Ok(Face::Free(element));
         }

@@ -1,23 +1,23 @@
-//! Parts of a deck that aren't read, although other programs would read them or pass over them: to warn of.
+//! Notes on unsupported parts of a deck, which other programs read or ignore; they become warnings.
 
 use std::collections::BTreeMap;
 
-/// Things that are named one by one.
+/// Largest number of items listed individually.
 const NAMED: usize = 6;
 
-/// Things of one kind.
+/// Items of one kind.
 #[derive(Clone, Default)]
 struct Tally {
     first: Vec<String>,
     count: usize,
 }
 
-/// Kinds of things that are left out, in words, and the things of each kind.
+/// Kinds of ignored items, in words, with the items of each kind.
 #[derive(Clone, Default)]
 pub(crate) struct Notes(BTreeMap<String, Tally>);
 
 impl Notes {
-    /// Notes a thing; one that is noted already counts once.
+    /// Adds an item; repetitions count once.
     pub(crate) fn add(&mut self, what: &str, thing: String) {
         let tally = self.0.entry(what.to_owned()).or_default();
         if tally.first.contains(&thing) {
@@ -44,7 +44,7 @@ impl Notes {
         }
     }
 
-    /// A warning for each kind.
+    /// One warning for each kind.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|(what, tally)| {
             let more = match tally.count - tally.first.len() {

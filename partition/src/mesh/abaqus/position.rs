@@ -6,7 +6,7 @@ use crate::error::InputError;
 
 pub(super) type Point = [f64; 3];
 
-/// A shift, and a rotation about the axis through two points.
+/// A translation, and a rotation about the axis through two points.
 pub(super) struct Position {
     shift: Point,
     /// Two points on the axis and the angle (rad).
@@ -53,7 +53,7 @@ impl Position {
     }
 }
 
-/// A point turned about the axis from `a` to `b` (Rodrigues).
+/// A point rotated about the axis from `a` to `b` (Rodrigues).
 fn turned(point: Point, a: Point, b: Point, angle: f64) -> Point {
     let axis = difference(b, a).map(|component| component / length(difference(b, a)));
     let arm = difference(point, a);

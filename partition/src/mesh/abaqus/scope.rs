@@ -1,4 +1,4 @@
-//! The blocks of a part, of an instance, or of what belongs to neither, which may stand in any order.
+//! The blocks of a part, of an instance, or of the rest of a deck, in any order.
 
 use std::collections::HashMap;
 
@@ -9,14 +9,14 @@ use crate::error::InputError;
 /// Keywords of the mesh.
 const KEYWORDS: [&str; 5] = ["NODE", "ELEMENT", "ELSET", "NSET", "SURFACE"];
 
-/// The blocks of the mesh in a part, in an instance or in neither.
+/// The mesh's blocks in a part, in an instance or outside of both.
 #[derive(Default)]
 pub(super) struct Scope<'a> {
     blocks: Vec<&'a Block>,
 }
 
 impl<'a> Scope<'a> {
-    /// Takes a block of the mesh; whether it is one.
+    /// Adds a block if it belongs to the mesh; returns whether it does.
     pub(super) fn take(&mut self, block: &'a Block) -> bool {
         let is_mesh = KEYWORDS.contains(&block.keyword.as_str());
         if is_mesh {
@@ -30,7 +30,7 @@ impl<'a> Scope<'a> {
         self.blocks.is_empty()
     }
 
-    /// Adds all of it to a deck: nodes before the elements that have them, and these before sets and surfaces.
+    /// Adds all blocks to a deck: nodes before elements, and these before sets and surfaces.
     pub(super) fn read(&self, source: &Source, deck: &mut Deck) -> Result<(), InputError> {
         for keyword in KEYWORDS {
             let blocks = self.blocks.iter().filter(|block| block.keyword == keyword);
@@ -47,7 +47,7 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// Adds sets or surfaces, those that name others after these.
+/// Adds sets or surfaces in the order of their references.
 fn in_turn(source: &Source, deck: &mut Deck, blocks: Vec<&Block>) -> Result<(), InputError> {
     let mut waiting = blocks;
     while !waiting.is_empty() {
@@ -58,7 +58,7 @@ fn in_turn(source: &Source, deck: &mut Deck, blocks: Vec<&Block>) -> Result<(), 
         let mut later = Vec::new();
         for &block in &waiting {
             let own = made_by(block);
-            // Where only the block itself makes it, nothing does.
+            // A name that only the block itself defines counts as missing.
             let others = |name: &str| {
                 let name = name.to_uppercase();
                 let count = to_come.get(&name).copied().unwrap_or_default();
@@ -70,7 +70,7 @@ fn in_turn(source: &Source, deck: &mut Deck, blocks: Vec<&Block>) -> Result<(), 
             }
         }
         if later.len() == waiting.len() {
-            // Each waits for another: the first has to say so.
+            // References are cyclic: adding the first block reports the error.
             add(source, deck, later[0])?;
             later.remove(0);
         }
@@ -86,7 +86,7 @@ fn add(source: &Source, deck: &mut Deck, block: &Block) -> Result<(), InputError
     }
 }
 
-/// The name of what a block makes, in capitals.
+/// The name that a block defines, in capitals.
 fn made_by(block: &Block) -> String {
     let name = match block.keyword.as_str() {
         "SURFACE" => block.parameter("NAME"),

@@ -1,4 +1,4 @@
-//! The content of an MSH file, whatever its version and encoding.
+//! The content of an MSH file, independent of version and encoding.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -21,8 +21,8 @@ pub(super) struct Content {
 }
 
 impl Content {
-    /// Appends an element to the last block if it is of its kind and groups, else to a fresh one. `nodes` are
-    /// in Gmsh's order.
+    /// Appends an element to the last block of its kind and groups, otherwise to a new one. `nodes` are in Gmsh's
+    /// order.
     pub(super) fn push(&mut self, kind: ElementKind, groups: &[i64], tag: i64, nodes: &[u32]) {
         let ordered: Vec<u32>;
         let nodes = match element_type::order(kind) {
@@ -60,7 +60,7 @@ pub(super) struct Block {
     pub(super) nodes: Vec<u32>,
 }
 
-/// Numbers of physical groups as a file lists them: a sign tells a direction, 0 no group.
+/// Valid numbers of physical groups from those in a file, whose sign is a direction and where 0 means no group.
 pub(super) fn groups(mut listed: Vec<i64>) -> Vec<i64> {
     for number in &mut listed {
         *number = number.saturating_abs();
@@ -71,21 +71,21 @@ pub(super) fn groups(mut listed: Vec<i64>) -> Vec<i64> {
     listed
 }
 
-/// The nodes of a file and where they are by tag.
+/// The nodes of a file, with an index by tag.
 #[derive(Default)]
 pub(super) struct Nodes {
     pub(super) tags: Vec<i64>,
     pub(super) points: Vec<[f64; 3]>,
-    /// Index of every tag from 0 up to a multiple of their number, `NONE` where there is no node.
+    /// Index of every tag from 0 up to a multiple of the number of nodes, `NONE` for unused tags.
     dense: Vec<u32>,
     /// Index of the other tags.
     sparse: HashMap<i64, u32>,
 }
 
-/// No node.
+/// Marks a tag without a node.
 const NONE: u32 = u32::MAX;
 
-/// Entries of the table of tags for every declared node, at most.
+/// Largest number of entries of the table of tags per declared node.
 const SPREAD: usize = 4;
 
 impl Nodes {
@@ -96,7 +96,7 @@ impl Nodes {
     pub(super) fn reserve(&mut self, count: usize) {
         self.tags.reserve(count);
         self.points.reserve(count);
-        // A tag is looked for in one table only, so this one never grows.
+        // Tags are looked up in one table only, so that this one never grows.
         if self.is_empty() && self.dense.is_empty() {
             self.dense.resize(SPREAD * (count + 1), NONE);
         }

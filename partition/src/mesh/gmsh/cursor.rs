@@ -1,4 +1,4 @@
-//! A place in the bytes of an MSH file, from which numbers are read in either encoding.
+//! A cursor over the bytes of an MSH file, which reads numbers in either encoding.
 
 use crate::error::InputError;
 use crate::{magnitude, name};
@@ -8,7 +8,7 @@ use crate::{magnitude, name};
 pub(super) enum Encoding {
     /// Words between blanks.
     Ascii,
-    /// Numbers as they lie in memory.
+    /// Numbers in their memory representation.
     Binary {
         /// Most significant byte first.
         big_endian: bool,
@@ -17,12 +17,12 @@ pub(super) enum Encoding {
     },
 }
 
-/// A place in the bytes of an MSH file.
+/// A position in the bytes of an MSH file.
 #[derive(Clone)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Offset of the number or line that was read last.
+    /// Offset of the last number or line read.
     last: usize,
     section: &'a str,
     encoding: Encoding,
@@ -68,7 +68,7 @@ impl<'a> Cursor<'a> {
         InputError::new(format!("{place}{section}: {message}"))
     }
 
-    /// Goes to the next section and returns its name, without `$`; `None` at the end of the file.
+    /// Moves to the next section and returns its name, without `$`; `None` at the end of the file.
     pub(super) fn next_section(&mut self) -> Result<Option<&'a str>, InputError> {
         self.section = "";
         loop {
@@ -103,7 +103,7 @@ impl<'a> Cursor<'a> {
         Err(self.error(format!("expected $End{name}, found {found}")))
     }
 
-    /// Goes behind the end of the section `name`.
+    /// Moves behind the end of the section `name`.
     pub(super) fn skip_section(&mut self, name: &str) -> Result<(), InputError> {
         let end = format!("$End{name}");
         let rest = &self.bytes[self.at..];
@@ -116,7 +116,7 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// The rest of the line as text, without what ends it.
+    /// The rest of the line as text, without its terminator.
     pub(super) fn line(&mut self, what: &str) -> Result<&'a str, InputError> {
         if self.at == self.bytes.len() {
             return Err(self.ended(what));
@@ -127,13 +127,13 @@ impl<'a> Cursor<'a> {
             .map_err(|_| self.error(format!("expected {what} in UTF-8")))
     }
 
-    /// Goes to the start of the next line.
+    /// Moves to the start of the next line.
     pub(super) fn skip_line(&mut self) {
         self.rest_of_line();
     }
 
-    /// Reads the integer 1 by which a binary file tells its byte order; true where the most
-    /// significant byte is first.
+    /// Reads the integer 1, which determines the byte order of a binary file; true if the most significant byte is
+    /// first.
     pub(super) fn byte_order(&mut self) -> Result<bool, InputError> {
         match self.take::<4>("the integer 1 that tells the byte order")? {
             [1, 0, 0, 0] => Ok(false),
@@ -142,7 +142,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A C `int`, which tags of entities and physical groups are.
+    /// A C `int`, the type of tags of entities and physical groups.
     pub(super) fn int(&mut self, what: &str) -> Result<i64, InputError> {
         match self.encoding {
             Encoding::Ascii => self.word(what, "an integer"),
@@ -150,7 +150,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A C `size_t`, which counts and tags of version 4.1 are.
+    /// A C `size_t`, the type of counts and tags of version 4.1.
     pub(super) fn size(&mut self, what: &str) -> Result<i64, InputError> {
         let value: u64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a whole number")?,
@@ -160,7 +160,7 @@ impl<'a> Cursor<'a> {
         i64::try_from(value).map_err(|_| self.error(format!("{what} is too large: {value}")))
     }
 
-    /// A real number, neither infinite nor beyond all measure.
+    /// A real number, finite and of admissible magnitude.
     pub(super) fn real(&mut self, what: &str) -> Result<f64, InputError> {
         let value: f64 = match self.encoding {
             Encoding::Ascii => self.word(what, "a number")?,
@@ -179,20 +179,19 @@ impl<'a> Cursor<'a> {
         ])
     }
 
-    /// A `size_t` that counts things of at least `values` numbers each, checked against what the
-    /// file has left.
+    /// A `size_t` as a count of items of at least `values` numbers each, checked against the rest of the file.
     pub(super) fn count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
         let count = self.size(what)?;
         self.checked(what, count, values)
     }
 
-    /// The count of a C `int`.
+    /// A C `int` as a count.
     pub(super) fn int_count(&mut self, what: &str, values: usize) -> Result<usize, InputError> {
         let count = self.int(what)?;
         self.checked(what, count, values)
     }
 
-    /// Checks that `count` things of at least `values` numbers each fit into the rest of the file.
+    /// Checks that `count` items of at least `values` numbers each fit into the rest of the file.
     pub(super) fn checked(
         &self,
         what: &str,
@@ -246,7 +245,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// The bytes of a number, the least significant first whatever their order in the file.
+    /// The bytes of a number in little-endian order, whatever the file's order.
     fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], InputError> {
         let rest = &self.bytes[self.at..];
         let Some(mut bytes) = rest.first_chunk::<N>().copied() else {
@@ -268,7 +267,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Bytes of a file as a message shows them: text, or the first of those that aren't.
+/// Bytes of a file for a message: text, or hexadecimal numbers of the first ones.
 pub(super) fn shown(bytes: &[u8]) -> String {
     const FIRST: usize = 8;
     match std::str::from_utf8(bytes) {

@@ -2,7 +2,7 @@
 
 use crate::element::ElementKind;
 
-/// The kind of element `element`, which Gmsh numbers `number`.
+/// The kind of element `element`, given Gmsh's number of its type.
 ///
 /// # Errors
 /// The message of an unsupported element type.
@@ -43,7 +43,7 @@ pub(super) fn code(kind: ElementKind) -> i64 {
     }
 }
 
-/// Gmsh's places of the nodes of `kind`, one after the other; `None` where it orders them as VTK does.
+/// The permutation from Gmsh's order of nodes for `kind`; `None` where it is the same as VTK's.
 pub(super) fn order(kind: ElementKind) -> Option<&'static [usize]> {
     const TETRAHEDRON: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
     const HEXAHEDRON: &[usize; 27] = &[

@@ -1,4 +1,4 @@
-//! Import of a file: cells, facets, groups, and only the nodes that cells use.
+//! Import of a file: cells, facets, groups, and the nodes of cells.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -18,7 +18,7 @@ struct Listed<'a> {
     nodes: &'a [u32],
 }
 
-/// The elements of one dimension, every one once, in ascending order of tags.
+/// The elements of one dimension, without repetition, in ascending order of tags.
 struct Distinct<'a> {
     elements: Vec<Listed<'a>>,
     /// Elements of every physical group, ascending.
@@ -142,7 +142,7 @@ fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
     Ok(Distinct { elements, groups })
 }
 
-/// First element that has the same nodes as each, in any order.
+/// For each element the first one with the same nodes, in any order.
 fn first_of_same(listed: &[Listed]) -> Vec<u32> {
     let nodes = listed.iter().flat_map(|e| e.nodes).max();
     let nodes = nodes.map_or(0, |&n| n as usize + 1);
@@ -154,7 +154,7 @@ fn first_of_same(listed: &[Listed]) -> Vec<u32> {
     let mut alike = Vec::new();
     for list in Lists::new(nodes, by_lowest).iter() {
         alike.clear();
-        // Those of one sum of nodes alone can be the same.
+        // Only elements with the same sum of nodes can have the same nodes.
         alike.extend(list.iter().map(|&(number, sum)| (sum, number)));
         alike.sort_unstable();
         for same in alike.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() > 1) {
@@ -173,8 +173,8 @@ fn sum(nodes: &[u32]) -> u64 {
     nodes.iter().map(|&node| u64::from(node)).sum()
 }
 
-/// Gives `mesh` the nodes that `cells` use, in ascending order of tags, and returns the index
-/// there of every node of the file.
+/// Adds the nodes of `cells` to `mesh`, in ascending order of tags, and returns the index there of every node of the
+/// file.
 fn keep_nodes(
     nodes: &Nodes,
     cells: &Distinct,
@@ -197,7 +197,7 @@ fn keep_nodes(
     Ok(index)
 }
 
-/// Advice for a mesh in space without cells of volume.
+/// Advice for a mesh in space without volume cells.
 fn without_volumes(content: &Content) -> String {
     let volume = content.names.keys().find(|(dim, _)| *dim == 3);
     let name = volume.and_then(|key| content.names.get(key));
@@ -221,7 +221,7 @@ fn renumbered(nodes: &[u32], index: &[Option<u32>]) -> Vec<u32> {
 
 type Members = BTreeMap<i64, Vec<u32>>;
 
-/// The listed facets all of whose nodes belong to cells, and the groups they make.
+/// The listed facets all of whose nodes belong to cells, and their groups.
 fn facets(
     content: &Content,
     dim: usize,
@@ -237,7 +237,7 @@ fn facets(
     Ok((facets, distinct.groups))
 }
 
-/// The nodes of groups of a dimension, of those that belong to cells.
+/// The nodes of groups of a dimension that belong to cells.
 fn nodes(content: &Content, dim: usize, index: &[Option<u32>]) -> Members {
     let mut groups = Members::new();
     for element in listed(&content.blocks, dim) {

@@ -50,8 +50,7 @@ fn entry(line: &str) -> Option<(usize, i64, &str)> {
 
 /// Members of groups by name, from those by dimension and number.
 ///
-/// A group without a name is called by its number, and a name that serves several dimensions gets
-/// the dimension behind it.
+/// A group without a name is called by its number, and a name used in several dimensions gets the dimension appended.
 pub(super) fn by_name(
     groups: BTreeMap<(usize, i64), Vec<u32>>,
     names: &BTreeMap<(usize, i64), String>,

@@ -27,7 +27,7 @@ pub(super) fn nodes(
     Ok(())
 }
 
-/// Goes behind the entity of a node and its coordinates there: one on a curve, two on a surface.
+/// Skips the entity of a node and its parametric coordinates: one on a curve, two on a surface.
 fn skip_parameters(cursor: &mut Cursor) -> Result<(), InputError> {
     if cursor.encoding() == Encoding::Ascii {
         cursor.skip_line();
@@ -85,7 +85,7 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
     Ok(())
 }
 
-/// Reads an element from its tags on: the first is the physical group.
+/// Reads an element from its tags on: the first one is the physical group.
 fn element(
     cursor: &mut Cursor,
     content: &mut Content,
@@ -109,7 +109,7 @@ fn element(
     Ok(())
 }
 
-/// Reads a count, which is a line of text in binary files too.
+/// Reads a count, which is a line of text even in binary files.
 fn count_line(cursor: &mut Cursor, what: &str, values: usize) -> Result<usize, InputError> {
     let line = cursor.line(what)?;
     match line.parse() {

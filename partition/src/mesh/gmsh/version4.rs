@@ -5,7 +5,7 @@ use super::cursor::Cursor;
 use super::element_type;
 use crate::error::InputError;
 
-/// Reads the body of `$Entities`, or that of `$PartitionedEntities`, which stand beside those.
+/// Reads the body of `$Entities`, or that of `$PartitionedEntities`, which accompanies it.
 pub(super) fn entities(
     cursor: &mut Cursor,
     content: &mut Content,

@@ -11,19 +11,18 @@ use crate::error::OutputError;
 use crate::mesh::Mesh;
 use crate::mesh::bounding_box::BoundingBox;
 
-/// Writes a mesh as MSH 4.1, ASCII, with the tags that it has; facets and nodes of groups get the
-/// tags behind those of the cells.
+/// Writes a mesh as MSH 4.1, ASCII, with its tags; facets and nodes of groups get tags after those of the cells.
 ///
-/// A mesh whose nodes and cells stand in ascending order of tags, as [`read`](super::read) makes
-/// it, is read back as it was, bit by bit.
+/// A mesh with nodes and cells in ascending order of tags, as [`read`](super::read) returns it, is reproduced bit by
+/// bit when read again.
 ///
 /// # Errors
-/// The file can't be written.
+/// A file that can't be written.
 pub fn write(mesh: &Mesh, path: &Path) -> Result<(), OutputError> {
     destination::write_bytes(path, |out| write_to(out, mesh))
 }
 
-/// Writes what [`write()`] writes.
+/// Writes the content that [`write()`] writes.
 ///
 /// # Errors
 /// Errors of `out`.
@@ -63,7 +62,7 @@ impl<'a> Plan<'a> {
             .iter()
             .enumerate()
             .map(|(number, (name, group))| {
-                // Of curves in space there are nodes alone.
+                // Groups of curves in space consist of nodes only.
                 let dim = if group.dim + 1 < mesh.dim {
                     0
                 } else {
@@ -228,7 +227,7 @@ fn gathered<'a>(
         .collect()
 }
 
-/// Numbers as text from which the same bits are read.
+/// Numbers as text that reproduces the same bits when read.
 fn row(values: &[f64; 3]) -> String {
     format!("{:?} {:?} {:?}", values[0], values[1], values[2])
 }

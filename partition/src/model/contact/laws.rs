@@ -1,4 +1,4 @@
-//! The laws of contact points: their friction, and the stiffness of what lies between their sides.
+//! The laws of contact points: friction and contact stiffness.
 
 use crate::contact_point::{ContactPoint, Law};
 use crate::error::InputError;
@@ -6,13 +6,13 @@ use crate::magnitude::short;
 use crate::scene::compliance::ContactStiffness;
 use crate::scene::friction::Friction;
 
-/// Coefficients of friction beyond this are rather angles in degrees, or meant as infinite, which costs digits.
+/// Coefficient of friction above which it is probably an angle in degrees, or meant as infinite, which costs accuracy.
 const STEEP: f64 = 10.0;
 
-/// Gives points their law of friction; the warning of a coefficient that is more likely an angle.
+/// Assigns the law of friction to points; returns a warning for a coefficient that is probably an angle.
 ///
 /// # Errors
-/// A value that isn't what it should be at a point.
+/// An invalid value at a point.
 pub(super) fn give_friction(
     friction: &Friction,
     points: &mut [ContactPoint<u32>],
@@ -25,7 +25,7 @@ pub(super) fn give_friction(
     Ok(steep_friction(points, what))
 }
 
-/// The warning of a coefficient of friction that is more likely an angle.
+/// The warning of a coefficient of friction that is probably an angle.
 fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
     let coefficients = points.iter().map(|point| match point.law {
         Law::Coulomb { coefficient, .. } => coefficient,
@@ -40,10 +40,10 @@ fn steep_friction(points: &[ContactPoint<u32>], what: &str) -> Option<String> {
     })
 }
 
-/// Gives points the stiffness of what lies between their sides.
+/// Assigns the contact stiffness to points.
 ///
 /// # Errors
-/// A value that isn't what it should be at a point.
+/// An invalid value at a point.
 pub(super) fn give_stiffness(
     stiffness: &ContactStiffness,
     points: &mut [ContactPoint<u32>],

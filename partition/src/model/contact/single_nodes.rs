@@ -1,4 +1,5 @@
-//! Contact points of single nodes, as those of a node-based surface that span no facets: each in front of what it faces.
+//! Contact points of single nodes, such as those of a node-based surface without facets: each is paired with the facet
+//! that it faces.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -14,14 +15,14 @@ use crate::error::InputError;
 use crate::scene::condition::Names;
 use crate::scene::contact;
 
-/// Cosine of the angle between two normals that are the same.
+/// Cosine of the angle up to which two normals are equal.
 const SAME: f64 = 1.0 - 1e-12;
 
 impl Contacts<'_> {
     /// The points of the nodes of side a, and the side of these `names` that they face.
     ///
     /// # Errors
-    /// A way of pairing that is one of facets, nodes none of which face the side.
+    /// A discretization that needs facets, or nodes none of which faces the side.
     pub(super) fn single_nodes(
         &self,
         keys: &contact::Contact,
@@ -77,7 +78,7 @@ impl Contacts<'_> {
         }
     }
 
-    /// The area that each of the nodes has of all facets of bodies around it, as CalculiX has it.
+    /// The area of each node from all facets of bodies around it, as in CalculiX.
     fn areas(&self, nodes: &[u32]) -> HashMap<u32, f64> {
         let own: BTreeSet<u32> = nodes.iter().copied().collect();
         let cells = &self.mesh.cells;
@@ -102,7 +103,7 @@ impl Contacts<'_> {
     }
 }
 
-/// The directions in which facets of a side are faced, each once.
+/// The normals of a side's facets, without repetition.
 fn normals(side: &Surface) -> Vec<[f64; 3]> {
     let mut normals: Vec<[f64; 3]> = Vec::new();
     for facet in &side.facets {

@@ -1,4 +1,4 @@
-//! Ties: points whose jump is 0, made like those of a contact.
+//! Ties: points whose jump is 0, discretized like those of a contact.
 
 use super::super::Contact;
 use super::super::surface::{Surface, SurfaceFacet};
@@ -12,10 +12,11 @@ use crate::scene::contact::{self, TieReach};
 /// Distance up to which sides are tied, relative to the size of their facets: the position tolerance of Abaqus.
 const NEAR: f64 = 0.05;
 
-/// Gap that is kept, relative to the size of facets, from which on it is worth a warning: it turns with neither side.
+/// Remaining gap, relative to the size of facets, above which a warning is given: the tie doesn't preserve moments
+/// across it.
 const FELT: f64 = 1e-3;
 
-/// The points of a tie, and those that are too far from the other side.
+/// The points of a tie with the size of its facets.
 pub(in crate::model) struct Tied {
     /// The points, with the gaps of the mesh.
     pub points: Vec<ContactPoint<u32>>,
@@ -26,7 +27,7 @@ pub(in crate::model) struct Tied {
 }
 
 impl Contacts<'_> {
-    /// The points of tie `number` of the scene, along side a.
+    /// Builds tie `number` of the scene, along side a.
     pub(super) fn tie(
         &self,
         number: u32,
@@ -61,7 +62,7 @@ impl Contacts<'_> {
         })
     }
 
-    /// The points of a tie between side a of `keys` and the side of these `names`, as far as it reaches.
+    /// The points of a tie between side a of `keys` and the side of these `names`, within its reach.
     ///
     /// # Errors
     /// Sides that don't face each other, or are apart.
@@ -106,8 +107,8 @@ impl Contacts<'_> {
         })
     }
 
-    /// The points of a tie, whatever their gaps are: the nodes of side a have them unless supports hold those of its facets,
-    /// but not of side b's. What carries conditions is to be free.
+    /// The points of a tie, whatever their gaps. The nodes of side a carry the multipliers unless supports hold its
+    /// facets and not those of side b, as the nodes with multipliers have to be free.
     fn points_of_tie(
         &self,
         keys: &contact::Contact,
@@ -122,7 +123,7 @@ impl Contacts<'_> {
             let facets = facets.iter().copied().collect();
             let sides = |side: &Surface| self.sides(0, (&facets, side), other, keys.pairing, what);
             sides(side).or_else(|apart| {
-                // A tie needs no material in front of it.
+                // Tied sides may face the same way, as a tie doesn't push.
                 let paired = sides(&side.turned()).map_err(|_| apart)?;
                 face_the_same_way = true;
                 Ok(paired)
@@ -150,7 +151,7 @@ impl Contacts<'_> {
         Ok(points)
     }
 
-    /// The parts of a side's facets all of whose nodes supports hold along each axis.
+    /// The fraction of a side's facets that supports hold at all nodes, for each axis.
     fn held_shares(&self, side: &Surface) -> [f64; 3] {
         let count = side.facets.len().max(1) as f64;
         std::array::from_fn(|k| {

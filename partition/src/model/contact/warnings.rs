@@ -1,4 +1,4 @@
-//! Warnings of contacts that are hardly meant as they are.
+//! Warnings of contacts that are probably mistakes.
 
 use std::collections::HashMap;
 
@@ -9,18 +9,18 @@ use crate::contact_point::ContactPoint;
 use crate::element::geometry::dot;
 use crate::magnitude::short;
 
-/// Negative gaps are worth a warning beyond this fraction of the side's extent: less is how quadratic
-/// edges follow an arc.
+/// Overlap, relative to the side's extent, above which a warning is given: quadratic edges that approximate an arc have
+/// a smaller one.
 const SEEN: f64 = 1e-8;
 
-/// Part of an interference from which on it matters that straight facets stand off a curve.
+/// Distance of straight facets from a curve, relative to an interference, above which it affects the interference.
 const FELT: f64 = 0.1;
 
-/// Height of the kinks between straight quadratic facets over their size from which on they are those of a curve.
+/// Height of the kinks between straight quadratic facets, relative to their size, above which they approximate a curve.
 const KINKED: f64 = 1e-4;
 
 impl Contacts<'_> {
-    /// The warning of an interference fit, where straight facets stand `off` a curve (m).
+    /// The warning of an interference fit whose straight facets lie `off` a curve (m).
     pub(super) fn interference(
         &self,
         points: &[ContactPoint<u32>],
@@ -49,7 +49,7 @@ impl Contacts<'_> {
         ))
     }
 
-    /// The warning of a point in a corner of side a, whose normal is that of neither facet.
+    /// The warning of a point at a corner of side a, where the averaged normal is that of neither facet.
     pub(super) fn corner(
         &self,
         side_a: &Surface,
@@ -78,8 +78,8 @@ impl Contacts<'_> {
         ))
     }
 
-    /// The warning of quadratic facets that are straight and stand for a curve: nodes in their middles are farther from it
-    /// than corners are, and pressures oscillate between the two.
+    /// The warning of straight quadratic facets that approximate a curve: their middle nodes are farther from it than
+    /// the corners, so that pressures oscillate between the two.
     pub(super) fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
         let is_quadratic = side.facets.iter().any(|facet| !facet.kind.is_linear());
         let off = side.stands_off_curve();

@@ -1,4 +1,4 @@
-//! The frame of a reference point: three nodes, in the plane two, whose displacements are its motion.
+//! The frame of a reference point: three nodes, in the plane two, whose displacements represent its motion.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +8,13 @@ use crate::element::geometry::{difference, length};
 /// Prescribed displacements and forces of the nodes of a frame in a load step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model) struct FrameLoads {
-    /// Displacements along axes: node of the frame, axis, value (m).
+    /// Prescribed displacements: node of the frame, axis, value (m).
     pub supports: Vec<(usize, usize, f64)>,
     /// Forces on its nodes (N).
     pub forces: [[f64; 3]; 3],
 }
 
-/// A linear form of displacements: by node a vector of coefficients.
+/// A linear form of displacements: a vector of coefficients for each node.
 pub(super) type Form = BTreeMap<u32, [f64; 3]>;
 
 /// The frame of a coupling.
@@ -30,7 +30,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The nodes, the origin first.
+    /// Positions of the nodes, starting with the origin.
     pub fn corners(&self) -> Vec<[f64; 3]> {
         let corner = |k: usize| {
             let mut x = self.origin;
@@ -47,7 +47,7 @@ impl Frame {
         form.entry(self.first + corner).or_default()[axis] += factor;
     }
 
-    /// The corner, beside the first, and the axis along which it goes, of a rotation, and its sign.
+    /// The corner, besides the first, and the axis of the displacement that represents a rotation, and its sign.
     fn of_rotation(about: usize) -> (u32, usize, f64) {
         match about {
             0 => (2, 2, 1.0),
@@ -63,12 +63,12 @@ impl Frame {
         self.add(form, 0, axis, -sign * factor / self.size);
     }
 
-    /// The axes about which it turns.
+    /// The axes of its rotations.
     pub fn rotations(&self) -> std::ops::Range<usize> {
         if self.dim == 2 { 2..3 } else { 0..3 }
     }
 
-    /// Adds a multiple of the displacement at x along an axis that follows from its motion.
+    /// Adds a multiple of the displacement along an axis of a point x that moves rigidly with the frame.
     pub fn add_at(&self, form: &mut Form, x: [f64; 3], axis: usize, factor: f64) {
         self.add(form, 0, axis, factor);
         let r = difference(x, self.origin);
@@ -85,7 +85,7 @@ impl Frame {
         }
     }
 
-    /// The equations that keep it rigid.
+    /// The equations that keep the frame rigid.
     pub fn rigid(&self) -> Vec<Form> {
         let mut forms = vec![Form::new(); if self.dim == 2 { 1 } else { 3 }];
         let corners = self.corners();
@@ -109,7 +109,7 @@ pub(super) struct Acting {
 }
 
 impl Acting {
-    /// The rotation about an axis, where it is prescribed and what turns by it isn't held.
+    /// The rotation about an axis, if it is prescribed and the displacement that represents it isn't.
     fn turned_alone(&self, about: usize) -> Option<f64> {
         let (_, axis, _) = Frame::of_rotation(about);
         self.motion[3 + about].filter(|_| self.motion[axis].is_none())
@@ -117,7 +117,7 @@ impl Acting {
 }
 
 impl Frame {
-    /// The point of an equation; in load steps its values are these, none where they are 0.
+    /// The point of an equation; `values` are its values in load steps, omitted if all are 0.
     pub fn point(&self, form: &Form, values: &[f64]) -> ContactPoint<u32> {
         let terms = form.iter().filter(|(_, c)| length(**c) > 0.0);
         let (entries, axes): (Vec<_>, Vec<_>) = terms
@@ -139,7 +139,7 @@ impl Frame {
         }
     }
 
-    /// The equations of rotations that are prescribed by themselves.
+    /// The equations of rotations that are prescribed without the displacements.
     pub fn turned(&self, steps: &[Acting]) -> Vec<ContactPoint<u32>> {
         let of_rotation = |about: usize| {
             let values: Option<Vec<f64>> =

@@ -1,31 +1,31 @@
 //! Rigid couplings of some displacements: along directions d of every node, d·u(x) = d·(p + θ × (x − R)).
 //!
-//! Parts of the point's motion q = (p, L θ) that none of these equations has are those of the nodes' mean: they carry
-//! nothing, and go with the body whatever rigid motion that makes.
+//! Components of the point's motion q = (p, L θ) that occur in none of these equations follow the nodes' average
+//! motion: they carry no load, and take part in the body's rigid-body motions.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::frame::{Acting, Form, Frame};
 use crate::element::geometry::{cross, difference, dot, length};
 
-/// Inertia about an axis, relative to the largest, that is none.
+/// Inertia about an axis, relative to the largest, below which it is zero.
 pub(super) const NO_INERTIA: f64 = 1e-12;
 
-/// The part of a load or of a prescribed motion that is round-off of what isn't coupled.
+/// Relative part of a load or a prescribed motion along uncoupled components that is round-off.
 const NOTHING: f64 = 1e-9;
 
-/// The part of a point's motion that no equation has.
+/// The components of a point's motion that occur in no equation.
 pub(super) struct Uncoupled {
-    /// An orthonormal basis of it: translations, then L times rotations.
+    /// An orthonormal basis of these motions: translations, then L times rotations.
     pub motions: Vec<[f64; 6]>,
 }
 
-/// A node that follows the point along some directions alone.
+/// A node that follows the point only along some directions.
 pub(super) struct FollowingNode {
     pub node: u32,
     /// The position (m).
     pub place: [f64; 3],
-    /// Unit vectors, perpendicular to each other.
+    /// Orthonormal directions.
     pub directions: Vec<[f64; 3]>,
 }
 
@@ -46,7 +46,7 @@ pub(super) fn forms(frame: &Frame, nodes: &[FollowingNode]) -> Vec<Form> {
 }
 
 impl Uncoupled {
-    /// That of nodes which follow the point.
+    /// The uncoupled components for these nodes.
     pub fn new(frame: &Frame, nodes: &[FollowingNode]) -> Self {
         let components = components(frame.dim);
         let mut sum = DMatrix::zeros(components.len(), components.len());
@@ -79,9 +79,9 @@ impl Uncoupled {
         }
     }
 
-    /// The equations by which that part is the mean motion of the nodes: of their mean displacement Σ w u and what turns them, Σ w
-    /// r × u / L = J θ / L, these are the forms, `means` of all axes, then `turns` of all rotations. `arm` is the way from the
-    /// nodes' middle to the point.
+    /// The equations that set the uncoupled components to the average motion of the nodes. `means` are the forms of the
+    /// average displacement Σ w u along all axes, `turns` those of Σ w r × u / L = J θ / L for all rotations; `arm`
+    /// leads from the nodes' centre to the point.
     pub fn forms(
         &self,
         frame: &Frame,
@@ -109,7 +109,7 @@ impl Uncoupled {
                     (0..3).for_each(|k| sum[k] += factor * of_node[k]);
                 }
             }
-            // What cancels is no coefficient.
+            // Coefficients that cancel are round-off.
             let largest = sum.values().map(|c| length(*c)).fold(0.0, f64::max);
             sum.retain(|_, c| length(*c) > 1e-13 * largest);
             Some(sum)
@@ -117,17 +117,17 @@ impl Uncoupled {
         self.motions.iter().map(of_motion).collect()
     }
 
-    /// The size of the part of a vector along these motions.
+    /// The norm of a vector's projection onto these motions.
     fn part(&self, of: [f64; 6]) -> f64 {
         let along = |motion: &[f64; 6]| (0..6).map(|k| motion[k] * of[k]).sum::<f64>();
         let squares = self.motions.iter().map(|motion| along(motion).powi(2));
         squares.sum::<f64>().sqrt()
     }
 
-    /// Takes out of what acts on the point the prescribed components that nothing is coupled to.
+    /// Removes prescribed components without coupling from the loads of the point.
     ///
     /// # Errors
-    /// A load along what isn't coupled, in words, or a prescribed component of which a part is coupled.
+    /// A load along an uncoupled component, in words, or a prescribed component that is coupled in part.
     pub fn free(&self, frame: &Frame, acting: &mut Acting) -> Result<(), String> {
         let [force, moment] = [acting.force, acting.moment.map(|m| m / frame.size)];
         let load = [
@@ -158,7 +158,7 @@ impl Uncoupled {
     }
 }
 
-/// The components of a motion in space of `dim` dimensions.
+/// The indices of the components of a motion in `dim` dimensions.
 fn components(dim: usize) -> &'static [usize] {
     match dim {
         2 => &[0, 1, 5],
@@ -166,7 +166,7 @@ fn components(dim: usize) -> &'static [usize] {
     }
 }
 
-/// True if two of some unit vectors aren't perpendicular.
+/// True if two of the unit vectors aren't perpendicular.
 pub(super) fn are_skew(directions: &[[f64; 3]]) -> bool {
     (0..directions.len())
         .flat_map(|i| (0..i).map(move |j| (i, j)))

@@ -1,5 +1,5 @@
-//! Loads that can't go with the stiffness, and displacements that can't go with the bodies' size:
-//! their units are likely to differ.
+//! Loads too large for the stiffness, and displacements too large for the bodies: their units are probably
+//! inconsistent.
 
 use super::Contact;
 use super::Diagnostics;
@@ -12,24 +12,24 @@ use crate::scene::condition::Names;
 use crate::scene::initial::Thermal;
 use crate::scene::loading::Loading;
 
-/// Strain that hardly anybody means: by then small strains are no approximation.
+/// Strain above which a warning is given: there the theory of small strains fails.
 const LARGE: f64 = 0.1;
 
-/// Strain that is a mistake unless the scene says that it isn't. A unit of length or stress that is wrong makes a factor of a
-/// thousand or a million of it; scenes of round numbers that mean nothing come to ten.
+/// Strain that is an error unless the scene allows it. A wrong unit of length or stress results in a factor of a
+/// thousand or a million; scenes of arbitrary round numbers reach ten.
 const ABSURD: f64 = 100.0;
 
-/// An estimated strain, and what makes it.
+/// An estimated strain and its cause.
 struct Estimate {
     strain: f64,
     words: String,
 }
 
 impl Diagnostics<'_> {
-    /// Loads not much below the stiffness, and displacements beyond the bodies' size.
+    /// Warnings of loads comparable to the stiffness, and of displacements beyond the bodies' size.
     ///
     /// # Errors
-    /// A load far beyond the stiffness, or a gap, unless the scene has `large_strains`.
+    /// A load far beyond the stiffness, or such a gap, unless the scene has `large_strains`.
     pub(super) fn strains(&self) -> Result<Vec<String>, InputError> {
         let mut estimates = self.of_bodies();
         for loading in self.scene.loadings() {
@@ -51,7 +51,7 @@ impl Diagnostics<'_> {
             .find(is_absurd)
             .filter(|_| !self.scene.large_strains)
         {
-            // The expectation takes the place of the question.
+            // The expectation replaces the warning's question.
             let fact = absurd.words.rsplit_once("; ");
             return Err(InputError::new(format!(
                 "{}; expected loads and gaps in the units of stiffness and mesh, or large_strains = true in the scene, where this is \
@@ -76,13 +76,13 @@ impl Diagnostics<'_> {
                 ));
             }
         }
-        // One warning for all nodes and steps.
+        // A single warning for all nodes and steps.
         warnings.sort();
         warnings.dedup_by_key(|warning| warning.split(": ").next().map(str::to_owned));
         Ok(warnings)
     }
 
-    /// Sides that their gaps press into each other, far beyond what bodies of their size can mean.
+    /// Strains from overlaps, compared with the size of the bodies.
     fn of_gaps(&self) -> Vec<Estimate> {
         let (extent, unit) = (self.extent(), self.scene.units.length());
         let of_contact = |contact: &Contact| {
@@ -103,7 +103,7 @@ impl Diagnostics<'_> {
         self.contacts.iter().filter_map(of_contact).collect()
     }
 
-    /// Body forces, initial stresses and thermal strains.
+    /// Strains from body forces, initial stresses and thermal strains.
     fn of_bodies(&self) -> Vec<Estimate> {
         let mut first_cells = vec![None; self.scene.bodies.len()];
         for (cell, &body) in self.bodies.cell_body.iter().enumerate() {
@@ -120,7 +120,7 @@ impl Diagnostics<'_> {
             .collect()
     }
 
-    /// The same of the body with this index, whose `first` cell has this number, in a loading.
+    /// Those strains of the body with this index and `first` cell, in a loading.
     fn of_body(&self, loading: &Loading, (index, first): (usize, usize)) -> Vec<Estimate> {
         let units = self.scene.units;
         let Some((name, body)) = self.scene.bodies.iter().nth(index) else {
@@ -172,7 +172,7 @@ impl Diagnostics<'_> {
         estimates
     }
 
-    /// The strain of heat, as the material of that body expands.
+    /// The thermal strain of a body from its coefficient of expansion.
     fn of_heat(
         &self,
         loading: &Loading,
@@ -193,7 +193,7 @@ impl Diagnostics<'_> {
         }
     }
 
-    /// The largest `size` at the nodes of a body, by its index and first cell.
+    /// The largest `size` at the nodes of a body, given by its index and first cell.
     fn largest(
         &self,
         (index, first): (usize, usize),
@@ -214,8 +214,8 @@ impl Diagnostics<'_> {
             .fold(0.0, |most: f64, size| most.max(size.abs()))
     }
 
-    /// The strain that a load makes whose size at a place of a side is `size`; values that aren't finite have been
-    /// refused.
+    /// The strain from a surface load whose magnitude at a point is `size`; non-finite values have been refused
+    /// earlier.
     fn of_side(
         &self,
         label: &str,

@@ -1,4 +1,4 @@
-//! Bodies that touch where no contact keeps them from passing through each other.
+//! Bodies that touch without a contact between them, so that they may penetrate each other.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -10,7 +10,7 @@ use crate::model::pretension::other_side;
 use crate::model::skin::{ROUND_OFF, Skin};
 
 impl Diagnostics<'_> {
-    /// Facets that lie on each other, neither of which is on a side of a contact: body by body.
+    /// Warnings, for each pair of bodies, of coincident facets on no side of a contact.
     pub(super) fn undeclared(&self) -> Vec<String> {
         let on_sides = self.on_sides();
         let is_free = |facet: &CellFacet| !on_sides.contains(facet);

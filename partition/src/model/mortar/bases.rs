@@ -1,4 +1,4 @@
-//! The functions of a facet to which multipliers are dual.
+//! The functions on a facet to which multipliers are dual.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,13 @@ use crate::element::ElementKind;
 /// The kind of a facet, and its corner on the axis.
 pub(super) type Kind = (ElementKind, Option<usize>);
 
-/// The functions of the facets of a kind, as rows of coefficients of its shape functions. Those of a basis sum
-/// to 1, as their duals do.
+/// Bases of functions on the facets of a kind, as rows of coefficients of the shape functions. The functions of each
+/// basis sum to 1, and so do their duals.
 pub(super) struct Bases {
-    /// Bases from one function for each node to one for each corner, which a small part of the facet can tell apart.
+    /// Bases from one function for each node down to one for each corner, which stay independent on a smaller part of
+    /// the facet.
     pub levels: Vec<DMatrix<f64>>,
-    /// ∫ of the functions of the nodes over a whole facet, relative to its measure.
+    /// ∫ of the nodes' functions over a whole facet, relative to its measure.
     pub shares: Vec<f64>,
 }
 
@@ -31,7 +32,7 @@ impl Bases {
         bases
     }
 
-    /// Functions of a facet among them.
+    /// The key of a facet's bases.
     pub fn kind(facet: &SurfaceFacet) -> Kind {
         (facet.kind, facet.corner_on_axis())
     }

@@ -1,4 +1,4 @@
-//! The contact points of two sides whose side a carries the multipliers.
+//! The contact points of two sides of which side a carries the multipliers.
 
 use std::collections::HashMap;
 
@@ -12,17 +12,16 @@ use super::weights::weights;
 use super::{polygons, segments};
 use crate::contact_point::ContactPoint;
 
-/// The contact points that the nodes of side a carry.
+/// The contact points carried by the nodes of side a.
 pub(super) struct Carried {
     /// A contact point for every node that carries a multiplier, along the side.
     pub points: Vec<ContactPoint<u32>>,
-    /// Loss of the least gap between the sides (m): the least of the mean gaps over the facets
-    /// around nodes, over the least gap that there is. So far they can go through each other before the first point
-    /// closes.
+    /// Penetration of the sides (m) until the first point closes: the smallest of the average gaps over the facets
+    /// around nodes, minus the smallest gap.
     pub unseen: f64,
 }
 
-/// The contact of two sides whose side a carries the multipliers.
+/// The contact of two sides of which side a carries the multipliers.
 ///
 /// # Errors
 /// Sides that don't face each other.
@@ -34,7 +33,7 @@ pub(super) fn carried(sides: &Sides) -> Result<Carried, String> {
     let mut covered = Vec::new();
     let mut any_back_facing = false;
     for facet in in_order(sides) {
-        // Only a shared node may be without one, where the side turns back at a crack tip.
+        // Only a shared node, a crack tip at which the side turns back, may have no normal.
         let at_node = |node: &u32| normals.get(node).copied().unwrap_or(facet.normal);
         let normals = facet.nodes.iter().map(at_node).collect();
         let field = NormalField::new(facet, normals);
@@ -75,7 +74,7 @@ fn in_order<'a>(sides: &Sides<'a>) -> Vec<&'a SurfaceFacet> {
     facets
 }
 
-/// Facets of side b that cover a facet of side a, and whether some of them face the same way.
+/// The part of a facet of side a that is covered by side b, and whether a facet of side b there faces the same way.
 fn cover_of(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     match field.facet().kind.dim() {
         1 => segments::cover(opposite, field),

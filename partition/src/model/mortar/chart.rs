@@ -1,4 +1,4 @@
-//! Flat coordinates on a facet of space, in which what covers it is cut into polygons.
+//! Flat coordinates on a facet in space, in which the opposite facets are clipped as polygons.
 
 use super::super::clip::{PlanePoint, area};
 use super::field::NormalField;
@@ -8,27 +8,27 @@ use crate::contact_point::LocalFrame;
 use crate::element::definition::Domain;
 use crate::element::geometry::{advance, cross, difference, dot, length};
 
-/// Distance of a node on an edge from the chord, relative to the chord, from which on the edge is curved.
+/// Distance of a node on an edge from the chord, relative to the chord, above which the edge is curved.
 const CURVED: f64 = 1e-9;
-/// Distance relative to the facet that is none.
+/// Distance, relative to the facet, that is round-off.
 const STILL: f64 = 1e-12;
 
-/// Coordinates on a facet: those of the plane across its normal, in which straight edges are straight wherever
-/// they come from, so that flat sides are cut exactly; on a facet with curved edges its reference coordinates,
-/// in which at least its own are straight.
+/// Coordinates on a facet: those of the plane perpendicular to its normal, in which straight edges of any facet are
+/// straight, so that flat sides are clipped exactly; on a facet with curved edges its reference coordinates, in which
+/// at least its own edges are straight.
 pub(super) struct Chart {
     domain: Domain,
     positions: Map,
     normals: Map,
-    /// (n, t₁, t₂) in its middle.
+    /// (n, t₁, t₂) at the centre.
     frame: LocalFrame,
     origin: [f64; 3],
     size: f64,
-    /// True if the coordinates are those of the reference facet.
+    /// True for reference coordinates.
     pub is_curved: bool,
     /// The corners of the facet, counter-clockwise.
     pub outline: Vec<PlanePoint>,
-    /// The area within.
+    /// The area within the outline.
     pub area: f64,
 }
 
@@ -66,7 +66,7 @@ impl Chart {
         chart
     }
 
-    /// Outward normal in the middle.
+    /// Outward normal at the centre.
     pub fn normal(&self) -> [f64; 3] {
         self.frame.normal
     }
@@ -79,7 +79,7 @@ impl Chart {
         [self.positions.at(xi), normal.map(|c| c / size)]
     }
 
-    /// Reference coordinates of a point of the chart; the search for them starts at `near`.
+    /// Reference coordinates of a point of the chart, by iteration from `near`.
     pub fn xi(&self, p: PlanePoint, near: Xi) -> Xi {
         match self.is_curved {
             true => p,
@@ -87,7 +87,7 @@ impl Chart {
         }
     }
 
-    /// Area that a unit of the chart's has in space, at ξ.
+    /// Area in space per unit of area of the chart, at ξ.
     pub fn density(&self, xi: Xi) -> f64 {
         let [x_s, x_t] = self.positions.slopes(xi);
         let vector = cross(x_s, x_t);
@@ -97,8 +97,8 @@ impl Chart {
         }
     }
 
-    /// The point of the chart from which the averaged normals lead to `y`. Beyond the edges of the facet the
-    /// normals are those at the edge.
+    /// The point of the chart whose averaged normal passes through `y`. Beyond the edges of the facet the normals are
+    /// those at the edge.
     pub fn place(&self, y: [f64; 3]) -> PlanePoint {
         let normal = self.frame.normal;
         let mut xi = middle(self.domain);
@@ -120,13 +120,13 @@ impl Chart {
         }
     }
 
-    /// Coordinates in the plane across the normal.
+    /// Coordinates in the plane perpendicular to the normal.
     fn flat(&self, x: [f64; 3]) -> PlanePoint {
         let offset = difference(x, self.origin);
         self.frame.tangents.map(|t| dot(t, offset))
     }
 
-    /// ξ of a point of the plane, by Newton's method from `near`. Beyond its edges the facet goes on straight.
+    /// ξ of a point of the plane, by Newton's method from `near`. Beyond its edges the facet is extended linearly.
     fn inverse(&self, p: PlanePoint, near: Xi) -> Xi {
         let tangents = self.frame.tangents;
         let mut xi = near;
@@ -153,7 +153,7 @@ pub(super) fn aside(p: PlanePoint, q: PlanePoint, x: PlanePoint) -> f64 {
     (offset[0] * to[1] - offset[1] * to[0]).abs() / offset[0].hypot(offset[1])
 }
 
-/// The point of a facet nearest to ξ, more or less.
+/// The approximate point of a facet nearest to ξ.
 fn clamped(domain: Domain, [s, t]: Xi) -> Xi {
     match domain {
         Domain::Triangle => {

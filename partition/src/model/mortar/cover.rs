@@ -1,4 +1,4 @@
-//! The cover of a facet of side a by side b, piece by piece, and the integrals over it.
+//! The part of a facet of side a covered by side b, piece by piece, and the integrals over it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,14 +11,14 @@ use crate::element::ElementKind::Triangle3;
 use crate::element::geometry::dot;
 use crate::element::quadrature::Quadrature;
 
-/// Degree beyond that of the shape functions' products to which flat facets are integrated whose maps aren't affine:
-/// then those whose nodes are moved by a fifth of their size have errors of 1e-12.
+/// Degree added to that of the shape functions' products for flat facets whose maps aren't affine: with it, facets with
+/// nodes moved by a fifth of their size have errors of 1e-12.
 pub(super) const BEYOND: usize = 6;
 
-/// The highest degree of all: of quadrilaterals of 9 nodes.
+/// The highest degree: that of quadrilaterals of 9 nodes.
 const MOST_DEGREE: usize = 8 + BEYOND;
 
-/// A point at which a segment is integrated.
+/// A quadrature point of a segment.
 pub(super) struct Sample {
     /// Quadrature weight times the measure (m).
     pub weight: f64,
@@ -26,14 +26,13 @@ pub(super) struct Sample {
     pub shape: Vec<f64>,
     /// Facet of side b opposite.
     pub opposite: usize,
-    /// Shape functions at the projection.
+    /// Its shape functions at the projected point.
     pub opposite_shape: Vec<f64>,
     /// The gap along the averaged normal (m).
     pub gap: f64,
 }
 
-/// The overlap of a facet of side a and one of side b: the integrals from which those with any weight
-/// ψ = Σ c_i N_i follow.
+/// The overlap of a facet of side a with one of side b: integrals that determine those with any weight ψ = Σ c_i N_i.
 pub(super) struct Overlap {
     /// Facet of side b.
     pub opposite: usize,
@@ -43,11 +42,12 @@ pub(super) struct Overlap {
     pub gaps: Vec<f64>,
 }
 
-/// The pieces of a cover: few samples of each segment in the plane; polygons have too many to keep them all.
+/// The pieces of the covered part: all quadrature points in the plane, where they are few; integrals only in space,
+/// where polygons have too many.
 pub(super) enum Pieces {
-    /// Segment by segment along the facet.
+    /// Quadrature points, segment by segment along the facet.
     Samples(Vec<Sample>),
-    /// One for each facet of side b.
+    /// One overlap for each facet of side b.
     Overlaps(Vec<Overlap>),
 }
 
@@ -61,16 +61,16 @@ pub(super) struct Cover {
     pub mass: DMatrix<f64>,
     /// ∫ g (m², in space m³).
     pub gap: f64,
-    /// The extent of the cover on the facet.
+    /// The extent of the covered part on the facet.
     pub extent: Extent,
-    /// The least gap, ends and corners of pieces included (m).
+    /// The smallest gap, including ends and corners of pieces (m).
     pub least_gap: f64,
-    /// Pieces.
+    /// The pieces.
     pub pieces: Pieces,
 }
 
 impl Cover {
-    /// Empty cover of a facet of so many nodes.
+    /// An empty cover of a facet of `nodes` nodes.
     pub fn new(nodes: usize) -> Self {
         Self {
             measure: 0.0,
@@ -83,7 +83,7 @@ impl Cover {
         }
     }
 
-    /// Adds a point of a rule with a weight, where side a has the shape functions `shape` and the gap is `gap` (m).
+    /// Adds a quadrature point with its weight, the shape functions `shape` of side a and the gap `gap` (m).
     pub fn add(&mut self, weight: f64, shape: &[f64], gap: f64) {
         self.measure += weight;
         self.gap += weight * gap;
@@ -95,11 +95,11 @@ impl Cover {
         }
     }
 
-    /// The integrals of other functions than the shape functions, rows of coefficients of these; without pieces.
+    /// The integrals of other functions, given as rows of coefficients of the shape functions; without pieces.
     pub fn of_functions(&self, functions: &DMatrix<f64>) -> Self {
         let mut cover = Self::new(functions.nrows());
         match &self.pieces {
-            // Differences of the functions' integrals would cancel where the part is small.
+            // Differences of the shape functions' integrals would cancel where the part is small.
             Pieces::Samples(samples) => {
                 for sample in samples {
                     let shape = functions * DVector::from_column_slice(&sample.shape);
@@ -116,7 +116,7 @@ impl Cover {
         cover
     }
 
-    /// True if there is nothing.
+    /// True if nothing is covered.
     pub fn is_empty(&self) -> bool {
         match &self.pieces {
             Pieces::Samples(samples) => samples.is_empty(),
@@ -125,20 +125,20 @@ impl Cover {
     }
 }
 
-/// Side b as side a sees it.
+/// Side b, prepared for the search from side a.
 pub(super) struct Opposite<'a> {
     pub surface: &'a Surface,
     /// x(η) of its facets; none in the plane.
     pub maps: Vec<Map>,
-    /// Rules on triangles by their degree.
+    /// Quadrature rules on triangles by their degree.
     pub rules: Vec<Quadrature>,
     pub target: Target<'a>,
-    /// Largest distance backwards (m).
+    /// Largest overlap (m).
     pub behind: f64,
 }
 
 impl<'a> Opposite<'a> {
-    /// Makes side b ready to be searched; `behind` is how far backwards it may lie (m).
+    /// Prepares side b for the search; `behind` is the largest overlap (m).
     pub fn new(surface: &'a Surface, behind: f64) -> Self {
         let in_space = surface.facets.iter().filter(|facet| facet.kind.dim() > 1);
         Self {

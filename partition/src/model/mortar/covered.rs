@@ -5,17 +5,17 @@ use nalgebra::DMatrix;
 use super::super::surface::SurfaceFacet;
 use super::cover::Cover;
 
-/// A facet of side a and what of side b covers it.
+/// A facet of side a with the part covered by side b.
 pub(super) struct Covered<'a> {
     pub facet: &'a SurfaceFacet,
     pub cover: Cover,
-    /// The part that is covered; `None` where it extends over the whole.
+    /// The covered part; `None` where the whole facet is covered.
     pub part: Option<Part>,
 }
 
-/// A covered part of a facet as a facet of its own.
+/// A covered part of a facet, treated as a facet itself.
 pub(super) struct Part {
-    /// Shape functions as rows of coefficients of those of the facet.
+    /// Its shape functions, as rows of coefficients of those of the facet.
     pub functions: DMatrix<f64>,
     /// Integrals over the covered part.
     pub cover: Cover,

@@ -5,15 +5,14 @@ use nalgebra::DMatrix;
 use super::bases::lift;
 use super::cover::Cover;
 
-/// Coefficients of the dual basis in terms of the shape functions, φ_j = Σ_i A_ji N_i, with
-/// ∫ φ_j P_k = δ_jk ∫ P_k over what is covered of a facet, for the functions P of `basis`: A = D M⁻¹ P with
-/// their mass matrix M_ik = ∫ P_i P_k and D_jj = ∫ P_j. Its columns sum to 1: Σ_j φ_j = 1. `None` where what
-/// is covered doesn't tell the functions apart: the least eigenvalue of M, scaled to a unit diagonal, isn't above
-/// `floor`.
+/// Coefficients of the dual basis in terms of the shape functions, φ_j = Σ_i A_ji N_i, with ∫ φ_j P_k = δ_jk ∫ P_k over
+/// the covered part of a facet, for the functions P of `basis`: A = D M⁻¹ P with their mass matrix M_ik = ∫ P_i P_k and
+/// D_jj = ∫ P_j. Its columns sum to 1: Σ_j φ_j = 1. `None` where the functions aren't reliably independent on the
+/// covered part: the least eigenvalue of M, scaled to a unit diagonal, isn't above `floor`.
 pub(super) fn dual_basis(cover: &Cover, basis: &DMatrix<f64>, floor: f64) -> Option<DMatrix<f64>> {
     let mass = basis * &cover.mass * basis.transpose();
     let count = mass.nrows();
-    // Scaled to a unit diagonal it is well-conditioned however little of the facet is covered.
+    // Scaled to a unit diagonal, M is well-conditioned even if little of the facet is covered.
     let scale: Vec<f64> = (0..count).map(|i| 1.0 / mass[(i, i)].sqrt()).collect();
     let scaled = DMatrix::from_fn(count, count, |i, k| scale[i] * mass[(i, k)] * scale[k]);
     let inverse = scaled.clone().cholesky()?.inverse();
@@ -32,8 +31,8 @@ mod tests {
     use super::*;
     use crate::element::ElementKind::Line2;
 
-    /// The part of the reference line from `from` to `to`, by the midpoint rule of `count` points:
-    /// exact to the rule, whatever the rule.
+    /// The cover of the reference line from `from` to `to`, by the midpoint rule with `count` points: the identities
+    /// hold exactly for any rule.
     fn cover(from: f64, to: f64, count: usize) -> Cover {
         let step = (to - from) / count as f64;
         let mut cover = Cover::new(2);

@@ -1,4 +1,4 @@
-//! Extent of the cover of a facet.
+//! Extent of the covered part of a facet.
 
 use nalgebra::DMatrix;
 
@@ -9,11 +9,11 @@ use crate::element::definition::Domain;
 /// Distance from the end of a reference facet that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The least extent: functions of a smaller part are differences of shape functions that cancel.
+/// The smallest extent: on a smaller part the functions are differences of shape functions that cancel.
 const LEAST: f64 = 1e-2;
 
-/// The smallest part of a reference facet of the same shape that holds all of what covers it: an interval, a rectangle
-/// along its axes, a triangle of the same angles.
+/// The smallest part of a reference facet, of the same shape, that contains the covered part: an interval, a rectangle
+/// along the axes, or a triangle of the same angles.
 pub(super) struct Extent {
     low: Xi,
     high: Xi,
@@ -31,7 +31,7 @@ impl Extent {
         }
     }
 
-    /// Makes it hold a point.
+    /// Enlarges the extent to include a point.
     pub fn include(&mut self, xi: Xi) {
         for (k, &x) in xi.iter().enumerate() {
             self.low[k] = self.low[k].min(x);
@@ -40,11 +40,11 @@ impl Extent {
         self.sum = self.sum.max(xi[0] + xi[1]);
     }
 
-    /// The shape functions of a facet of a kind that is this part alone, N̂_i(ξ) = Σ_k T_ik N_k(ξ), as rows of T;
-    /// `None` where the part is the whole.
+    /// The shape functions of this part as a facet itself, N̂_i(ξ) = Σ_k T_ik N_k(ξ), as rows of T; `None` where the
+    /// part is the whole facet.
     ///
-    /// The shape functions of all kinds of facets span spaces that shifts and stretches along the axes don't leave, so
-    /// that T_ik = N̂_i(ξ_k) at the nodes ξ_k.
+    /// The shape functions of all kinds of facets span spaces that are invariant under translation and scaling along
+    /// the axes, so that T_ik = N̂_i(ξ_k) at the nodes ξ_k.
     pub fn functions(&self, kind: ElementKind) -> Option<DMatrix<f64>> {
         let to_part = match kind.domain() {
             Domain::Triangle => self.in_triangle()?,
@@ -62,7 +62,7 @@ impl Extent {
         }))
     }
 
-    /// The map of an interval or a rectangle onto the whole.
+    /// The map of an interval or a rectangle onto the whole facet.
     fn in_box(&self, dim: usize) -> Option<Box<dyn Fn(Xi) -> Xi>> {
         let (mut low, mut high) = ([-1.0; 2], [1.0; 2]);
         for k in 0..dim {
@@ -87,7 +87,7 @@ impl Extent {
         }))
     }
 
-    /// The map of a triangle onto the whole.
+    /// The map of a triangle onto the whole facet.
     fn in_triangle(&self) -> Option<Box<dyn Fn(Xi) -> Xi>> {
         let missing = (LEAST - (self.sum - self.low[0] - self.low[1])).max(0.0) / 3.0;
         let at_end = |x: f64| if x < ROUND_OFF { 0.0 } else { x };
@@ -116,7 +116,7 @@ mod tests {
             let functions = extent.functions(kind).unwrap();
             let nodes = kind.node_coordinates();
             for (k, &node) in nodes.iter().enumerate() {
-                // The node of the part: a map of the whole onto it.
+                // The node of the part, by a map of the whole facet onto it.
                 let at = match kind.domain() {
                     Domain::Triangle => [0, 1].map(|axis| part[0][axis] + 0.4 * node[axis]),
                     _ => [0, 1].map(|axis| part[0][axis] + 0.2 * (1.0 + node[axis])),

@@ -4,14 +4,14 @@ use super::super::surface::SurfaceFacet;
 use crate::element::ElementKind;
 use crate::element::geometry::{advance, difference, dot, length};
 
-/// A facet of side a with the averaged normals at its nodes, interpolated as its positions are:
-/// n(ξ) = Σ N_i(ξ) n_i. The line through x(ξ) along n(ξ) is its projection onto side b.
+/// A facet of side a with the averaged normals at its nodes, interpolated like its positions: n(ξ) = Σ N_i(ξ) n_i. The
+/// line through x(ξ) along n(ξ) is its projection onto side b.
 pub(super) struct NormalField<'a> {
     facet: &'a SurfaceFacet,
     normals: Vec<[f64; 3]>,
 }
 
-/// Σ ∂N_i/∂ξ v_i of what stands at the nodes of a line.
+/// Σ ∂N_i/∂ξ v_i of nodal values on a line.
 fn slope(kind: ElementKind, values: &[[f64; 3]], xi: f64) -> [f64; 3] {
     let gradients = kind.gradients([xi, 0.0, 0.0]).into_iter();
     gradients
@@ -19,7 +19,7 @@ fn slope(kind: ElementKind, values: &[[f64; 3]], xi: f64) -> [f64; 3] {
         .fold([0.0; 3], |sum, (gradient, &v)| advance(sum, gradient[0], v))
 }
 
-/// The component of a × b across the plane.
+/// The component of a × b perpendicular to the plane.
 pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
@@ -53,7 +53,7 @@ impl<'a> NormalField<'a> {
         sum.map(|c| c / size)
     }
 
-    /// Side of the line at ξ on which the point x lies, in the plane: n(ξ) × (x − x(ξ)) and its derivative by ξ, zero
+    /// Signed distance of the point x from the line at ξ, in the plane: n(ξ) × (x − x(ξ)) and its derivative by ξ, zero
     /// on the line (m).
     pub fn aside(&self, xi: f64, x: [f64; 3]) -> [f64; 2] {
         let SurfaceFacet { kind, at, .. } = self.facet;
@@ -68,8 +68,8 @@ impl<'a> NormalField<'a> {
     }
 }
 
-/// n × (y(η) − x) of a facet y(η) and its derivative by η: zero where the line through x along n
-/// meets it (m).
+/// n × (y(η) − x) of a facet y(η) and its derivative by η: zero where the line through x along n intersects the facet
+/// (m).
 pub(super) fn beside(facet: &SurfaceFacet, x: [f64; 3], normal: [f64; 3], eta: f64) -> [f64; 2] {
     let y = facet.kind.position(&facet.at, [eta, 0.0, 0.0]);
     let step = slope(facet.kind, &facet.at, eta);

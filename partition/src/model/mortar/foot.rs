@@ -1,4 +1,4 @@
-//! The foot of a line on a facet of space.
+//! The intersection of a line with a facet in space.
 
 use super::super::clip::PlanePoint;
 use super::super::surface::SurfaceFacet;
@@ -7,14 +7,14 @@ use crate::contact_point::LocalFrame;
 use crate::element::definition::Domain;
 use crate::element::geometry::{difference, dot};
 
-/// Steps after which Newton's method has found nothing.
+/// Number of steps after which Newton's method is given up.
 pub(super) const STEPS: usize = 30;
-/// Change of ξ whose square is none.
+/// Change of ξ whose square is round-off.
 pub(super) const ROUND_OFF: f64 = 1e-9;
-/// Reference coordinates, of order 1 on the facet, beyond which its shape functions mean nothing.
+/// Reference coordinates, of order 1 on the facet, beyond which its shape functions are meaningless.
 const FAR: f64 = 4.0;
 
-/// ξ in the middle of a facet.
+/// ξ at the centre of a facet.
 pub(super) fn middle(domain: Domain) -> Xi {
     match domain {
         Domain::Triangle => [1.0 / 3.0; 2],
@@ -22,7 +22,7 @@ pub(super) fn middle(domain: Domain) -> Xi {
     }
 }
 
-/// The solution of two equations.
+/// The solution of a system of two equations.
 pub(super) fn solve(j: [[f64; 2]; 2], r: PlanePoint) -> PlanePoint {
     let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
     [
@@ -31,8 +31,8 @@ pub(super) fn solve(j: [[f64; 2]; 2], r: PlanePoint) -> PlanePoint {
     ]
 }
 
-/// The foot of the line through `x` along the unit vector `normal` on a facet or, a little beyond its edges, on what
-/// it goes on as: η, and the distance (m). Newton's method from `start`.
+/// The intersection of the line through `x` along the unit vector `normal` with a facet or, slightly beyond its edges,
+/// with its extension: η, and the distance (m). Newton's method from `start`.
 pub(super) fn foot(facet: &Map, [x, normal]: [[f64; 3]; 2], start: Xi) -> Option<(Xi, f64)> {
     let tangents = LocalFrame::new(normal).tangents;
     let mut eta = start;
@@ -45,7 +45,7 @@ pub(super) fn foot(facet: &Map, [x, normal]: [[f64; 3]; 2], start: Xi) -> Option
         if step[0].abs().max(step[1].abs()) <= ROUND_OFF {
             return Some((eta, dot(difference(facet.at(eta), x), normal)));
         }
-        // False of what isn't a number, too.
+        // The comparison is false for NaN, too.
         let is_near = eta[0].abs() <= FAR && eta[1].abs() <= FAR;
         if !is_near {
             return None;
@@ -54,7 +54,7 @@ pub(super) fn foot(facet: &Map, [x, normal]: [[f64; 3]; 2], start: Xi) -> Option
     None
 }
 
-/// The same on a facet of a surface, from its middle on.
+/// The intersection of a line with a facet of a surface, by Newton's method from the centre.
 pub(in crate::model) fn foot_on(facet: &SurfaceFacet, line: [[f64; 3]; 2]) -> Option<(Xi, f64)> {
     foot(
         &Map::new(facet.kind, &facet.at),

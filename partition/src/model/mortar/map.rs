@@ -1,24 +1,24 @@
-//! Σ N_i(ξ) v_i on a facet of space as a polynomial, which is quick to evaluate.
+//! Interpolation Σ N_i(ξ) v_i on a facet in space as a polynomial, which is fast to evaluate.
 
 use nalgebra::DMatrix;
 
 use crate::element::ElementKind;
 use crate::element::geometry::advance;
 
-/// Most nodes of a facet.
+/// Largest number of nodes of a facet.
 const MOST: usize = 9;
 
-/// Reference coordinates on a facet of space.
+/// Reference coordinates on a facet in space.
 pub(in crate::model) type Xi = [f64; 2];
 
-/// Σ N_i(ξ) v_i of what stands at the nodes of a facet.
+/// The polynomial Σ N_i(ξ) v_i of nodal values v_i.
 #[derive(Clone, Debug)]
 pub(in crate::model) struct Map {
     coefficients: [[f64; 3]; MOST],
     count: usize,
 }
 
-/// The powers of which the shape functions of as many nodes consist.
+/// The monomials that the shape functions of facets with up to 9 nodes consist of.
 fn powers([s, t]: Xi) -> [f64; MOST] {
     [
         1.0,
@@ -33,7 +33,7 @@ fn powers([s, t]: Xi) -> [f64; MOST] {
     ]
 }
 
-/// Derivatives by s and by t.
+/// Their derivatives by s and by t.
 fn slopes([s, t]: Xi) -> [[f64; MOST]; 2] {
     let (double_s, double_t, double_st) = (2.0 * s, 2.0 * t, 2.0 * s * t);
     [
@@ -69,7 +69,7 @@ impl Map {
         let count = nodes.len();
         let at_nodes = DMatrix::from_fn(count, count, |i, k| powers([nodes[i][0], nodes[i][1]])[k]);
         let mut right = DMatrix::from_fn(count, 3, |i, k| values[i][k]);
-        // Nodes of an element tell its polynomials apart.
+        // The monomials are independent at the nodes of an element.
         at_nodes.lu().solve_mut(&mut right);
         let mut coefficients = [[0.0; 3]; MOST];
         for (i, row) in coefficients.iter_mut().take(count).enumerate() {
@@ -81,12 +81,12 @@ impl Map {
         }
     }
 
-    /// The sum at ξ.
+    /// The value at ξ.
     pub fn at(&self, xi: Xi) -> [f64; 3] {
         self.combine(&powers(xi))
     }
 
-    /// Slopes ∂/∂ξ.
+    /// Derivatives ∂/∂ξ.
     pub fn slopes(&self, xi: Xi) -> [[f64; 3]; 2] {
         slopes(xi).map(|powers| self.combine(&powers))
     }

@@ -1,8 +1,8 @@
-//! The cover of a facet of side a by side b in space: polygons, cut out in flat coordinates on the facet
-//! (Puso and Laursen 2004; Popp, Gitterle, Gee and Wall 2010).
+//! The part of a facet of side a covered by side b in space: polygons, clipped in flat coordinates on the facet (Puso
+//! and Laursen 2004; Popp, Gitterle, Gee and Wall 2010).
 //!
-//! All facets of side b are seen along the same averaged normals, so that those with a common edge neither
-//! overlap nor leave anything between them, and neither do those that neighbours on side a see.
+//! All facets of side b are projected along the same averaged normals, so that those with a common edge neither overlap
+//! nor leave a gap, also across neighbouring facets of side a.
 
 use std::collections::HashMap;
 
@@ -18,18 +18,19 @@ use super::map::Xi;
 use crate::element::definition::Domain;
 use crate::element::geometry::{difference, dot, length};
 
-/// Area of a polygon relative to that of the facet below which it is round-off of facets with a common edge.
+/// Area of a polygon, relative to that of the facet, below which it is round-off of facets with a common edge.
 const SLIVER: f64 = 1e-12;
-/// Distance of a curved edge from the chord, relative to the facet, that doesn't matter.
+/// Negligible distance of a curved edge from the chord, relative to the facet.
 const SAG: f64 = 1e-3;
-/// Most parts of a curved edge.
+/// Largest number of straight parts of a curved edge.
 const PARTS: f64 = 8.0;
-/// Distance of a node from where an affine map would have it, relative to the facet, that doesn't matter.
+/// Negligible distance of a node from its position under an affine map, relative to the facet.
 const AFFINE: f64 = 1e-6;
-/// Degree beyond that of the shape functions' products of facets that aren't flat, which nothing integrates exactly.
+/// Degree added to that of the shape functions' products for facets that aren't flat, whose integrals no rule computes
+/// exactly.
 const BEYOND_CURVED: usize = 2;
 
-/// Facets that cover a facet of side a, and whether some of them face the same way.
+/// The part of a facet of side a that is covered by side b, and whether a facet of side b there faces the same way.
 pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let chart = Chart::new(field);
     let mut shadows = Shadows::new(&chart);
@@ -43,7 +44,7 @@ pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
             shadow.reverse();
         }
         let outline = clip(&shadow, &chart.outline);
-        // False of what isn't a number, too.
+        // The comparison is false for NaN, too.
         let is_seen = area(&outline) > SLIVER * chart.area;
         if !is_seen {
             continue;
@@ -72,12 +73,12 @@ pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     (cover, any_back_facing)
 }
 
-/// ξ in the middle of a facet.
+/// ξ at the centre of a facet.
 fn center(facet: &SurfaceFacet) -> Xi {
     middle_of(facet.kind.domain())
 }
 
-/// The facets of side b that may lie on a normal of `field`: in a cone around the one in the middle.
+/// The facets of side b that may intersect a normal of `field`: within a cone around the normal at the centre.
 fn candidates(opposite: &Opposite, field: &NormalField, chart: &Chart) -> Vec<usize> {
     let facet = field.facet();
     let axis = chart.normal();
@@ -87,7 +88,7 @@ fn candidates(opposite: &Opposite, field: &NormalField, chart: &Chart) -> Vec<us
         let along = dot(normal, axis);
         (1.0 - along * along).max(0.0).sqrt() / along
     };
-    // Normals and edges of curved facets go beyond those at the nodes by less than this.
+    // Normals and edges of curved facets exceed the range of those at the nodes by less than this factor.
     let beyond = if facet.kind.is_linear() { 1.0 } else { 1.5 };
     let radius = beyond * facet.at.iter().map(away).fold(0.0, f64::max);
     let spread = beyond * field.normals().iter().map(tilt).fold(0.0, f64::max);
@@ -103,10 +104,10 @@ fn candidates(opposite: &Opposite, field: &NormalField, chart: &Chart) -> Vec<us
     candidates
 }
 
-/// Facets of side b as they are seen in a chart.
+/// Facets of side b projected into a chart.
 struct Shadows<'a> {
     chart: &'a Chart,
-    /// Corners that were seen already.
+    /// Corners that have been projected already.
     corners: HashMap<u32, PlanePoint>,
 }
 
@@ -118,14 +119,14 @@ impl<'a> Shadows<'a> {
         }
     }
 
-    /// The corners of a facet in their order, curved edges in parts.
+    /// The projected corners of a facet in their order, with curved edges divided into straight parts.
     fn of(&mut self, facet: &SurfaceFacet) -> Vec<PlanePoint> {
         let chart = self.chart;
         let corners = facet.nodes.iter().zip(&facet.at).take(facet.kind.corners());
         let corners: Vec<PlanePoint> = corners
             .map(|(&node, &x)| *self.corners.entry(node).or_insert_with(|| chart.place(x)))
             .collect();
-        // Lines are straight in a plane.
+        // Straight edges stay straight in a plane.
         if facet.kind.is_linear() && !chart.is_curved {
             return corners;
         }
@@ -143,7 +144,7 @@ impl<'a> Shadows<'a> {
     }
 }
 
-/// Adds a piece, which a facet of side b covers, to `cover`.
+/// Adds a piece, covered by a facet of side b, to `cover`.
 fn integrate(
     chart: &Chart,
     facet: &SurfaceFacet,
@@ -157,7 +158,7 @@ fn integrate(
         products: DMatrix::zeros(facet.nodes.len(), other.nodes.len()),
         gaps: vec![0.0; facet.nodes.len()],
     };
-    // Where the last point was the next one is near.
+    // The last point is a good start for the next one.
     let (mut xi, mut eta) = (center(facet), center(other));
     let mut across = |p: PlanePoint| {
         xi = chart.xi(p, xi);
@@ -195,7 +196,7 @@ fn integrate(
     overlap
 }
 
-/// The degree to which the products of the shape functions of two facets are integrated.
+/// The degree of exactness for products of the shape functions of two facets.
 fn degree(a: &SurfaceFacet, b: &SurfaceFacet) -> usize {
     let [own, other] = [a, b].map(|facet| {
         let order = if facet.kind.is_linear() { 1 } else { 2 };
@@ -222,7 +223,7 @@ fn is_flat(facet: &SurfaceFacet) -> bool {
 fn is_affine(facet: &SurfaceFacet) -> bool {
     let kind = facet.kind;
     let nodes = kind.node_coordinates();
-    // Three corners make the map: the first one, the next one and the last one.
+    // Three corners determine the map: the first, the second and the last.
     let (origin, ends) = (nodes[0], [1, kind.corners() - 1]);
     let image = |xi: [f64; 3]| {
         let mut x = facet.at[0];

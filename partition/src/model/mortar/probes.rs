@@ -1,4 +1,4 @@
-//! Probes: nodes of the side without conditions that are looked at for penetration.
+//! Probes: nodes of the side without constraints that are checked for penetration.
 
 use super::super::ray_search::{Hit, Target};
 use super::super::sides::{SideNode, Sides};
@@ -10,7 +10,7 @@ use crate::contact_point::Probe;
 use crate::element::geometry::{difference, dot};
 use crate::mesh::Mesh;
 
-/// A probe at every node of side b whose normal meets side a.
+/// A probe at every node of side b whose normal intersects side a.
 pub(super) fn probes(sides: &Sides) -> Vec<Probe<u32>> {
     let target = Target::new(sides.a);
     let is_shared = |node: u32| sides.shared.contains(&node);
@@ -28,7 +28,7 @@ pub(super) fn probes(sides: &Sides) -> Vec<Probe<u32>> {
     sides.nodes_b.iter().filter_map(probe).collect()
 }
 
-/// A node with weight 1 and those of the side opposite that the line along its normal hits, whose weights sum to −1, and the
+/// A node with weight 1, the nodes of the opposite facet intersected by its normal, whose weights sum to −1, and the
 /// gap (m).
 pub(in crate::model) fn opposite(
     hit: Hit,
@@ -53,7 +53,7 @@ pub(in crate::model) fn opposite(
     Some((entries.collect(), gap))
 }
 
-/// The shape functions of a facet where the normal of a node meets it, and how far ahead (m).
+/// The shape functions of a facet at the intersection with the normal of a node, and the distance (m).
 fn met(facet: &SurfaceFacet, node: &SideNode) -> Option<(Vec<f64>, f64)> {
     let (x, normal) = (node.position, node.normal);
     match facet.kind.dim() {

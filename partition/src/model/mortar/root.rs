@@ -3,11 +3,11 @@
 /// Ends of the reference line.
 pub(super) const ENDS: [f64; 2] = [-1.0, 1.0];
 
-/// Steps after which bisection alone would have ended.
+/// Number of steps after which even bisection has converged.
 const STEPS: usize = 100;
 
-/// The ξ in (−1, 1) at which `function`, a value and its slope, changes sign: Newton's method,
-/// bisecting where it would leave the bracket. `None` where both ends have the same sign.
+/// The ξ in (−1, 1) at which `function`, a value and its derivative, changes sign: Newton's method, with bisection
+/// where it would leave the bracket. `None` where both ends have the same sign.
 pub(super) fn root(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
     let [mut low, mut high] = ENDS;
     let [at_low, at_high] = ENDS.map(|end| function(end)[0]);
@@ -16,7 +16,7 @@ pub(super) fn root(function: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
     if !rises && !falls {
         return None;
     }
-    // The secant meets the root of a straight function at once.
+    // The secant gives the root of a linear function directly.
     let mut xi = (at_low + at_high) / (at_low - at_high);
     for _ in 0..STEPS {
         let [value, slope] = function(xi);

@@ -1,4 +1,4 @@
-//! The cover of a multiplier's weight, gathered facet by facet, and the contact point that comes of it.
+//! The integrals of a multiplier's weight, summed facet by facet, and the resulting contact point.
 
 use std::collections::HashMap;
 
@@ -12,31 +12,31 @@ use crate::element::geometry::{advance, difference, dot, length};
 use crate::mesh::Mesh;
 use crate::scene::material::PlaneState;
 
-/// Weight below which a node of side b has no part in a point: round-off of shape
-/// functions that are orthogonal.
+/// Weight below which a node of side b is left out of a point: round-off of orthogonal shape functions.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Weighted gap over the least one around it below which it is none: that of sides that are uneven is about as large.
+/// Lower bound of the weighted gap, relative to the smallest gap around it: on non-matching curved sides the two are
+/// about equal.
 const NEARER: f64 = 0.8;
 
-/// Mean square of the distances of nodes, relative to the part of side a, below which they lie in one place.
+/// Mean square of the distances of nodes, relative to the part of side a, below which they coincide.
 const TOGETHER: f64 = 1e-8;
 
-/// Area that a multiplier's weight ψ covers.
+/// Integrals of a multiplier's weight ψ over the covered part.
 pub(super) struct Row {
     /// ∫ ψ (m, in space m²).
     area: f64,
     /// ∫ ψ N of the nodes of side a, in the order along it (m, in space m²).
     side_a: Vec<(u32, f64)>,
-    /// The entries of side b.
+    /// The same of side b.
     side_b: Vec<(u32, f64)>,
     /// ∫ ψ g (m², in space m³).
     gap: f64,
-    /// The least gap where ψ isn't zero (m).
+    /// The smallest gap where ψ isn't zero (m).
     pub least_gap: f64,
-    /// ∫ g and ∫ 1 over the facets there.
+    /// ∫ g and ∫ 1 over the facets where ψ isn't zero.
     around: [f64; 2],
-    /// True if a facet there is covered in part.
+    /// True if one of these facets is covered in part.
     is_partial: bool,
 }
 
@@ -62,7 +62,7 @@ fn add(terms: &mut Vec<(u32, f64)>, node: u32, value: f64) {
 }
 
 impl Row {
-    /// Adds what a facet of side a contributes on which ψ is `weight`.
+    /// Adds the contribution of a facet of side a, on which ψ is `weight`.
     pub fn add(&mut self, on: &Covered, side_b: &Surface, weight: &Weight) {
         let Covered { facet, cover, part } = on;
         self.is_partial |= part.is_some();
@@ -139,25 +139,25 @@ impl Row {
         }
     }
 
-    /// The mean of the gap over the facets where ψ isn't zero (m).
+    /// The average of the gap over the facets where ψ isn't zero (m).
     pub fn mean_gap(&self) -> f64 {
         self.around[0] / self.around[1]
     }
 
-    /// Shifts what side b has of the row so that both sides turn together without changing the gap,
-    /// and the point's force has no moment: Σ s_a D_a = Σ s_b M_b with the places s along side a.
+    /// Shifts the weights of side b so that a common rotation of both sides leaves the gap unchanged, and the point's
+    /// force has no moment: Σ s_a D_a = Σ s_b M_b with the positions s along side a.
     ///
-    /// It is so already where the sides are straight. Without it, the ragged facets of round bodies
-    /// would keep them from turning against each other.
+    /// On straight sides this holds already. Without it, the polygonal facets of round bodies would resist their
+    /// relative rotation.
     fn balance(&mut self, a: &SideNode, normal: [f64; 3], mesh: &Mesh, plane: Option<PlaneState>) {
-        // In multiples of the size of its part of side a, so that no square of a length overflows.
+        // Lengths are relative to the size of the point's part of side a, so that no square overflows.
         let size = if mesh.dim == 2 {
             self.area / PlaneState::thickness(plane, self.force_point(a, mesh))
         } else {
             self.area.sqrt()
         };
         let offset = |node: u32| difference(mesh.points[node as usize], a.position);
-        // Each node takes part as it does already.
+        // The shift is distributed by the existing weights.
         let before = self.side_b.clone();
         for axis in self.axes(a, normal, mesh) {
             let place = |node: u32| dot(axis, offset(node)) / size;
@@ -176,8 +176,8 @@ impl Row {
         }
     }
 
-    /// The principal axes along side a of where the nodes of side b lie, each as it takes part: what is shifted along
-    /// one of them leaves the other as it is.
+    /// The principal axes, along side a, of the positions of side b's nodes, weighted by their weights: shifts along
+    /// one of them don't affect the other.
     fn axes(&self, a: &SideNode, normal: [f64; 3], mesh: &Mesh) -> Vec<[f64; 3]> {
         let [t_1, t_2] = LocalFrame::new(normal).tangents;
         if mesh.dim == 2 {
@@ -205,7 +205,8 @@ impl Row {
         ]
     }
 
-    /// Point at which the force on side a acts: beside node `a` where others hand over to it.
+    /// Point of application of the force on side a: beside node `a` where nodes without a multiplier pass their part on
+    /// to it.
     fn force_point(&self, a: &SideNode, mesh: &Mesh) -> [f64; 3] {
         (self.side_a.iter()).fold(a.position, |at, &(node, value)| {
             let offset = difference(mesh.points[node as usize], a.position);
@@ -213,7 +214,8 @@ impl Row {
         })
     }
 
-    /// The normal where the force acts: that of node `a`, unless a facet is covered in part and the force acts beside it.
+    /// The normal at the point of application: that of node `a`, unless a facet is covered in part and the force acts
+    /// beside the node.
     fn normal(&self, a: &SideNode, normals: &HashMap<u32, [f64; 3]>) -> [f64; 3] {
         if !self.is_partial {
             return a.normal;
@@ -225,12 +227,12 @@ impl Row {
         sum.map(|c| c / size)
     }
 
-    /// The contact point of node `a`, scaled so that the weights of side a sum to 1: the multiplier is the force
-    /// along its normal.
+    /// The contact point of node `a`, scaled so that the weights of side a sum to 1: the multiplier is the force along
+    /// its normal.
     ///
-    /// ψ changes its sign, so that the weighted gap of uneven surfaces may be less than any of their gaps, by far where
-    /// a curved side is partly covered. No point starts out violated more than they are, or far nearer to closing: bodies
-    /// that only touch carry no force without a load, and none where they are apart.
+    /// ψ changes its sign, so that the weighted gap of non-matching surfaces may be less than any of their gaps, by far
+    /// where a curved side is partly covered. It is bounded by the smallest gap: sides that only touch carry no force
+    /// without a load, and sides that are apart don't overlap.
     pub fn point(
         mut self,
         a: &SideNode,

@@ -1,5 +1,4 @@
-//! The cover of a line of side a by side b: segments between the places onto which ends of facets of side b are
-//! projected.
+//! The part of a line of side a covered by side b: segments between the projected ends of facets of side b.
 
 use super::super::surface::SurfaceFacet;
 use super::cover::{Cover, Opposite, Pieces, Sample};
@@ -8,14 +7,14 @@ use super::field::{NormalField, ahead, beside, cross};
 use super::root::{ENDS, root};
 use crate::element::geometry::difference;
 
-/// Degree to which a segment is integrated. The product of two straight facets' shape functions
-/// has degree 2; projections between facets that aren't parallel are rational.
+/// Degree of exactness on a segment. The product of two straight facets' shape functions has degree 2; projections
+/// between facets that aren't parallel are rational functions.
 const DEGREE: usize = 9;
 
-/// Facets that cover a facet of side a, and whether some of them face the same way.
+/// The part of a facet of side a that is covered by side b, and whether a facet of side b there faces the same way.
 ///
-/// The facet is cut wherever an end of a facet of side b is projected onto it; what the middle
-/// of a piece meets first is opposite all of it.
+/// The facet is divided at the projected ends of facets of side b; the first facet that the normal at the centre of a
+/// piece intersects covers the whole piece.
 pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let candidates = candidates(opposite, field);
     let mut cuts = ENDS.to_vec();
@@ -43,7 +42,7 @@ pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     (samples.cover(field), any_back_facing)
 }
 
-/// The facets of side b that may lie on a line of `field`: between its first and its last.
+/// The facets of side b that may intersect a normal of `field`: between its first and its last one.
 fn candidates(opposite: &Opposite, field: &NormalField) -> Vec<usize> {
     let lines = ENDS.map(|end| {
         (
@@ -66,8 +65,8 @@ fn candidates(opposite: &Opposite, field: &NormalField) -> Vec<usize> {
     candidates
 }
 
-/// The facet that the line at ξ meets first face to face, either way but not too far backwards; where there
-/// is none, whether it meets one that faces the same way.
+/// The first facet that the line at ξ intersects face to face, in either sense but not too far backwards; if there is
+/// none, whether it intersects one that faces the same way.
 fn nearest(
     opposite: &Opposite,
     field: &NormalField,
@@ -95,7 +94,7 @@ fn nearest(
     nearest.map(|(facet, _)| facet).ok_or(back_facing)
 }
 
-/// The samples of segments, one after the other along a facet.
+/// The quadrature points of segments, in their order along a facet.
 struct Samples {
     list: Vec<Sample>,
     extent: Extent,
@@ -103,7 +102,7 @@ struct Samples {
 }
 
 impl Samples {
-    /// Adds those of the segment between `ends`, which the facet `found` of side b covers.
+    /// Adds the quadrature points of the segment between `ends`, which the facet `found` of side b covers.
     fn add(&mut self, opposite: &Opposite, field: &NormalField, ends: [f64; 2], found: usize) {
         let (a, b) = (field.facet(), &opposite.surface.facets[found]);
         let [from, to] = ends;
@@ -140,12 +139,12 @@ impl Samples {
     }
 }
 
-/// Point η at which the line at ξ meets an opposite facet, and the gap (m).
+/// Point η at which the line at ξ intersects an opposite facet, and the gap (m).
 fn project(field: &NormalField, facet: &SurfaceFacet, xi: f64) -> (f64, f64) {
     let (x, normal) = (field.position([xi, 0.0, 0.0]), field.normal([xi, 0.0, 0.0]));
     let side = |eta: f64| beside(facet, x, normal, eta);
     let eta = root(side).unwrap_or_else(|| {
-        // Round-off has the line pass by the end that it goes through.
+        // By round-off the line may miss the end that it passes through.
         let [low, high] = ENDS;
         if side(low)[0].abs() < side(high)[0].abs() {
             low

@@ -1,4 +1,4 @@
-//! Sides in space whose nodes don't match.
+//! Non-matching sides in space.
 
 mod space;
 
@@ -18,7 +18,7 @@ fn turned([x, y, z]: Point) -> Point {
     [x + 0.3, y - 2.0, z]
 }
 
-/// Two sides of the same square, one above the other.
+/// Two sides over the same square, one above the other.
 fn square(
     kinds: [ElementKind; 2],
     n: [[usize; 2]; 2],
@@ -33,7 +33,7 @@ fn square(
         .side(kinds[1], range, n[1], uneven, true, lift)
 }
 
-/// Each kind twice as either side.
+/// All pairs of kinds of facets in which each kind occurs twice on either side.
 fn pairs_of_kinds() -> impl Iterator<Item = [ElementKind; 2]> {
     [1, 3]
         .into_iter()
@@ -80,7 +80,7 @@ fn a_uniform_pressure_loads_both_sides_as_if_it_were_applied_to_them() {
     }
 }
 
-/// Sides that overlap in part: whole facets, parts of them, slivers, narrow ones on the middle of a wide facet.
+/// Partly overlapping sides: whole facets, parts of them, slivers, and narrow facets on the middle of a wide one.
 fn overlaps() -> Vec<(Range, Range, [[usize; 2]; 2])> {
     let whole = [[0.0, 3.0], [0.0, 2.0]];
     let mut all = vec![
@@ -90,7 +90,7 @@ fn overlaps() -> Vec<(Range, Range, [[usize; 2]; 2])> {
         (whole, [[0.2, 0.7], [0.3, 0.8]], [[2, 1], [2, 1]]),
     ];
     for exponent in [1, 2, 3, 6, 9] {
-        // A facet of each ends at x = 1.
+        // A facet of each side ends at x = 1.
         let sliver = 10.0_f64.powi(-exponent);
         all.push((
             whole,
@@ -137,8 +137,8 @@ fn sides_that_overlap_in_part_pass_forces_and_moments() {
     }
 }
 
-/// Rows of fully covered sides are dual: they take a linear field to its value at the node, or to what the
-/// corners around a node on an edge make of it.
+/// Rows of fully covered sides are dual: on a linear field they give its value at the node, or, for a node on an edge,
+/// the value implied by the corners around it.
 #[test]
 fn a_row_takes_linear_displacements_to_the_jump_at_its_node() {
     let u = |[x, y, z]: Point| 0.3 * x - 0.2 * y + 0.7 * z + 1.0;
@@ -189,7 +189,7 @@ fn where_nodes_match_a_row_has_the_same_of_both_sides() {
     }
 }
 
-/// Part of a ball of radius 1 and more of a hollow around it.
+/// A part of a ball of radius 1 and a larger part of the cavity around it.
 fn balls(kinds: [ElementKind; 2], n: usize, gap: f64) -> Space {
     let on = |radius: f64| {
         move |[x, y, _]: Point| {
@@ -214,7 +214,7 @@ fn round_sides_are_covered_whole_and_turn_together() {
         let area: f64 = points.iter().map(|point| point.area).sum();
         let expected: f64 = space.integrals(0).values().sum();
         close(area, expected, 1e-6, &what);
-        // Chords are as far off the curve.
+        // Chords deviate from the curve by as much.
         let is_linear = kinds.iter().any(|kind| kind.is_linear());
         let off = if is_linear { 4e-2 } else { 4e-3 };
         for point in &points {
@@ -275,7 +275,7 @@ fn numbers_and_reflections_change_nothing() {
     }
 }
 
-/// Of a closed surface the side that faces away has no part; a layer behind another is hidden.
+/// The averted side of a closed surface doesn't contribute; a layer behind another one is hidden.
 #[test]
 fn what_lies_behind_is_not_seen() {
     let range = [[0.0, 2.0], [0.0, 3.0]];

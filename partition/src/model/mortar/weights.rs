@@ -10,25 +10,25 @@ use super::cover::Cover;
 use super::covered::Covered;
 use super::dual::dual_basis;
 
-/// Share of a line with less of which covered its shape functions can't be told apart reliably. No round number:
-/// round-off would decide.
+/// Covered share of a line below which its shape functions aren't reliably independent. Not a round number, as
+/// round-off would decide at a typical ratio.
 const SLIVER: f64 = 0.987_65e-3;
-/// Least eigenvalue, down to which the functions of all nodes of a facet are told apart: dual functions are
-/// below 100 then. Those of the corners alone may be so much larger. No round numbers either.
+/// Least eigenvalues for the functions of all nodes of a facet, so that dual functions stay below 100, and for those of
+/// the corners, which may become larger. Not round numbers either.
 const FLOORS: [f64; 2] = [0.987_65e-3, 0.987_65e-7];
 
-/// Part of a node's integral that has to be covered for it to carry a multiplier, relative to what is covered of the
-/// nodes beside it. With less, its condition would be nearly theirs, and its multiplier be next to nothing. For 26
-/// punches on blocks, flat and round, in the plane and in space, anything from 0.05 to 0.6 leaves depths off by 9 % on average,
-/// and the two orders of sides apart by 0.3 of the estimated error. No round number: where sides overlap by a fifth of a facet,
-/// round-off would decide.
+/// Covered part of a node's integral, relative to that of the nodes beside it, from which on the node carries a
+/// multiplier. Below, its constraint would nearly repeat theirs, with a negligible multiplier. For 26 punches on
+/// blocks, flat and round, in the plane and in space, any value from 0.05 to 0.6 gives depths with an average error of
+/// 9 %, and a difference between the two orders of sides of 0.3 of the estimated error. Not a round number, as
+/// round-off would decide where sides overlap by a fifth of a facet.
 const LEAST: f64 = 0.320_987;
 
-/// Part of the integral that a node needs that has to be left of it when others have handed theirs over.
+/// Part of a node's required integral that has to remain after other nodes have passed their parts on to it.
 const KEPT: f64 = 0.5;
 
-/// Weight of a node in its own condition, relative to all of side a, that it has to have at least. From 0.001 to 0.05 it
-/// changes none of those 26.
+/// Least weight of a node in its own constraint, relative to the weight of all of side a. Values from 0.001 to 0.05
+/// change none of those 26 punches.
 const OWN: f64 = 0.009_876_5;
 
 /// The weight ψ of a multiplier on a facet.
@@ -48,7 +48,7 @@ impl Weight {
         }
     }
 
-    /// ∫ ψ N of a node of the facet over the covered part (m, in space m²).
+    /// ∫ ψ N over the covered part, for a node of the facet (m, in space m²).
     fn at_node(&self, node: u32, on: &Covered) -> f64 {
         let Some(place) = on.facet.nodes.iter().position(|&own| own == node) else {
             return 0.0;
@@ -64,15 +64,15 @@ impl Weight {
     }
 }
 
-/// The nodes that carry multipliers. All others on what is covered, crack tips among them, hand
-/// their part of the dual basis to those beside them, so that the weights sum to 1 everywhere: what
-/// is integrated is lost nowhere, and a uniform pressure passes exactly.
+/// The nodes that carry multipliers. All other nodes on the covered part, crack tips included, pass their part of the
+/// dual basis on to neighbouring nodes, so that the weights sum to 1 everywhere: no part of the integrals is lost, and
+/// a uniform pressure is transferred exactly.
 struct Carrying {
     nodes: HashSet<u32>,
     bases: BTreeMap<Kind, Bases>,
 }
 
-/// The weights of the multipliers on each facet, by the nodes that carry them.
+/// The weights of the multipliers on each facet, by node.
 pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weight)>> {
     let bases = Bases::new(covered.iter().map(|on| on.facet));
     let mut around: HashMap<u32, [f64; 2]> = HashMap::new();
@@ -86,7 +86,7 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
             *whole += bases.shares[i] * area;
         }
     }
-    // What a node needs follows from how much of it is covered beside it.
+    // The integral that a node requires depends on how much is covered around it.
     let part = |node: &u32| around[node][0] / around[node][1];
     let mut most: HashMap<u32, f64> = HashMap::new();
     for Covered { facet, .. } in covered {
@@ -119,7 +119,7 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
                 *own += weight.at_node(*node, on);
             }
         }
-        // What others hand over may be negative where functions of theirs are, and may be far from the node.
+        // The parts of other nodes may be negative where their functions are, and may be far from the node.
         let is_weak =
             |node: u32, [area, own]: [f64; 2]| area < KEPT * around[&node][1] || own < OWN * area;
         let weak = areas
@@ -135,13 +135,13 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
 }
 
 impl Covered<'_> {
-    /// The integrals of the functions over the covered part.
+    /// The integrals of a basis over the covered part.
     fn integrals(&self, basis: &DMatrix<f64>) -> Vec<f64> {
         let cover = self.part.as_ref().map_or(&self.cover, |part| &part.cover);
         lift(basis, &cover.integrals)
     }
 
-    /// Dual basis.
+    /// The dual basis on the covered part.
     fn dual(&self, basis: &DMatrix<f64>, floor: f64) -> Option<DMatrix<f64>> {
         match &self.part {
             None => dual_basis(&self.cover, basis, floor),
@@ -151,7 +151,7 @@ impl Covered<'_> {
 }
 
 impl Carrying {
-    /// The weights on a facet of those of its nodes that carry a multiplier.
+    /// The weights on a facet, for its nodes that carry a multiplier.
     fn on(&self, covered: &Covered) -> Vec<(u32, Weight)> {
         let Covered { facet, cover, .. } = covered;
         let levels = &self.bases[&Bases::kind(facet)].levels;
@@ -161,7 +161,7 @@ impl Carrying {
             let own: Vec<usize> = (0..basis.nrows()).filter(carries).collect();
             let (is_told_apart, floor) = match is_line {
                 true => (cover.measure >= SLIVER * facet.area(), 0.0),
-                // The functions of linear facets are those of corners.
+                // The functions of linear facets are those of the corners.
                 false if facet.kind.is_linear() => (true, FLOORS[1]),
                 false => (true, floor),
             };
@@ -178,7 +178,7 @@ impl Carrying {
         }
         let integrals = covered.integrals(&levels[0]);
         let own = (0..facet.nodes.len()).filter(carries);
-        // Of equal ones the first.
+        // The first one of equal maxima.
         let best = own
             .rev()
             .max_by(|&i, &k| integrals[i].total_cmp(&integrals[k]));
@@ -188,7 +188,7 @@ impl Carrying {
     }
 }
 
-/// The rows of the dual basis that belong to `own`, each with its part of the others.
+/// The rows of the dual basis for the nodes `own`, each with an equal part of the other rows.
 fn handed_over(basis: &DMatrix<f64>, own: &[usize]) -> DMatrix<f64> {
     let part = 1.0 / own.len() as f64;
     DMatrix::from_fn(own.len(), basis.ncols(), |j, i| {

@@ -1,4 +1,5 @@
-//! The cut of a mesh along facets between its cells: the nodes of the facets get doubles, which the cells behind them have.
+//! The cut of a mesh along facets between its cells: the nodes of the facets are duplicated, and the cells behind them
+//! get the duplicates.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,10 +17,10 @@ pub(in crate::model) fn other_side(pretension: &Pretension) -> String {
     format!("other side of pretension '{}'", pretension.name)
 }
 
-/// Cuts the bodies at all pretensions of a scene; of each the nodes of its facets and their doubles.
+/// Cuts the bodies at all pretensions of a scene; returns for each the pairs of nodes and duplicates.
 ///
 /// # Errors
-/// Facets that don't part the cells around them into two, a group with forces on nodes of the cut.
+/// Facets that don't separate the cells around them into two sets, a group with forces on nodes of the cut.
 pub(in crate::model) fn cut(
     scene: &Scene,
     bodies: &mut Bodies,
@@ -35,13 +36,13 @@ pub(in crate::model) fn cut(
     Ok(all)
 }
 
-/// A cut that isn't open yet.
+/// A cut that isn't opened yet.
 struct Cut<'a> {
     facets: &'a [u32],
     what: &'a str,
     topology: Topology,
     nodes: BTreeSet<u32>,
-    /// The cells behind it that have nodes of it.
+    /// The cells behind the cut that contain nodes of it.
     behind: BTreeSet<u32>,
 }
 
@@ -49,7 +50,7 @@ impl<'a> Cut<'a> {
     /// The cut along `facets` of a mesh.
     ///
     /// # Errors
-    /// A facet that isn't between two cells, cells that still hang together beside the facets.
+    /// A facet that isn't between two cells, cells that stay connected around the facets.
     fn new(mesh: &Mesh, facets: &'a [u32], what: &'a str) -> Result<Self, InputError> {
         let topology = Topology::new(mesh);
         let listed = |facet: &u32| mesh.facets.nodes_of(*facet as usize);
@@ -84,7 +85,7 @@ impl<'a> Cut<'a> {
         })
     }
 
-    /// Refuses groups of points on the cut that forces or springs act on: they would act on both sides.
+    /// Refuses groups of points on the cut with forces or springs, as these would act on both sides.
     fn check_groups(&self, scene: &Scene, mesh: &Mesh) -> Result<(), InputError> {
         let loadings = scene.loadings();
         let forces = loadings.iter().flat_map(|loading| loading.force);
@@ -111,7 +112,7 @@ impl<'a> Cut<'a> {
         Ok(())
     }
 
-    /// Opens the cut; `name` is that of the group of facets behind it. The nodes and their doubles.
+    /// Opens the cut; `name` is that of the group of facets behind it. Returns the pairs of nodes and duplicates.
     fn open(&self, scene: &Scene, mesh: &mut Mesh, name: String) -> Vec<[u32; 2]> {
         let on_cut: BTreeSet<u32> = self.facets.iter().copied().collect();
         let listed = 0..mesh.facets.len() as u32;
@@ -165,7 +166,7 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// Adds the doubles of nodes to the groups of points whose displacements are prescribed.
+/// Adds the duplicates of nodes to the groups of points with prescribed displacements.
 fn hold_doubles(scene: &Scene, mesh: &mut Mesh, double: &BTreeMap<u32, u32>) {
     let loadings = scene.loadings();
     let held = loadings.iter().flat_map(|loading| loading.displacement);
@@ -185,8 +186,8 @@ fn is_of_points(group: &Group, mesh: &Mesh) -> bool {
     group.dim + 1 < mesh.dim
 }
 
-/// Cells `around` a cut on the side of the second cell of the first of `pairs`. `None` where the facets don't part the
-/// cells into two.
+/// Cells `around` a cut on the side of the second cell of the first of `pairs`. `None` where the facets don't separate
+/// the cells into two sets.
 fn behind(topology: &Topology, pairs: &[[u32; 2]], around: &[u32]) -> Option<BTreeSet<u32>> {
     let place: BTreeMap<u32, u32> = around.iter().copied().zip(0..).collect();
     let parted: BTreeSet<[u32; 2]> = pairs.iter().map(|[a, b]| [*a.min(b), *a.max(b)]).collect();

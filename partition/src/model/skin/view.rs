@@ -1,4 +1,4 @@
-//! The view of a facet of the boundary along its normal.
+//! The view from a facet of the boundary along its normal.
 
 use super::super::clip::{PlanePoint, Seen, area, clip, middle};
 use super::super::mortar::foot_on;
@@ -8,16 +8,15 @@ use crate::contact_point::LocalFrame;
 use crate::element::geometry::{advance, difference, dot};
 use crate::mesh::Mesh;
 
-/// Part of the smaller of two facets that they have in common at least: less is round-off of those that end beside
-/// each other.
+/// Least overlap of two facets, relative to the smaller one: less is round-off of facets that end beside each other.
 const LEAST: f64 = 1e-6;
 
-/// Overlap relative to the thinner of two cells behind facets from which on it is the material of the body that lies
-/// between them, however wide the cells are.
+/// Overlap, relative to the thinner one of the cells behind two facets, above which the material of the body lies
+/// between them, whatever the width of the cells.
 const MATERIAL: f64 = 0.5;
 
-/// The plane of a facet, in which others are cut out. A line is a strip as wide as it is long, so that there is one way
-/// for both dimensions.
+/// The plane of a facet, into which others are projected and clipped. A line is treated as a strip as wide as it is
+/// long, so that one method serves both dimensions.
 pub(super) struct View<'a> {
     facet: &'a SkinFacet,
     mesh: &'a Mesh,
@@ -28,7 +27,7 @@ pub(super) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// The view of a facet of the boundary of `mesh`.
+    /// The view from a facet of the boundary of `mesh`.
     pub fn new(facet: &'a SkinFacet, mesh: &'a Mesh) -> Self {
         let mut view = Self {
             facet,
@@ -45,8 +44,8 @@ impl<'a> View<'a> {
         view
     }
 
-    /// The view of `opposite` facets, which look its way, each with its index, with nothing between: index, distance
-    /// along the normal in the middle of the visible part, length or area of that (m).
+    /// The visible parts of `opposite` facets, which face this one, each with its index: index, distance along the
+    /// normal at the centre of the visible part, length or area of that (m).
     pub fn of(&self, opposite: &[(usize, &SkinFacet)]) -> Vec<(usize, f64, f64)> {
         let seen = opposite
             .iter()
@@ -58,7 +57,7 @@ impl<'a> View<'a> {
             .collect()
     }
 
-    /// The length of a part of a strip, or the area of that of a face.
+    /// The length of a part of a strip, or the area of a part of a face.
     fn measure(&self, outline: &[PlanePoint]) -> f64 {
         match self.width > 0.0 {
             true => area(outline) / self.width,
@@ -72,7 +71,7 @@ impl<'a> View<'a> {
         let mut shadow = self.flat(shape);
         shadow.reverse();
         let outline = clip(&shadow, &self.outline);
-        // False of what isn't a number, too.
+        // The comparison is false for NaN, too.
         let is_seen = area(&outline) > LEAST * area(&self.outline).min(area(&shadow));
         if !is_seen {
             return None;
@@ -87,7 +86,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// True if another facet of the same piece lies so far behind this one that it is no side of a crack.
+    /// True if another facet of the same piece lies so far behind this one that it isn't the other face of a crack.
     fn is_beyond(&self, other: &SkinFacet, gap: f64) -> bool {
         let (own, shape) = (&self.facet.shape, &other.shape);
         let size = own.size().min(shape.size());
@@ -98,7 +97,7 @@ impl<'a> View<'a> {
             || gap < -MATERIAL * self.thickness(self.facet).min(self.thickness(other))
     }
 
-    /// Depth of the cell behind a facet (m).
+    /// Thickness of the cell behind a facet (m).
     fn thickness(&self, facet: &SkinFacet) -> f64 {
         let nodes = self.mesh.cells.nodes_of(facet.place.cell as usize).iter();
         let depth = |&node: &u32| {
@@ -108,7 +107,7 @@ impl<'a> View<'a> {
         nodes.map(depth).fold(0.0, f64::max)
     }
 
-    /// The corners of a facet in the plane, counter-clockwise where it looks the same way.
+    /// The corners of a facet in the plane, counter-clockwise if it faces the same way.
     fn flat(&self, shape: &SurfaceFacet) -> Vec<PlanePoint> {
         let corners = shape.at.iter().take(shape.kind.corners());
         let mut flat: Vec<PlanePoint> = corners
@@ -124,7 +123,7 @@ impl<'a> View<'a> {
         flat
     }
 
-    /// The point of space at one of the plane (m).
+    /// The position in space of a point in the plane (m).
     fn place(&self, [s, t]: PlanePoint) -> [f64; 3] {
         let [along, across] = self.frame.tangents;
         let x = advance(self.facet.shape.at[0], s, along);
@@ -134,8 +133,8 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The way from `x` along the normal to a facet, or to what it goes on as where it passes by: edges of curved facets
-    /// aren't where the chords between their corners are (m).
+    /// The distance from `x` along the normal to a facet, or to its extension where the line misses it: edges of curved
+    /// facets deviate from the chords between their corners (m).
     fn height(&self, shape: &SurfaceFacet, x: [f64; 3]) -> f64 {
         let normal = self.frame.normal;
         let crossing = shape.kind.crossing(&shape.at, x, normal);

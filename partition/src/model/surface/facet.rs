@@ -5,18 +5,18 @@ use crate::element::ElementKind;
 use crate::element::geometry::{advance, cross, difference, dot, length};
 use crate::scene::material::PlaneState;
 
-/// Degree of exactness with which curved facets are measured.
+/// Degree of exactness for the measure of curved facets.
 const CURVED_DEGREE: usize = 9;
 
 /// A facet of the boundary.
 #[derive(Clone, Debug)]
 pub(in crate::model) struct SurfaceFacet {
     pub kind: ElementKind,
-    /// Nodes in the order in which the cell lies to their left.
+    /// Nodes in the order that has the cell on its left.
     pub nodes: Vec<u32>,
     /// Coordinates of the nodes (m).
     pub at: Vec<[f64; 3]>,
-    /// Unit outward normal in its middle, which is the normal of its chord.
+    /// Unit outward normal at its centre, which is the normal of its chord.
     pub normal: [f64; 3],
     /// Length or area.
     pub measure: f64,
@@ -48,7 +48,7 @@ impl SurfaceFacet {
         }
     }
 
-    /// dS at ξ: length, area, or area all around the axis (m, m²).
+    /// dS at ξ: length, area, or area of the ring around the axis (m, m²).
     pub fn density(&self, xi: [f64; 3]) -> f64 {
         let x = self.kind.position(&self.at, xi);
         PlaneState::thickness(self.plane, x) * length(self.kind.area_vector(&self.at, xi))
@@ -71,18 +71,18 @@ impl SurfaceFacet {
         (is_ring && !self.kind.is_linear()).then(corner).flatten()
     }
 
-    /// Functions with positive integrals.
+    /// The modified functions with positive integrals.
     pub fn blending(&self) -> Blending {
         Blending::new(self.kind, self.corner_on_axis())
     }
 
-    /// The mean of its nodes (m).
+    /// The average of its nodes (m).
     pub fn middle(&self) -> [f64; 3] {
         let part = 1.0 / self.at.len() as f64;
         (self.at.iter()).fold([0.0; 3], |sum, &at| advance(sum, part, at))
     }
 
-    /// Diameter, by the order of magnitude (m).
+    /// Approximate diameter (m).
     pub fn size(&self) -> f64 {
         match self.kind.dim() {
             0 => 0.0,
@@ -91,7 +91,7 @@ impl SurfaceFacet {
         }
     }
 
-    /// Unit outward normal at one of its nodes: that of the facet itself, be it curved.
+    /// Unit outward normal at one of its nodes, also for curved facets.
     pub fn normal_at(&self, node: u32) -> [f64; 3] {
         let place = self.nodes.iter().position(|&own| own == node);
         let Some(place) = place.filter(|_| !self.kind.is_linear()) else {
@@ -107,8 +107,8 @@ impl SurfaceFacet {
         self.kind.along().iter().map(|&i| self.nodes[i])
     }
 
-    /// Integral of the shape function of a node over it, of quadratic faces that of [`Blending::positive`]; 0 of a node that
-    /// isn't its own.
+    /// Integral over the facet of a node's shape function, on quadratic faces that of [`Blending::positive`]; 0 for
+    /// nodes of other facets.
     pub fn tributary_area(&self, node: u32) -> f64 {
         let Some(place) = self.nodes.iter().position(|&own| own == node) else {
             return 0.0;
@@ -142,14 +142,15 @@ impl SurfaceFacet {
         edges.into_iter().map(of_edge).fold(0.0, f64::max)
     }
 
-    /// The way from its node `node` to its middle, across `normal`; `None` if it isn't its node.
+    /// The vector from its node `node` to its centre, projected perpendicular to `normal`; `None` for a node of another
+    /// facet.
     fn aside(&self, node: u32, normal: [f64; 3]) -> Option<[f64; 3]> {
         let from = self.nodes.iter().position(|&n| n == node)?;
         let offset = advance(self.middle(), -1.0, self.at[from]);
         Some(advance(offset, -dot(offset, normal), normal))
     }
 
-    /// The edges of a face at its corner `node`, across `normal`.
+    /// The edges of a face at its corner `node`, projected perpendicular to `normal`.
     fn wedge(&self, node: u32, normal: [f64; 3]) -> Option<[[f64; 3]; 2]> {
         let corner = self.nodes.iter().position(|&n| n == node)?;
         if self.kind.dim() < 2 || corner >= self.kind.corners() {
@@ -163,8 +164,8 @@ impl SurfaceFacet {
         Some([edge(edges.first()?), edge(edges.get(1)?)])
     }
 
-    /// True if this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`,
-    /// lie opposite each other and not beside each other.
+    /// True if this facet at node `a` and `other` at node `b`, which lies on the `normal` of `a`, are opposite each
+    /// other and not side by side.
     pub fn is_opposite(&self, a: u32, other: &Self, b: u32, normal: [f64; 3]) -> bool {
         match (self.aside(a, normal), other.aside(b, normal)) {
             (Some(own), Some(others)) => {
@@ -181,14 +182,14 @@ impl SurfaceFacet {
     }
 }
 
-/// True if a direction lies in the wedge between two edges that holds `inside`, all of them in one plane.
+/// True if a direction lies in the wedge between two edges that contains `inside`, all of them in one plane.
 fn is_between([first, second]: [[f64; 3]; 2], inside: [f64; 3], direction: [f64; 3]) -> bool {
     let beside = |edge| dot(cross(edge, inside), cross(edge, direction)) >= 0.0;
     beside(first) && beside(second)
 }
 
 fn integrate(kind: ElementKind, integrand: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
-    // The length of a curved facet isn't a polynomial.
+    // The measure of a curved facet isn't the integral of a polynomial.
     let rule = kind.quadrature(if kind.is_linear() { 2 } else { CURVED_DEGREE });
     let points = rule.into_iter();
     points.fold([0.0; 3], |sum, (xi, w)| advance(sum, w, integrand(xi)))

@@ -1,4 +1,4 @@
-//! The sides of contacts, ties and cuts that a scene tells by their groups.
+//! The sides of contacts, ties and cuts declared by their groups in a scene.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::scene::contact::Declaration;
 use crate::scene::tie::Tie;
 
-/// The sides of contacts that are told by their sides.
+/// The sides of contacts declared by groups.
 pub(super) struct Explicit {
     of_facet: HashMap<CellFacet, BTreeSet<(usize, usize)>>,
 }
@@ -26,7 +26,7 @@ impl Explicit {
         let ties = scene.tie.iter().map(Tie::contact);
         for (number, contact) in contacts.chain(ties).enumerate() {
             for (side, names) in contact.sides().enumerate() {
-                // Faults of a group are reported where the contact is made.
+                // Invalid groups are reported when the contact is built.
                 for facet in groups::facets(mesh, names, "").unwrap_or_default() {
                     for place in topology.cells_at(mesh.facets.nodes_of(facet as usize)) {
                         of_facet.entry(place).or_default().insert((number, side));

@@ -9,7 +9,7 @@ use crate::error::InputError;
 use crate::magnitude::short;
 use crate::scene::contact::Between;
 
-/// A node and its place (m).
+/// A node and its position (m).
 type Leaf = GeomWithData<[f64; 3], u32>;
 
 /// The error that no facets touch, with the smallest distance.
@@ -50,7 +50,7 @@ pub(super) fn apart(
     ))
 }
 
-/// The two bodies with the nearest nodes, in words, and how far these are apart (m); `None` within one body.
+/// The two bodies with the nearest nodes, in words, and the distance of these (m); `None` within one body.
 fn nearest_nodes(skin: &Skin, names: &[&str], between: &Between) -> Option<(String, f64)> {
     let mut of_body: Vec<Vec<Leaf>> = vec![Vec::new(); names.len()];
     for facet in &skin.facets {

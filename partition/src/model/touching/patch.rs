@@ -1,4 +1,4 @@
-//! Pairs of facets that go on side by side, as the two sides of a contact.
+//! Adjacent pairs of facets, combined to the two sides of a contact.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -7,10 +7,10 @@ use super::super::surface::Surface;
 use crate::element::geometry::advance;
 use crate::mesh::bounding_box::BoundingBox;
 
-/// The facets of one side that are smaller than this part of the other's are finer.
+/// Ratio of the facets' size to that of the other side below which a side is finer.
 const FINER: f64 = 0.6;
 
-/// Components of the sum of all normals, relative to the size of a side, and differences of places, relative to the
+/// Components of the sum of all normals, relative to the size of a side, and differences of positions, relative to the
 /// extent of the bodies, that are round-off.
 const SAME: f64 = 1e-6;
 
@@ -20,21 +20,21 @@ pub(super) struct Patch {
     pub bodies: [u32; 2],
     /// Facets, ascending.
     pub sides: [Vec<usize>; 2],
-    /// Length or area of what they have in common.
+    /// Length or area of their overlap.
     pub measure: f64,
-    /// The least and the largest gap in the middle of facets (m).
+    /// The smallest and the largest gap at the centres of facets (m).
     pub gaps: [f64; 2],
 }
 
 impl Patch {
-    /// The bodies in their order, whichever has side a.
+    /// The bodies in ascending order, whichever has side a.
     pub fn pair(&self) -> [u32; 2] {
         let [a, b] = self.bodies;
         [a.min(b), a.max(b)]
     }
 }
 
-/// The pairs of facets beside a pair: one or both of its facets replaced by a neighbour.
+/// The pairs of facets adjacent to a pair: one or both of its facets replaced by a neighbour.
 pub(super) fn beside(
     neighbours: &[Vec<usize>],
     [a, b]: [usize; 2],
@@ -43,8 +43,8 @@ pub(super) fn beside(
     around(a).flat_map(move |first| around(b).map(move |second| [first, second]))
 }
 
-/// The sides of all contacts between pairs of facets, in an order that doesn't depend on how nodes and cells are
-/// numbered: by bodies, then by place.
+/// The sides of all contacts between pairs of facets, in an order that doesn't depend on the numbering of nodes and
+/// cells: by bodies, then by position.
 pub(super) fn patches(skin: &Skin, neighbours: &[Vec<usize>], pairs: &[Facing]) -> Vec<Patch> {
     let number: HashMap<[usize; 2], usize> = (pairs.iter().enumerate())
         .map(|(index, pair)| (pair.facets, index))
@@ -83,7 +83,7 @@ pub(super) fn patches(skin: &Skin, neighbours: &[Vec<usize>], pairs: &[Facing]) 
     patches
 }
 
-/// Facets of the two sides of a contact so far.
+/// Facets of the two sides of a growing contact.
 #[derive(Default)]
 struct Sides {
     facets: [BTreeSet<usize>; 2],
@@ -101,9 +101,9 @@ impl Sides {
         self.gaps = Some([least.min(pair.gap), most.max(pair.gap)]);
     }
 
-    /// The patch, its side a that of the body whose name comes first, within one body that which looks up or right;
-    /// the other one where sides are curved and that has much finer facets. `None` where the sides can't part, as each
-    /// node is on both.
+    /// The patch. Side a, the slave side, is that of the body whose name comes first, within one body the side that
+    /// faces up or right; on curved sides it is the other one if that has a much coarser mesh. `None` where the sides
+    /// can't open, as they have the same nodes.
     fn oriented(self, skin: &Skin) -> Option<Patch> {
         let mut sides = self.facets.map(|side| side.into_iter().collect::<Vec<_>>());
         let nodes = |side: &[usize]| -> HashSet<u32> {
@@ -141,7 +141,7 @@ impl Sides {
     }
 }
 
-/// True if a side looks down, left or to the back: by the last component of its normals' sum that isn't round-off.
+/// True if a side faces down, left or to the back: by the last component of its normals' sum that isn't round-off.
 fn looks_down(skin: &Skin, side: &[usize]) -> bool {
     let facets = || side.iter().map(|&facet| &skin.facets[facet].shape);
     let measure: f64 = facets().map(|facet| facet.measure).sum();

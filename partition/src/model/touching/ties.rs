@@ -1,4 +1,4 @@
-//! Bodies that are tied to each other, as they share the nodes of facets.
+//! Bodies bonded to each other by common nodes of facets.
 
 use std::collections::BTreeMap;
 
@@ -6,17 +6,17 @@ use crate::mesh::topology::Topology;
 use crate::model::bodies::Bodies;
 use crate::scene::contact::Between;
 
-/// Number of facets of which two bodies share the nodes, by the numbers of the bodies, the smaller first.
+/// Number of facets whose nodes two bodies share, by the numbers of the bodies, the smaller first.
 pub(super) struct Ties(BTreeMap<[u32; 2], usize>);
 
 impl Ties {
-    /// The ties between all bodies. O(cells).
+    /// The bonds between all bodies. O(cells).
     pub(super) fn new(bodies: &Bodies, topology: &Topology) -> Self {
         let mut ties = BTreeMap::new();
         for (cell, &body) in bodies.cell_body.iter().enumerate() {
             for &other in topology.neighbours(cell) {
                 let other = bodies.cell_body[other as usize];
-                // Each pair of cells is seen from both sides.
+                // Each pair of cells occurs twice, once from each side.
                 if body < other {
                     *ties.entry([body, other]).or_default() += 1;
                 }
@@ -25,7 +25,7 @@ impl Ties {
         Self(ties)
     }
 
-    /// The bodies between which contacts are wanted and that are tied, in words.
+    /// The bonded bodies among those between which contacts are requested, in words.
     pub(super) fn of(&self, between: &Between, names: &[&str]) -> Option<String> {
         let name = |body: u32| names[body as usize];
         let wanted = |[a, b]: [u32; 2]| between.bodies.has(name(a), name(b));

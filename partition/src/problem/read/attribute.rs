@@ -1,4 +1,4 @@
-//! An attribute with its name: reads one value, and names it in errors.
+//! Attributes: reads one value, and names it in errors.
 
 use hdf5::types::TypeDescriptor;
 use toml::Value;
@@ -6,10 +6,10 @@ use toml::Value;
 use crate::error::InputError;
 use crate::problem::strings::read_strings;
 
-/// Reads the attribute `name` of a group: a text, an integer, a number or a truth value.
+/// Reads the attribute `name` of a group: a text, an integer, a number or a Boolean.
 ///
 /// # Errors
-/// It is missing, or none of these.
+/// A missing attribute, or one of another type.
 pub(super) fn read(group: &hdf5::Group, name: &str) -> Result<Value, InputError> {
     let refused = |what: &str| {
         let place = group.name();

@@ -1,4 +1,4 @@
-//! The catalog: what every rank reads.
+//! The catalog, read by every rank.
 
 use std::collections::HashMap;
 
@@ -78,8 +78,8 @@ fn read_interface(contents: &Contents) -> Result<Vec<Vec<u32>>, InputError> {
     Ok(interface)
 }
 
-/// Every number on Γ occurs, in two or more subdomains, all of one body; the subdomains of a body
-/// hang together through Γ. Returns how many numbers there are.
+/// Checks that every number on Γ occurs, in two or more subdomains, all of one body, and that the subdomains of a body
+/// are connected through Γ. Returns the number of nodes on Γ.
 fn check_interface(
     interface: &[Vec<u32>],
     subdomains: &[SubdomainSummary],
@@ -160,7 +160,7 @@ fn read_subdomains(
     Ok(rows.map(summary).collect())
 }
 
-/// Each number below `count` is among the `named` ones.
+/// Checks that each number below `count` is among the `named` ones.
 fn check_each_occurs(
     path: &str,
     what: &str,
@@ -179,7 +179,7 @@ fn check_each_occurs(
     }
 }
 
-/// Names of the conditions that prescribe displacements; one for all where the file doesn't tell.
+/// Names of the boundary conditions that prescribe displacements; a single one for all if the file has none.
 fn read_support_names(contents: &Contents) -> Result<Vec<String>, InputError> {
     match contents.has("/support/name") {
         true => contents.strings("/support/name"),
@@ -212,7 +212,7 @@ fn read_steps(contents: &Contents) -> Result<Vec<LoadStep>, InputError> {
         .collect())
 }
 
-/// The absent ones of what a letter counts, load step by load step; none where the file doesn't say.
+/// The absent items of the kind counted by a letter, load step by load step; empty if the file has none.
 fn read_absent(contents: &Contents, path: &str, letter: char) -> Result<Vec<Vec<u32>>, InputError> {
     let is_there = contents.all_integers(path)?;
     let of_step = |of_step: &[i64]| {

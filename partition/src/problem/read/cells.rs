@@ -1,4 +1,4 @@
-//! The cells of a subdomain, checked one by one and between each other.
+//! The cells of a subdomain, checked individually and against each other.
 
 use super::ProblemFile;
 use super::slice::NODE;
@@ -9,10 +9,10 @@ use crate::magnitude::SMALLEST_AREA;
 use crate::mesh::facets::Facets;
 
 impl ProblemFile {
-    /// The cells of the subdomain with this index, on its `points`, the last of which are those of reference nodes.
+    /// The cells of the subdomain with this index, on its `points`, the last of which are reference nodes.
     ///
     /// # Errors
-    /// A cell that is degenerate, overlaps another one or lacks nodes, or a point that no cell has.
+    /// A cell that is degenerate, overlaps another one or has too few nodes, or a point without cells.
     pub(super) fn take_cells(
         &self,
         slices: &Slices,
@@ -23,7 +23,7 @@ impl ProblemFile {
         let entries = self.contents.rows('K', index);
         let (types, connectivity) = (&slices.types, &slices.connectivity);
         let nodes = connectivity.indices(entries.clone(), NODE, points.len())?;
-        // Each of the subdomains before this one has an offset more than cells.
+        // Each subdomain before this one has one offset more than cells.
         let first = rows.start + index;
         let offsets = slices.offsets.of(first..first + rows.len() + 1);
         let mut elements = Elements::default();
@@ -71,10 +71,10 @@ impl ProblemFile {
         Ok(elements)
     }
 
-    /// The check that all points are `used` by cells, but for those of reference nodes, which are the last.
+    /// Checks that all points are `used` by cells, except the last ones, the reference nodes.
     ///
     /// # Errors
-    /// A point that no cell has, or one of a reference node that a cell has.
+    /// A point without cells, or a reference node with one.
     fn check_used(
         &self,
         slices: &Slices,
@@ -96,7 +96,7 @@ impl ProblemFile {
     }
 }
 
-/// The fault of a cell, and its node.
+/// The error of a cell, and its node.
 fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Option<(usize, String)> {
     if let Some(twice) = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i])) {
         return Some((twice, "has the node twice".into()));
@@ -117,7 +117,7 @@ fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Optio
     Some((fold.node, what))
 }
 
-/// Two cells that can't stand side by side, and why.
+/// Two incompatible cells, and the reason.
 fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'static str)> {
     if Facets::repeat_themselves(cells, points)
         && let Some(two) = Facets::new(cells, points).overlap(cells)

@@ -13,21 +13,21 @@ use crate::name;
 use crate::problem::schema::{self, Counts, FIELDS, FREE, Field, Kind, MAY_BE_EMPTY, TOGETHER};
 use crate::scene::suggest::nearest;
 
-/// The datasets of a file, each of the type and shape that the schema says.
+/// The datasets of a file, each with the type and shape of the schema.
 #[derive(Debug)]
 pub(super) struct Contents {
     datasets: BTreeMap<&'static str, Dataset>,
     counts: Counts,
-    /// Offsets of the slices of what a letter counts, for every letter whose offsets or
-    /// sizes the schema has; all are empty in a group that is.
+    /// Offsets of the slices of the items that a letter counts, for every letter whose offsets or sizes the schema has;
+    /// all are empty in an empty group.
     offsets: BTreeMap<char, Vec<usize>>,
 }
 
 impl Contents {
-    /// Opens all datasets of a file in `dim` dimensions, those of the plane in this state.
+    /// Opens all datasets of a file in `dim` dimensions, for a plane mesh with this plane state.
     ///
     /// # Errors
-    /// The first name that isn't known, or the dataset that is missing or not as it should be.
+    /// The first unknown name, or the dataset that is missing or invalid.
     pub fn open(
         file: &hdf5::File,
         dim: usize,
@@ -68,7 +68,7 @@ impl Contents {
         Ok(contents)
     }
 
-    /// Checks that all of some datasets are there, or none.
+    /// Checks that either all of some datasets exist, or none.
     fn check_together(&self, paths: &[&str]) -> Result<(), InputError> {
         let missing = paths.iter().find(|path| !self.has(path));
         match missing.filter(|_| paths.iter().any(|path| self.has(path))) {
@@ -90,18 +90,18 @@ impl Contents {
         }
     }
 
-    /// The rows of slice `index` of what a letter counts.
+    /// The rows of slice `index` of the items that a letter counts.
     pub fn rows(&self, letter: char, index: usize) -> Range<usize> {
         self.rows_of(letter, index..index + 1)
     }
 
-    /// The rows of consecutive slices of what a letter counts.
+    /// The rows of consecutive slices of the items that a letter counts.
     pub fn rows_of(&self, letter: char, slices: Range<usize>) -> Range<usize> {
         let offsets = &self.offsets[&letter];
         offsets[slices.start]..offsets[slices.end]
     }
 
-    /// Sizes of the slices of what a letter counts.
+    /// Sizes of the slices of the items that a letter counts.
     pub fn sizes(&self, letter: char) -> Vec<usize> {
         let ends = self.offsets[&letter].windows(2);
         ends.map(|w| w[1] - w[0]).collect()
@@ -112,7 +112,7 @@ impl Contents {
         self.datasets.contains_key(path)
     }
 
-    /// The count behind a letter.
+    /// The count of a letter.
     pub fn count(&self, letter: char) -> usize {
         self.counts.of(letter)
     }
@@ -120,7 +120,7 @@ impl Contents {
     /// Reads some rows of integers.
     ///
     /// # Errors
-    /// The row that isn't what the schema says.
+    /// The row that contradicts the schema.
     pub fn integers(&self, path: &str, rows: Range<usize>) -> Result<Slice<i64>, InputError> {
         let Some(dataset) = self.datasets.get(path) else {
             return Ok(Slice::new("", 0, 1, Vec::new()));
@@ -134,10 +134,10 @@ impl Contents {
         Ok(slice)
     }
 
-    /// Reads all integers of a dataset of one dimension.
+    /// Reads all integers of a one-dimensional dataset.
     ///
     /// # Errors
-    /// As [`Contents::integers`].
+    /// Those of [`Contents::integers`].
     pub fn all_integers(&self, path: &str) -> Result<Slice<i64>, InputError> {
         let rows = self.datasets.get(path).map_or(0, Dataset::rows);
         self.integers(path, 0..rows)
@@ -146,7 +146,7 @@ impl Contents {
     /// Reads some rows of numbers.
     ///
     /// # Errors
-    /// The row that isn't what the schema says.
+    /// The row that contradicts the schema.
     pub fn numbers(&self, path: &str, rows: Range<usize>) -> Result<Slice<f64>, InputError> {
         let Some(dataset) = self.datasets.get(path) else {
             return Ok(Slice::new("", 0, 1, Vec::new()));
@@ -159,7 +159,7 @@ impl Contents {
     /// Reads all strings.
     ///
     /// # Errors
-    /// The row that isn't what the schema says.
+    /// The row that contradicts the schema.
     pub fn strings(&self, path: &str) -> Result<Vec<String>, InputError> {
         let Some(dataset) = self.datasets.get(path) else {
             return Ok(Vec::new());
@@ -201,11 +201,11 @@ fn is_empty(file: &hdf5::File, group: &str) -> bool {
     MAY_BE_EMPTY.contains(&group) && (!file.link_exists(group) || nothing())
 }
 
-/// Checks that the file holds nothing but what the schema knows: another name was meant to be one
-/// of these. No link leads out of the file.
+/// Checks that the file has only names of the schema, as another name is probably a misspelt one, and no links out of
+/// the file.
 fn check_names(file: &hdf5::File) -> Result<(), InputError> {
     for path in schema::groups() {
-        // An entry that isn't a group is reported where its datasets are opened.
+        // An entry that isn't a group is reported when its datasets are opened.
         let Ok(group) = file.group(path) else {
             continue;
         };

@@ -1,4 +1,4 @@
-//! A dataset of the schema: opened, and compared with it.
+//! A dataset of the schema: opens it and checks its type and shape.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::error::InputError;
 use crate::problem::schema::{Counts, Field};
 use crate::problem::strings::read_strings;
 
-/// The best compression that HDF5's deflate reaches; a dataset that declares more isn't there.
+/// The largest compression ratio of HDF5's deflate; a dataset that declares more data than that isn't fully stored.
 const LARGEST_RATIO: u64 = 1100;
 
 /// An open dataset.
@@ -22,8 +22,8 @@ pub(super) struct Dataset {
 }
 
 impl Dataset {
-    /// Opens a dataset and checks that its data are in the file, of the type and shape of the
-    /// schema. What letters of its shape count is learnt where nothing has said it before.
+    /// Opens a dataset and checks that the file contains its data, with the type and shape of the schema. Unknown
+    /// counts of letters in its shape are set from it.
     pub fn open(
         file: &hdf5::File,
         field: &'static Field,
@@ -82,7 +82,7 @@ impl Dataset {
         read_strings(&self.inner).map_err(|reason| self.error(&reason))
     }
 
-    /// An empty list has no type in h5py.
+    /// Checks the type; an empty list has none in h5py.
     fn check_type(&self) -> Result<(), InputError> {
         use TypeDescriptor::{
             FixedAscii, FixedUnicode, Float, Integer, Unsigned, VarLenAscii, VarLenUnicode,
@@ -103,7 +103,7 @@ impl Dataset {
         }
     }
 
-    /// No other file is read than the one that was named.
+    /// Checks that the data are in this file, as no other file is to be read.
     fn check_layout(&self) -> Result<(), InputError> {
         let creation = self.inner.dcpl();
         let creation =
@@ -118,7 +118,7 @@ impl Dataset {
         }
     }
 
-    /// No allocation may follow a shape that the file doesn't fill.
+    /// Checks that the data have the declared size, so that no allocation exceeds the file's content.
     fn check_storage(&self, file_size: u64) -> Result<(), InputError> {
         let element = self.inner.dtype().map_or(0, |dtype| dtype.size());
         let declared = (self.shape.iter()).try_fold(element as u64, |size, &extent| {

@@ -1,4 +1,4 @@
-//! Nodes with weights: the entries of contact points and of probes.
+//! Weighted nodes: the entries of contact points and of probes.
 
 use super::contents::Contents;
 use super::slice::Slice;
@@ -14,7 +14,7 @@ pub(super) struct Entries<'a> {
 }
 
 impl<'a> Entries<'a> {
-    /// Reads the entries of a `group`, which a `letter` counts.
+    /// Reads the entries of a `group`, counted by a `letter`.
     pub fn read(
         contents: &Contents,
         group: &str,
@@ -30,7 +30,7 @@ impl<'a> Entries<'a> {
         })
     }
 
-    /// The subdomain of an entry, of which it was checked when it was read that there is one.
+    /// The subdomain of an entry, checked when it was read.
     pub fn owner(&self, at: usize) -> u32 {
         self.subdomain.all()[at] as u32
     }

@@ -1,4 +1,4 @@
-//! Quantities, parameters, and the parts of nodes in them.
+//! Quantities, parameters, and the nodal weights and forces of these.
 
 use std::ops::Range;
 
@@ -82,7 +82,7 @@ pub(super) fn parameters(contents: &Contents) -> Result<Vec<Parameter>, InputErr
     names.into_iter().enumerate().map(parameter).collect()
 }
 
-/// Some rows of numbers: one of what each letter counts, or a list of what the first one does.
+/// The numbers in some rows: one for each letter, or a list for the first letter.
 fn numbers(
     contents: &Contents,
     of: &Slice<i64>,
@@ -100,7 +100,7 @@ fn numbers(
     rows.enumerate().map(number).collect()
 }
 
-/// The parts of nodes, of consecutive subdomains.
+/// The nodal weights and forces of consecutive subdomains.
 pub(super) struct ShareSlices {
     quantities: Slice<i64>,
     weighted: Slice<i64>,
@@ -124,7 +124,7 @@ impl ShareSlices {
         })
     }
 
-    /// The rows of a subdomain of so many `nodes`, in space of `dim` dimensions.
+    /// The rows of a subdomain with a number of `nodes`, in `dim` dimensions.
     pub fn take(
         &self,
         contents: &Contents,

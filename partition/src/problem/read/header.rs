@@ -18,8 +18,8 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Checks that a file is a problem file of the version that is read here, and reads its other
-    /// attributes; a title and units may be absent.
+    /// Checks that a file is a problem file of the supported version, and reads its other attributes; a title and units
+    /// are optional.
     pub fn read(file: &hdf5::File) -> Result<Self, InputError> {
         check_format(file)?;
         let is_there = attribute::is_there(file, "dimension");
@@ -62,7 +62,7 @@ impl Header {
     }
 }
 
-/// The text of an attribute; `otherwise` where there is none.
+/// The text of an attribute, or `otherwise` if it is missing.
 fn text(file: &hdf5::File, name: &str, otherwise: &str) -> Result<String, InputError> {
     if !attribute::is_there(file, name) {
         return Ok(otherwise.into());

@@ -53,7 +53,7 @@ fn read_parents(rows: &Slice<i64>, subdomains: usize) -> Result<Vec<Option<u32>>
     }
 }
 
-/// Every subdomain is a cluster or under exactly one, where there are any.
+/// Reads the clusters and checks that every subdomain is a cluster or under exactly one, if there are any.
 fn read_clusters(
     rows: &Slice<i64>,
     parents: &[Option<u32>],
@@ -78,9 +78,9 @@ fn read_clusters(
     }
 }
 
-/// Blocks that share a node of Γ are under one root, or no front could eliminate it.
+/// Checks that blocks with a common node of Γ have a common root, as otherwise no front could eliminate the node.
 fn check_roots(hierarchy: &Hierarchy, catalog: &Catalog) -> Result<(), InputError> {
-    // The members of a group are one block even where that is a root itself.
+    // The members of a group have to be under one root, even where a member is a root itself.
     let mut root: Vec<usize> = (0..hierarchy.parent.len()).collect();
     let mut first = vec![None; catalog.groups.len()];
     for (row, subdomain) in catalog.subdomains.iter().enumerate() {

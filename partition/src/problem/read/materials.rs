@@ -51,7 +51,7 @@ pub(super) fn read(
         .collect()
 }
 
-/// The row that gives σ_zz, if it is known.
+/// The row of C for σ_zz, if known.
 fn out_of_plane(planes: &Slice<f64>, m: usize) -> Result<Option<[f64; 3]>, InputError> {
     match *planes.of(m..m + 1) {
         [x, y, z] if x.is_nan() && y.is_nan() && z.is_nan() => Ok(None),
@@ -63,7 +63,7 @@ fn out_of_plane(planes: &Slice<f64>, m: usize) -> Result<Option<[f64; 3]>, Input
     }
 }
 
-/// Poisson's ratio, if it is known.
+/// Poisson's ratio, if known.
 fn poisson(ratios: &Slice<f64>, m: usize) -> Result<Option<f64>, InputError> {
     match ratios.of(m..m + 1)[0] {
         ratio if ratio.is_nan() => Ok(None),

@@ -10,10 +10,10 @@ use crate::error::InputError;
 use crate::problem::law::LawRow;
 use crate::problem::{PointNode, SubdomainNode, SubdomainSummary};
 
-/// Error of the length of a unit vector.
+/// Largest deviation of a unit vector's length from 1.
 const UNIT: f64 = 1e-9;
 
-/// Reads all contact points, and what the file says of their nodes.
+/// Reads all contact points, and the data of their nodes.
 #[allow(clippy::type_complexity)]
 pub(super) fn read(
     contents: &Contents,
@@ -39,7 +39,7 @@ pub(super) fn read(
     let mut axes = read_axes(contents, &laws)?;
     let stiffness = read_stiffness(contents, &laws, &axes)?;
     let point = |(i, entries): (usize, _)| ContactPoint {
-        // Checked when the file was opened: an index of a contact, and one of its places.
+        // Checked when the file was opened: the index of a contact, and that of a point in it.
         contact: contact.all()[i] as u32,
         place: place.all()[i] as u32,
         gap: gap.all()[i],
@@ -59,7 +59,7 @@ pub(super) fn read(
     Ok((points, nodes))
 }
 
-/// The law of every point; none has friction where the file says nothing of it.
+/// The law of every point; frictionless by default.
 fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
     let rows = 0..contents.count('R');
     if !contents.has("/contact/law") {
@@ -80,7 +80,7 @@ fn read_laws(contents: &Contents) -> Result<Vec<Law>, InputError> {
     rows.map(of_row).collect()
 }
 
-/// Motion of the obstacle of every point in all load steps; none where it never moves.
+/// Motion of the obstacle of every point in all load steps; empty if none moves.
 fn read_motion(contents: &Contents) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
     let rows = contents.count('R');
     if !contents.has("/contact/motion") {
@@ -98,7 +98,7 @@ fn read_motion(contents: &Contents) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
     Ok(all.all().chunks_exact(steps * dim).map(of_point).collect())
 }
 
-/// The force that is given at every point in all load steps; none where there is no pretension.
+/// The given force at every point in all load steps; empty without pretensions.
 fn read_preload(contents: &Contents) -> Result<Vec<Vec<f64>>, InputError> {
     let rows = contents.count('R');
     if !contents.has("/contact/preload") {
@@ -113,7 +113,7 @@ fn read_preload(contents: &Contents) -> Result<Vec<Vec<f64>>, InputError> {
     Ok(all.all().chunks_exact(steps).map(of_point).collect())
 }
 
-/// The stiffness between the sides at every point; none gives way where the file says nothing of it.
+/// The contact stiffness at every point; rigid by default.
 fn read_stiffness(
     contents: &Contents,
     laws: &[Law],
@@ -139,7 +139,7 @@ fn read_stiffness(
     Ok(rows.to_vec())
 }
 
-/// The directions of the entries of every point; of an equation alone there are any.
+/// The directions of the entries of every point; only equations have any.
 fn read_axes(contents: &Contents, laws: &[Law]) -> Result<Vec<Vec<[f64; 3]>>, InputError> {
     if !contents.has("/contact/entry_axis") {
         return Ok(vec![Vec::new(); laws.len()]);
@@ -196,7 +196,8 @@ fn read_entries(
     Ok(entries)
 }
 
-/// The nodes of the points in the datasets of Γ and of supports, whose faults are found when subdomains are read.
+/// The nodes of the points, with data from the datasets of Γ and of supports, whose errors are found when subdomains
+/// are read.
 fn read_nodes(
     contents: &Contents,
     points: &[ContactPoint<SubdomainNode>],

@@ -6,7 +6,7 @@ use crate::contact_point::Probe;
 use crate::error::InputError;
 use crate::problem::{SubdomainNode, SubdomainSummary};
 
-/// Round-off of weights.
+/// Tolerance of weights.
 const WEIGHT: f64 = 1e-6;
 
 /// Reads all probes.

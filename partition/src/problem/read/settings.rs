@@ -1,5 +1,4 @@
-//! Settings of the solver: the attributes of `/settings`, which are what `[solver]` of a
-//! scene may hold.
+//! Settings of the solver: the attributes of `/settings`, with the keys of `[solver]` in a scene.
 
 use toml::{Table, Value};
 
@@ -9,7 +8,7 @@ use crate::name;
 use crate::problem::schema;
 use crate::solver::SolverSettings;
 
-/// Reads and checks `/settings`; a file may have none.
+/// Reads and checks `/settings`, which is optional.
 pub(super) fn read(file: &hdf5::File) -> Result<SolverSettings, InputError> {
     if !file.link_exists("settings") {
         return Ok(SolverSettings::default());
@@ -29,7 +28,7 @@ pub(super) fn read(file: &hdf5::File) -> Result<SolverSettings, InputError> {
             continue;
         }
         let value = match attribute::read(&group, name)? {
-            // Not every language writes truth values as such.
+            // Some languages have no Boolean type.
             Value::Integer(bit @ 0..=1) if *name == "no_stress" => Value::Boolean(bit == 1),
             value => value,
         };

@@ -1,4 +1,4 @@
-//! Consecutive rows of a dataset in memory, and the laws that their values keep.
+//! Consecutive rows of a dataset in memory, and checks of their values.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub(super) struct Slice<T> {
     values: Vec<T>,
 }
 
-/// The number of one of `count` things.
+/// A valid index of one of `count` items.
 fn index(value: i64, what: &str, count: usize) -> Result<u32, String> {
     let index = u32::try_from(value).ok();
     let index = index.filter(|&index| (index as usize) < count);
@@ -56,7 +56,7 @@ impl<T> Slice<T> {
         InputError::new(format!("dataset {}, row {row}: {what}", self.name))
     }
 
-    /// Checks one value after the other; an error of `law` is the expectation.
+    /// Checks the values one by one; an error of `law` is the expectation.
     fn check(&self, law: impl Fn(&T) -> Result<(), String>) -> Result<(), InputError> {
         let mut values = self.values.iter().enumerate();
         let wrong = values.find_map(|(at, value)| Some((at, law(value).err()?)));
@@ -67,12 +67,12 @@ impl<T> Slice<T> {
 }
 
 impl Slice<i64> {
-    /// Checks that all values are numbers of one of `count` things.
+    /// Checks that all values are indices below `count`.
     pub fn check_indices(&self, what: &str, count: usize) -> Result<(), InputError> {
         self.check(|&value| index(value, what, count).map(|_| ()))
     }
 
-    /// The values of some of the rows as numbers of one of `count` things.
+    /// The values of some of the rows as indices below `count`.
     pub fn indices(
         &self,
         rows: Range<usize>,
@@ -84,7 +84,7 @@ impl Slice<i64> {
         values.map(index).collect()
     }
 
-    /// The values as offsets that rise from 0 to `end`.
+    /// The values as offsets that ascend from 0 to `end`.
     pub fn offsets(&self, end: usize) -> Result<Vec<usize>, InputError> {
         let last = self.values.len().saturating_sub(1);
         let mut offsets = vec![0; self.values.len()];
@@ -108,7 +108,7 @@ impl Slice<i64> {
         }
     }
 
-    /// Offsets of what the values count; they are positive, their sum is `total`.
+    /// Offsets from the values as counts, which are positive and add up to `total`.
     pub fn running_sum(&self, total: usize, what: &str) -> Result<Vec<usize>, InputError> {
         let mut sums = vec![0];
         let mut sum = 0;
@@ -129,7 +129,7 @@ impl Slice<i64> {
 }
 
 impl Slice<f64> {
-    /// Checks what `kind` says of every value.
+    /// Checks the condition of `kind` for every value.
     pub fn check_numbers(&self, kind: Kind) -> Result<(), InputError> {
         self.check(|&value| match kind {
             Kind::NumbersOrNan if value.is_nan() => Ok(()),

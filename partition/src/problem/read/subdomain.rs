@@ -11,7 +11,7 @@ use crate::error::InputError;
 use crate::model::{PlaneState, Support};
 use crate::problem::{InitialStress, InterfaceNode, StepLoads, Subdomain, UNIT_TOLERANCE};
 
-/// The datasets of consecutive subdomains, each value by itself as the schema says.
+/// The datasets of consecutive subdomains, with each value valid by the schema.
 pub(super) struct Slices {
     pub(super) points: Slice<f64>,
     pub(super) tags: Slice<i64>,
@@ -23,14 +23,14 @@ pub(super) struct Slices {
     pub(super) support_nodes: Slice<i64>,
     pub(super) support_directions: Slice<f64>,
     pub(super) support_values: Slice<f64>,
-    /// Absent from files that don't tell conditions apart.
+    /// `None` for files without names of boundary conditions.
     pub(super) support_conditions: Option<Slice<i64>>,
     pub(super) spring_nodes: Slice<i64>,
     pub(super) spring_stiffness: Slice<f64>,
     pub(super) spring_conditions: Slice<i64>,
     pub(super) force_nodes: Slice<i64>,
     pub(super) force_values: Slice<f64>,
-    /// Absent where no cell has any.
+    /// Empty if no cell has initial stress.
     pub(super) stress_of_cells: Slice<f64>,
     pub(super) stress_of_nodes: Slice<f64>,
     shares: ShareSlices,
@@ -41,7 +41,7 @@ impl Slices {
         let contents = &file.contents;
         let rows = |letter| contents.rows_of(letter, subdomains.clone());
         let [points, cells, supports, forces] = ['P', 'C', 'S', 'F'].map(rows);
-        // Each of the subdomains before has an offset more than cells.
+        // Each subdomain before has one offset more than cells.
         let ends = cells.start + subdomains.start..cells.end + subdomains.end;
         let conditions = contents.has("/support/condition");
         let conditions =
@@ -120,7 +120,7 @@ impl ProblemFile {
         Ok(subdomain)
     }
 
-    /// The number of the last of so many points that no cell has.
+    /// The number of reference nodes, which are the last points and belong to no cell.
     fn reference_nodes(&self, index: usize, points: usize) -> Result<usize, InputError> {
         if !self.contents.has("/subdomains/reference") {
             return Ok(0);
@@ -149,7 +149,7 @@ impl ProblemFile {
         (0..steps).map(of_step).collect()
     }
 
-    /// The initial stress in load step k, the first where there are none.
+    /// The initial stress in load step k, the first one without load steps.
     fn take_stress(&self, slices: &Slices, index: usize, k: usize) -> InitialStress {
         if !self.contents.has("/initial_stress/cell") {
             return InitialStress::default();
@@ -198,7 +198,7 @@ impl ProblemFile {
         let (node, direction) = (&slices.support_nodes, &slices.support_directions);
         let nodes_of = node.indices(rows.clone(), NODE, nodes)?;
         let directions = direction.vectors(rows.clone());
-        // The first step's, where there are steps.
+        // The values of the first step.
         let values = slices.support_values.of(rows.clone());
         let values = values.iter().step_by(self.catalog.steps.len().max(1));
         let conditions = slices.support_conditions.as_ref();

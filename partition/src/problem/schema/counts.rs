@@ -1,11 +1,11 @@
-//! The counts behind the letters of shapes in a file.
+//! The counts of the letters of shapes in a file.
 
 use std::collections::BTreeMap;
 
 use super::{Field, noun};
 use crate::model::PlaneState;
 
-/// The counts behind letters.
+/// Counts by letter.
 #[derive(Clone, Debug, Default)]
 pub struct Counts(BTreeMap<char, usize>);
 
@@ -18,7 +18,7 @@ impl Counts {
         counts
     }
 
-    /// The number behind a letter; 0 where no dataset has it.
+    /// The count of a letter; 0 if no dataset has it.
     pub fn of(&self, letter: char) -> usize {
         self.0.get(&letter).copied().unwrap_or(0)
     }
@@ -28,17 +28,17 @@ impl Counts {
         self.0.insert(letter, count);
     }
 
-    /// The extents of a field's shape; a letter of which nothing is known counts nothing.
+    /// The extents of a field's shape; unknown letters count 0.
     pub fn shape(&self, field: &Field) -> Vec<usize> {
         let terms = self.terms(field).into_iter();
         terms.map(|term| self.sum(term).0).collect()
     }
 
-    /// Compares the extents of a field with its shape. Where one letter of an extent isn't known
-    /// yet, the extent says what it counts.
+    /// Compares the extents of a field with its shape. If one letter of an extent is unknown, its count is set from the
+    /// extent.
     ///
     /// # Errors
-    /// The shape that was expected.
+    /// The expected shape.
     pub fn learn(&mut self, field: &Field, found: &[usize]) -> Result<(), String> {
         let terms = self.terms(field);
         // h5py writes `data=[]` with shape (0,) whatever the width of a row.
@@ -62,7 +62,7 @@ impl Counts {
         }
     }
 
-    /// The extents that a field has: one with a question mark only if it isn't 0.
+    /// The extents of a field: one with a question mark only if it isn't 0.
     fn terms(&self, field: &Field) -> Vec<&'static str> {
         let terms = field.shape.split(", ");
         let present = terms.filter_map(|term| match term.strip_suffix('?') {
@@ -72,7 +72,7 @@ impl Counts {
         present.collect()
     }
 
-    /// The sum of an extent's known parts, and its letter of which nothing is known.
+    /// The sum of an extent's known parts, and its unknown letter.
     fn sum(&self, term: &str) -> (usize, Option<char>) {
         let (mut sum, mut unknown) = (0, None);
         for part in term.split(" + ") {

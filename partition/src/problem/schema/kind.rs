@@ -1,33 +1,33 @@
-//! Kinds of values of a dataset.
+//! Kinds of a dataset's values.
 
-/// Content of a dataset, and the law that each of its values keeps.
+/// Type of a dataset's values, and the condition on each of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Integers.
     Integers,
-    /// Numbers from 0 on of what a letter counts; the word says what in messages.
+    /// Indices, from 0, of the items that a letter counts; the word names them in messages.
     Indices(&'static str, char),
-    /// Numbers from 0 on of so many things, which the meaning lists; the word says what in messages.
+    /// Numbers, from 0, of a given number of cases, which the meaning lists; the word names them in messages.
     Codes(&'static str, usize),
-    /// Positive integers whose sum is what a letter counts.
+    /// Positive integers whose sum is the count of a letter.
     Sizes(char),
-    /// Integers that rise from 0 to what a letter counts.
+    /// Integers that ascend from 0 to the count of a letter.
     Offsets(char),
     /// Finite numbers.
     Numbers,
-    /// Finite numbers above 0.
+    /// Positive finite numbers.
     Positive,
-    /// Finite numbers from 0 on.
+    /// Nonnegative finite numbers.
     NotNegative,
-    /// Finite numbers, or NaN where one isn't known.
+    /// Finite numbers, or NaN for unknown ones.
     NumbersOrNan,
-    /// Finite numbers, of which each row is a unit vector.
+    /// Finite numbers whose rows are unit vectors.
     UnitVectors,
     /// Lines of text.
     Lines,
-    /// Names, one at least.
+    /// At least one name.
     Names,
-    /// Names of groups in the result file, each another one.
+    /// Names of groups in the result file, all different.
     GroupNames,
 }
 

@@ -1,6 +1,6 @@
 //! The letters of shapes.
 
-/// Letters of shapes, and the nouns that they count.
+/// Letters of shapes, and the nouns of the items that they count.
 pub const LETTERS: &[(char, &str)] = &[
     ('N', "subdomains"),
     (

@@ -1,10 +1,10 @@
-//! Random scenes in space with friction that end in a way of their own.
+//! Random scenes in space with friction and unusual results.
 
 use crate::support::solver::{LIMIT, built};
 use crate::support::stress::space::draw_frictional_in_space;
 use crate::support::stress::trial::{Trial, Verdict};
 
-/// The scene of a seed, solved alone and on so many ranks.
+/// The trial of a seed's scene on one rank and on `ranks` ranks.
 fn trial(seed: u64, ranks: usize) -> Trial {
     let mut drawn = draw_frictional_in_space(seed, 2);
     drawn.ranks = ranks;
@@ -21,7 +21,7 @@ fn an_answer_with_friction_in_space_is_the_same_on_any_ranks() {
     }
 }
 
-/// Points that would open where they stick or slip under all of their cohesion, and penetrate without any.
+/// Points that would open if they stuck or slipped with their whole cohesion, and would penetrate without cohesion.
 #[test]
 fn what_is_about_to_open_in_space_slips_under_a_part_of_its_cohesion() {
     for seed in [11, 46, 122] {
@@ -35,8 +35,8 @@ fn what_is_about_to_open_in_space_slips_under_a_part_of_its_cohesion() {
     }
 }
 
-/// Rigid blocks could be held: their pressures are a matter of choice, those of elastic ones aren't. What moves on and on
-/// comes to an obstacle in the end, where Lemke's path finds it.
+/// Rigid blocks could be held, as their pressures may be chosen; the pressures of elastic ones are determined. A
+/// sliding block arrives at an obstacle in the end, where Lemke's path finds it.
 #[test]
 fn a_block_in_space_that_slides_towards_an_obstacle_comes_to_rest_there() {
     for seed in [26, 82] {
@@ -46,7 +46,7 @@ fn a_block_in_space_that_slides_towards_an_obstacle_comes_to_rest_there() {
     }
 }
 
-/// Rigid blocks could be held, so that nothing proves that elastic ones slide.
+/// Rigid blocks could be held, so that there is no proof that elastic ones slide.
 #[test]
 fn a_block_in_space_that_friction_could_hold_is_not_said_to_slide() {
     for seed in [20032, 20039, 20067] {

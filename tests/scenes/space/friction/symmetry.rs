@@ -36,8 +36,8 @@ on = 'upper x1'
 value = [-5e5, 0.0, 0.0]
 ";
 
-/// Amount by which nodes are off: by nothing, or so little that normals leave the plane of symmetry, and nodes beside it
-/// have a part in the jumps of those on it, by a multiple of that.
+/// Perturbation of nodes: none, or so small that normals leave the plane of symmetry, and neighbouring nodes take part
+/// in the jumps at nodes on it, by a multiple of the perturbation.
 const OFF: [f64; 2] = [0.0, 3e-5];
 
 #[test]

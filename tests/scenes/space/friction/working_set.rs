@@ -1,4 +1,4 @@
-//! Many contact points with friction, most of which stay open and aren't solved for.
+//! Many contact points with friction, most of which stay open and are left out of the solution.
 
 use contact_dd_partition::element::ElementKind::Hexahedron8;
 
@@ -9,8 +9,8 @@ use crate::support::solids::solid;
 use crate::support::solution::{Solution, datasets};
 use crate::support::solver::Case;
 
-/// A block whose bottom is curved away from a plane, pressed onto it and then pushed along it by so much (Pa): springs at
-/// the top alone hold it without friction, and don't tip it.
+/// A block with a curved bottom, pressed onto a plane and then sheared by `push` (Pa): only springs at the top hold it
+/// without friction, and they don't rotate it.
 fn curved(push: f64) -> Case {
     let below = |x: f64| 2e-3 * (x - 0.2).powi(2);
     let curved = |[x, y, z]: [f64; 3]| {
@@ -43,7 +43,7 @@ fn curved(push: f64) -> Case {
     Case::of(&model(&text, mesh), 8)
 }
 
-/// The steps of a run, and the number of points that it solves for.
+/// The steps of a run, and the number of points included in the solution.
 fn run(case: &Case, ranks: usize, args: &[&str]) -> (Vec<Solution>, usize) {
     let ended = case.run_on(ranks, args);
     assert_eq!(ended.code(), 0, "{}", ended.stderr);
@@ -65,10 +65,11 @@ fn points_that_stay_open_are_left_out_and_change_nothing() {
     let bits = datasets(&case.result());
     run(&case, 3, &[]);
     assert!(datasets(&case.result()) == bits, "on 3 ranks");
-    // A limit on sweeps is one on all points.
+    // A limit on sweeps applies with all points included.
     let (of_all, all) = run(&case, 2, &["--max-sweeps", "50"]);
     assert_eq!(all, 37 * 33);
-    // Friction tips the block, so that points close which don't without it: they joined in the second step.
+    // Friction rotates the block, so that additional points close, compared with no friction: they were included in the
+    // second step.
     let (_, at_first) = run(&curved(0.0), 1, &[]);
     assert!(at_first < few && few < all, "{at_first} < {few} < {all}");
     for (one, other) in steps.iter().zip(&of_all) {

@@ -1,4 +1,4 @@
-//! Sides in space.
+//! Sides in space, without cells, for tests.
 
 use std::array::from_fn;
 use std::collections::HashMap;
@@ -15,7 +15,7 @@ pub type Point = [f64; 3];
 /// Extent of a side along x and y.
 pub type Range = [[f64; 2]; 2];
 
-/// Sides of a mesh in space, without cells.
+/// A mesh of sides in space, without cells.
 #[derive(Default)]
 pub struct Space {
     pub mesh: Mesh,
@@ -29,9 +29,9 @@ impl Space {
         space
     }
 
-    /// Adds a side: the rectangle `x` × `y` in n[0] × n[1] quadrilaterals, or twice as many triangles, moved by
-    /// `map`; its normal is z before that, and −z if it is `upper`. Inner corners are moved by up to
-    /// `uneven` of a facet first.
+    /// Adds a side: the rectangle `x` × `y` in n[0] × n[1] quadrilaterals, or twice as many triangles, transformed by
+    /// `map`; its normal is z before that, or −z if it is `upper`. Before, inner corners are moved by up to `uneven` of
+    /// a facet.
     pub fn side(
         mut self,
         kind: ElementKind,
@@ -114,7 +114,7 @@ impl Space {
         carried(&sides).unwrap().points
     }
 
-    /// ∫ of the shape function of every node over a side, by node.
+    /// ∫ of the shape functions over a side, by node.
     pub fn integrals(&self, side: usize) -> HashMap<u32, f64> {
         let mut integrals = HashMap::new();
         for facet in self.surface(side).facets {
