@@ -38,6 +38,10 @@ pub struct UnsharedNode {
 const PARALLEL: f64 = 2e-15;
 /// Smallest relative weight of a pivot node that other contact points share.
 const LEADING: f64 = 0.5;
+/// Smallest relative weight of a pivot node that no other contact point has. Other displacements enter the one that is
+/// replaced with the reciprocal of its weight: a facet that another one hardly overlaps would make these factors so
+/// large that nothing is left of the stiffness.
+const ALONE: f64 = 0.1;
 
 /// Contact points whose jumps replace displacements in one elimination step.
 pub(super) struct System {
@@ -110,10 +114,14 @@ impl Interface {
             let entries = &catalog.points[j as usize].entries;
             let largest = entries.iter().fold(0.0, |m: f64, (_, w)| m.max(w.abs()));
             let can_go = |&(i, &number): &(usize, &u32)| {
-                let (users, (_, weight)) = (users.of(number as usize).len(), entries[i]);
+                let (_, weight) = entries[i];
+                let least = match users.of(number as usize).len() {
+                    1 => ALONE,
+                    _ => LEADING,
+                };
                 catalog.point_nodes[j as usize][i].is_free
                     && waiting[number as usize] == 1
-                    && (users == 1 || weight.abs() >= LEADING * largest)
+                    && weight.abs() >= least * largest
             };
             let mut numbers = self.of_points[j as usize].iter().enumerate();
             let Some((_, &goes)) = numbers.find(can_go).filter(|_| is_waiting[j as usize]) else {

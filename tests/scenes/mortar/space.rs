@@ -10,6 +10,8 @@ use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::joined;
+use crate::support::comparison::compare;
+use crate::support::monolithic::Monolithic;
 use crate::support::scenes::model;
 use crate::support::solids::{SOLIDS, between, moved, solid, turned};
 use crate::support::solution::Solution;
@@ -71,6 +73,42 @@ fn a_uniform_pressure_passes_between_solids_of_any_cells() {
                 block("upper", upper, [3, 2, 1], [0.0, 0.0, 1.0], [2.0; 3]),
             );
             is_uniform(&solve(&model(&scene(sides), moved(mesh, turned)), 3));
+        }
+    }
+}
+
+/// A facet that another one overlaps by next to nothing has a tiny weight in a contact constraint: no displacement of
+/// it may be replaced by that constraint's jump.
+#[test]
+fn facets_that_overlap_by_slivers_leave_the_stiffness_whole() {
+    for sliver in [1e-7, 1e-5] {
+        for (lower, upper) in [
+            (Tetrahedron10, Tetrahedron10),
+            (Hexahedron20, Tetrahedron10),
+            (Tetrahedron4, Hexahedron27),
+        ] {
+            let [first, last] = [1.0 - sliver, 3.0 + sliver];
+            let mesh = joined(
+                solid(
+                    "lower",
+                    lower,
+                    [4, 4, 2],
+                    between([0.0; 3], [4.0, 4.0, 1.0]),
+                ),
+                solid(
+                    "upper",
+                    upper,
+                    [3, 3, 2],
+                    between([first, first, 1.0], [last, last, 2.0]),
+                ),
+            );
+            for sides in SIDES {
+                let model = model(&scene(sides), moved(mesh.clone(), turned));
+                let reference = Monolithic::new(&model);
+                for count in [5, 8, 13] {
+                    compare(&model, &reference, &solve(&model, count));
+                }
+            }
         }
     }
 }
