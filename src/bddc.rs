@@ -7,6 +7,7 @@
 
 mod bases;
 mod between;
+mod class_sums;
 mod classes;
 mod closed;
 pub mod cluster_schur;
@@ -30,6 +31,7 @@ use contact_dd_partition::id::{
 use contact_dd_partition::numbered::Numbered;
 
 use self::between::{Between, between};
+use self::class_sums::ClassSums;
 use self::classes::{Class, Classes};
 use self::closed::{GroupBetween, Ties};
 use self::cluster_schur::ClusterSchur;
@@ -61,6 +63,7 @@ pub struct Bddc {
     ties: Ties,
     nodes: SharedNodes,
     classes: Classes,
+    sums: ClassSums,
     level: PreconditionerLevel,
     /// The clusters of this rank, in the bases of their classes.
     locals: OnMergeRoots<Local>,
@@ -110,6 +113,7 @@ impl Bddc {
             groups,
             ties: Ties::default(),
             classes: Classes::default(),
+            sums: ClassSums::default(),
             locals: BTreeMap::new(),
             coarse: Coarse::new(plan),
             coarse_dofs: 0,
@@ -275,6 +279,7 @@ impl Bddc {
             .map(|c| !changed[c] && is_touched(c))
             .collect();
         self.ties = ties;
+        self.sums = ClassSums::new(comm, &classes, &self.owners);
         (std::mem::replace(&mut self.classes, classes), changed)
     }
 

@@ -4,7 +4,7 @@
 //! forever for a message.
 
 pub mod clock;
-mod collectives;
+pub mod collectives;
 mod launcher;
 #[cfg(debug_assertions)]
 mod on_purpose;

@@ -1,20 +1,18 @@
 //! Conjugate gradients on the clusters' shared unknowns, preconditioned by separate clusters and the coarse problem.
 //!
-//! Every rank holds the vectors of its own clusters. Sums run in the order of clusters, so that the result doesn't
-//! depend on the ranks.
+//! Every rank holds the vectors of its own clusters.
 
 use std::collections::BTreeMap;
 
 use contact_dd_partition::id::{MergeRootId, OnMergeRoots};
 use contact_dd_partition::numbered::Numbered;
 
+use crate::bddc::class_sums::ClassSums;
 use crate::bddc::classes::Classes;
 use crate::bddc::coarse::Coarse;
 use crate::bddc::local::{Local, Vectors};
-use crate::comm::ROOT;
 use crate::context::Context;
 use crate::schur::symmetric::PackedSymmetric;
-use crate::vector::dot;
 
 /// Most iterations.
 const MAX_ITERATIONS: usize = 500;
@@ -30,10 +28,10 @@ const GOOD: f64 = 0.02;
 pub struct ConjugateGradients<'a> {
     /// The context of the run.
     pub context: &'a Context<'a>,
-    /// The owner of every cluster.
-    pub owners: &'a Numbered<MergeRootId, usize>,
     /// The classes of Γ.
     pub classes: &'a Classes,
+    /// Their sums over clusters.
+    pub sums: &'a ClassSums,
     /// The clusters of this rank.
     pub locals: &'a OnMergeRoots<Local>,
     /// S of every cluster; `None` for those of other ranks.
@@ -143,54 +141,12 @@ impl ConjugateGradients<'_> {
 
     /// Replaces each cluster's values by the sum over all that share an unknown. Collective.
     fn add_up(&self, v: &mut Vectors) {
-        let ranges = |c: MergeRootId, k: usize| {
-            let at = self.classes.of_clusters[c].binary_search(&k);
-            at.map_or(0..0, |at| self.locals[&c].ranges()[at].clone())
-        };
-        let parts: Vec<(usize, MergeRootId)> = (self.classes.list.iter().enumerate())
-            .flat_map(|(k, class)| class.clusters.iter().map(move |&c| (k, c)))
-            .collect();
-        let home = |k: usize| self.owners[self.classes.list[k].clusters[0]];
-        let there: Vec<(usize, usize)> = (parts.iter())
-            .map(|&(k, c)| (self.owners[c], home(k)))
-            .collect();
-        let back: Vec<(usize, usize)> = there.iter().map(|&(a, b)| (b, a)).collect();
-        let own = |i: usize| {
-            let (k, c) = parts[i];
-            v[&c][ranges(c, k)].to_vec()
-        };
-        let mut sums: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for (i, part) in self.context.comm.route_lists(&there, own) {
-            match sums.get_mut(&parts[i].0) {
-                Some(sum) => sum
-                    .iter_mut()
-                    .zip(part)
-                    .for_each(|(sum, part)| *sum += part),
-                None => drop(sums.insert(parts[i].0, part)),
-            }
-        }
-        for (i, sum) in (self.context.comm).route_lists(&back, |i| sums[&parts[i].0].clone()) {
-            let (k, c) = parts[i];
-            if let Some(of_cluster) = v.get_mut(&c) {
-                of_cluster[ranges(c, k)].copy_from_slice(&sum);
-            }
-        }
+        (self.sums).add_up(self.context.comm, self.classes, self.locals, v);
     }
 
     /// x·y, with each unknown counted once, on all ranks. Collective.
     fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
-        let to_root: Vec<(usize, usize)> = self.owners.iter().map(|&owner| (owner, ROOT)).collect();
-        let parts = self.context.comm.route_lists(&to_root, |i| {
-            let c = MergeRootId::new(i);
-            let classes = self.classes.of_clusters[c].iter();
-            let classes = classes.zip(self.locals[&c].ranges());
-            let own = classes.filter(|(k, _)| self.classes.list[**k].clusters[0] == c);
-            let of = own.map(|(_, range)| dot(&x[&c][range.clone()], &y[&c][range.clone()]));
-            vec![of.sum::<f64>()]
-        });
-        let mut sum: f64 = parts.into_values().flatten().sum();
-        self.context.comm.broadcast(&mut sum);
-        sum
+        (self.sums).dot(self.context.comm, self.classes, self.locals, (x, y))
     }
 }
 

@@ -158,8 +158,8 @@ impl Bddc {
             .map(|v| clusters.get(v).map(|of| &of.s));
         let gradients = ConjugateGradients {
             context,
-            owners: &self.owners,
             classes: &self.classes,
+            sums: &self.sums,
             locals: &self.locals,
             matrices: &matrices.collect(),
             coarse: &self.coarse,

@@ -13,6 +13,28 @@ use crate::bytes::Reals;
 /// Most values gathered or scattered at once.
 const AT_ONCE: usize = 4096;
 
+/// Routes of lists that begin or end at a rank, grouped by the two ranks.
+#[derive(Debug, Default)]
+pub struct Routes {
+    bundles: Vec<((usize, usize), Vec<usize>)>,
+}
+
+impl Routes {
+    /// Those of rank `me` among these routes, from one rank to another. Both ranks of a route need all routes between
+    /// them, in the same order.
+    pub fn new(me: usize, all: impl IntoIterator<Item = (usize, usize)>) -> Self {
+        let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+        for (i, route) in all.into_iter().enumerate() {
+            if route.0 == me || route.1 == me {
+                bundles.entry(route).or_default().push(i);
+            }
+        }
+        Self {
+            bundles: bundles.into_iter().collect(),
+        }
+    }
+}
+
 impl Comm {
     /// Sends one value for each of `owners` to the root, which receives them in their order, whichever rank owns what;
     /// the values of a rank travel together. Collective.
@@ -113,20 +135,16 @@ impl Comm {
         }
     }
 
-    /// Sends a list along each of `routes`, from one rank to another, with a single message between any two ranks;
-    /// returns the lists that end here, by the number of their route. Collective.
+    /// Sends a list along each of `routes`, with a single message between any two ranks; returns the lists that end
+    /// here, by the number of their route. Collective.
     ///
     /// `make(i)` is called where route `i` begins.
     pub fn route_lists(
         &self,
-        routes: &[(usize, usize)],
+        routes: &Routes,
         mut make: impl FnMut(usize) -> Vec<f64>,
     ) -> BTreeMap<usize, Vec<f64>> {
-        let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
-        for (i, &route) in routes.iter().enumerate() {
-            bundles.entry(route).or_default().push(i);
-        }
-        let bundles: Vec<_> = bundles.into_iter().collect();
+        let bundles = &routes.bundles;
         let mut arrived = BTreeMap::new();
         self.route(
             bundles.iter().map(|(route, _)| *route),

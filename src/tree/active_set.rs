@@ -142,6 +142,8 @@ impl Search<'_> {
         let finest = Accuracy::FULL.tolerance;
         self.fronts.fix(context, open)?;
         let tolerance = match self.fronts.coarse_dofs() {
+            // No active set is to be found first.
+            Some(_) if context.plan.groups.len() == 0 => finest,
             Some(_) => (share * self.wrong_by.min(1.0)).max(finest),
             None => 0.0,
         };
