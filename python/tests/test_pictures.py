@@ -10,7 +10,7 @@ from matplotlib.patches import Circle
 from contact_dd import Model
 from contact_dd.drawing import page as pages
 from contact_dd.drawing import space
-from contact_dd.drawing.chart import chart_of
+from contact_dd.drawing.chart import Chart, chart_of
 from contact_dd.drawing.raster import Camera, Raster, edges_of
 from contact_dd.drawing.surface import HEXAHEDRON
 from contact_dd.drawing.units import units_of
@@ -193,3 +193,26 @@ def numbers(result):
         section = pages.steps(result.report, units_of(result))
     words = re.findall(r">([^<>]+)<", section[: section.index("</svg>")])
     return {word.strip() for word in words if re.fullmatch(r"[\d.]+", word.strip())}
+
+
+def test_a_hole_in_a_side_stays_open_in_its_map():
+    x, y = (grid.ravel() * 1.0 for grid in np.meshgrid(range(7), range(7)))
+    chart = Chart(np.arange(49), x, y, ("x", "y"))
+
+    def face(i, j):
+        """The nodes around a cell, those in the middle of its edges among them."""
+        around = [(0, 0), (1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
+        return [7 * (j + dj) + i + di for di, dj in around]
+
+    def area(mesh):
+        a, b, c = np.stack([mesh.x, mesh.y], axis=1)[mesh.triangles].swapaxes(0, 1)
+        return np.abs(np.linalg.det(np.stack([b - a, c - a], axis=1))).sum() / 2
+
+    cells = [(i, j) for i in (0, 2, 4) for j in (0, 2, 4)]
+    rim = [face(i, j) for i, j in cells if (i, j) != (2, 2)]
+    assert area(space.triangulation(chart, rim)) == pytest.approx(32)
+    # Of faces that reach over a hole, what lies between nodes with constraints is shown.
+    over = [node if node != 25 else None for node in face(2, 2)]
+    assert area(space.triangulation(chart, [*rim, over])) == pytest.approx(34)
+    # Where no faces are known, neighbours are joined.
+    assert area(space.triangulation(chart, [])) == pytest.approx(36)

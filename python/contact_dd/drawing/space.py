@@ -40,6 +40,8 @@ WIDEST_BODIES = 6.0
 MOST_MAPS = 4
 # Width of a part that presses, relative to what is shown of it.
 AROUND = 1.3
+# Share of the nodes of a map that faces have if the map consists of these.
+MOST_NODES = 0.75
 
 
 class Solid:
@@ -154,22 +156,23 @@ class Solid:
         axes.set_title(f"Contact pressure, at most {most:.4g} {unit}\nbetween the edges of the bodies", fontsize=9)
 
     def side(self, table):
-        """The faces of side a of a contact, and the mean pressure of each: those that look its way, all corners of
-        which have conditions or are at the tip of a crack."""
-        rows = {tag: row for row, tag in enumerate(table["node_a"].tolist())}
+        """The faces of side a of a contact, and the mean pressure of each: those all corners of which have constraints
+        or are at the tip of a crack."""
+        is_on = np.isin(self.result.nodes, table["node_a"]) | self.is_tip(table["normal"].mean(axis=0))
+        found = [(face, table["pressure"][rows].mean()) for face, rows in self.facing(table)
+                 if is_on[corners_of(face)].all()]
+        return [face for face, _ in found], np.array([mean for _, mean in found])
+
+    def facing(self, table):
+        """The faces with corners on side a of a contact that face side b, each with the rows of its nodes there."""
+        row_of = {tag: row for row, tag in enumerate(table["node_a"].tolist())}
         tags = self.result.nodes
         is_known = np.isin(tags, table["node_a"])
-        is_on = is_known | self.is_tip(table["normal"].mean(axis=0))
-        faces, means = [], []
         for face in self.faces:
-            corners = face if len(face) < 6 else face[::2]
-            if not is_on[corners].all() or not is_known[corners].any():
-                continue
-            known = [rows[tag] for tag in tags[face[is_known[face]]].tolist()]
-            if table["normal"][known].mean(axis=0) @ unit_normal(self.result.points[face]) > SAME_WAY:
-                faces.append(face)
-                means.append(table["pressure"][known].mean())
-        return faces, np.array(means)
+            if is_known[corners_of(face)].any():
+                rows = [row_of[tag] for tag in tags[face[is_known[face]]].tolist()]
+                if table["normal"][rows].mean(axis=0) @ unit_normal(self.result.points[face]) > SAME_WAY:
+                    yield face, rows
 
     def is_tip(self, normal):
         """At which nodes faces look along a normal and against it."""
@@ -257,7 +260,7 @@ def overview(result, scale, circle=None):
         raise InputError(f"{result.path}: there are no stresses; expected a run without --no-stress")
     solid = Solid(result, scale)
     pressed = sorted(solid.pressed, key=lambda name: -solid.pressed[name]["pressure"].max())[:MOST_MAPS]
-    maps = [PressureMap(name, solid.pressed[name], solid.units) for name in pressed]
+    maps = [PressureMap(name, solid) for name in pressed]
     columns = 1 if len(maps) < 3 else 2
     rows = -(-len(maps) // columns)
     left, right = width_of(solid, 4.0), columns * max((one.width(rows) for one in maps), default=0.0)
@@ -278,9 +281,14 @@ def overview(result, scale, circle=None):
 class PressureMap:
     """The pressures of a contact on its side, flat: as much of it as presses, and a bit around."""
 
-    def __init__(self, name, table, units):
-        self.name, self.units, self.chart = name, units, chart_of(table)
-        (self.pressure, self.unit) = in_units(table["pressure"][self.chart.rows], units.stress)
+    def __init__(self, name, solid):
+        table = solid.pressed[name]
+        self.name, self.units, self.chart = name, solid.units, chart_of(table)
+        (self.pressure, self.unit) = in_units(table["pressure"][self.chart.rows], self.units.stress)
+        tags = table["node_a"][self.chart.rows].tolist()
+        row = {tag: row for row, tag in enumerate(tags)}
+        faces = [[row.get(tag) for tag in solid.result.nodes[face].tolist()] for face, _ in solid.facing(table)]
+        self.mesh = triangulation(self.chart, faces)
         closed = self.pressure > 0
         places = self.chart.x, self.chart.y
         half = AROUND / 2 * max(np.ptp(of[closed]) for of in places)
@@ -295,8 +303,7 @@ class PressureMap:
 
     def draw(self, axes, circle=None):
         chart, length = self.chart, self.units.length
-        mesh = Triangulation(chart.x, chart.y)
-        colours = axes.tripcolor(mesh, self.pressure, shading="gouraud", cmap="inferno_r", vmin=0)
+        colours = axes.tripcolor(self.mesh, self.pressure, shading="gouraud", cmap="inferno_r", vmin=0)
         axes.plot(chart.x, chart.y, ".", color="0.6", ms=1.2)
         if circle:
             label = f"a = {circle:.4g} {length}"
@@ -323,6 +330,39 @@ class PressureMap:
         """Between the numbers at the axis (degrees)."""
         shown = np.degrees(np.ptp(self.limits[0]) / self.chart.radius)
         return next((step for step in (1, 2, 5, 10, 15, 30, 45) if shown <= 5 * step), 90)
+
+
+def triangulation(chart, faces):
+    """The triangles between the nodes of a chart: those of these faces, nodes around each with `None` for one that isn't
+    there, so that holes stay open; or between all neighbours where faces are unknown."""
+    triangles = [triangle for face in faces for triangle in triangles_of(face)]
+    whole = Triangulation(chart.x, chart.y)
+    if not triangles or len(np.unique(triangles)) < MOST_NODES * len(np.unique(whole.triangles)):
+        return whole
+    # A face across the cut of a side that is unrolled has ends on both sides of the chart.
+    reaches = np.ptp(chart.x[np.array(triangles)], axis=1) > np.ptp(chart.x) / 2
+    return Triangulation(chart.x, chart.y, triangles, mask=reaches if chart.radius else None)
+
+
+def triangles_of(face):
+    """The triangles of a face between nodes that are there: corners, and nodes on edges unless none of these is."""
+    corners = corners_of(face)
+    middles = face[1::2] if len(face) > len(corners) else []
+    if all(node is None for node in middles):
+        found = fan(corners)
+    else:
+        found = [*zip(middles[-1:] + middles[:-1], corners, middles), *fan(middles)]
+    return [triangle for triangle in found if None not in triangle]
+
+
+def corners_of(face):
+    """The corners among the nodes around a face."""
+    return face if len(face) < 6 else face[::2]
+
+
+def fan(polygon):
+    """The triangles of a polygon."""
+    return [(polygon[0], b, c) for b, c in zip(polygon[1:], polygon[2:])]
 
 
 def degrees(angle):
