@@ -86,7 +86,10 @@ impl Choice {
             );
         }
         if wishes.iterative == Some(true) {
-            return only(Merging::Clusters, "asked for");
+            return only(
+                Merging::Clusters,
+                "conjugate gradients between clusters, as --interface iterative demands",
+            );
         }
         let times = OperatorTimes::new(catalog);
         let operators: Vec<Operator> = match wishes.iterative {

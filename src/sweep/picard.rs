@@ -51,8 +51,8 @@ impl Sweeps<'_, '_> {
             }
             if self.sweeps_done() >= limit {
                 let why = format!(
-                    "picard with relaxation {theta:.4} isn't there (it began at a residual of \
-                     {first_residual:.1e}; use --method newton); stopped"
+                    "picard with relaxation {theta:.4} hasn't converged (the residual was {first_residual:.1e} at \
+                     first; use --method newton); stopped"
                 );
                 return Ok(self.gave_up(&residual, &why));
             }

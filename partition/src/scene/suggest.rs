@@ -153,6 +153,9 @@ pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> St
 /// The [`hint`] and all known words.
 pub fn hint_and_known<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     let candidates: Vec<&str> = candidates.into_iter().collect();
+    if candidates.is_empty() {
+        return "; the scene has none".to_owned();
+    }
     let hint = hint(word, candidates.iter().copied());
     let stop = if hint.is_empty() { "." } else { "" };
     format!("{hint}{stop} Known here: {}", candidates.join(", "))

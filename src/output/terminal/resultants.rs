@@ -128,7 +128,7 @@ fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<
     let names = quantities.iter().map(|of| of.name.chars().count());
     let width = names.max().unwrap_or(0).max(title.len());
     let head = format!(
-        "{title:<width$} {:>14} {:<6} {:>12} % per % of",
+        "{title:<width$} {:>14} {:<6} {:>12} largest derivative, % per % of",
         "", "", "mesh error"
     );
     table(head, quantities, |of| {

@@ -8,9 +8,10 @@ use crate::error::InputError;
 use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
-use crate::scene::condition::Names;
+use crate::scene::condition::{Force, ForceAmount, Names};
 use crate::scene::initial::Thermal;
 use crate::scene::loading::Loading;
+use crate::scene::material::PlaneState;
 
 /// Strain above which a warning is given: there the theory of small strains fails.
 const LARGE: f64 = 0.1;
@@ -42,6 +43,10 @@ impl Diagnostics<'_> {
                 let size = |x| Ok(loading.scale.pressure * pressure.value.at(x)?);
                 let label = loading.pressure_label(index, &pressure.on);
                 estimates.extend(self.of_side(&label, &pressure.on, size));
+            }
+            for (index, force) in loading.force.iter().enumerate() {
+                let label = loading.force_label(index, &force.on);
+                estimates.extend(self.of_force(&label, force, loading.scale.force));
             }
         }
         estimates.extend(self.of_gaps());
@@ -80,6 +85,43 @@ impl Diagnostics<'_> {
         warnings.sort();
         warnings.dedup_by_key(|warning| warning.split(": ").next().map(str::to_owned));
         Ok(warnings)
+    }
+
+    /// The strain from forces on nodes, multiplied by `factor`, as if they were spread over the size of the bodies.
+    fn of_force(&self, label: &str, force: &Force, factor: f64) -> Option<Estimate> {
+        let (mesh, units) = (&self.bodies.mesh, self.scene.units);
+        let sum = match &force.amount {
+            ForceAmount::Total(total) => length(total.value),
+            ForceAmount::Each(each) => {
+                let nodes = groups::boundary_nodes(mesh, &force.on, label).ok()?;
+                let at = nodes.iter().map(|&node| each.at(mesh.points[node as usize]));
+                at.filter_map(|value| Some(length(value.ok()?))).sum()
+            }
+        };
+        let stiffness = self.materials.iter().map(|one| one.stiffness.largest());
+        let stiffness = stiffness.fold(0.0, f64::max);
+        // In the plane it acts on a thickness of 1, around an axis on the whole ring.
+        let is_per_thickness = mesh.dim == 2 && self.scene.plane != Some(PlaneState::Axisymmetric);
+        let extent = self.extent();
+        let (area, dim) = match is_per_thickness {
+            true => (extent, 2),
+            false => (extent * extent, 3),
+        };
+        let strain = (factor * sum).abs() / (area * stiffness);
+        Some(Estimate {
+            strain,
+            words: format!(
+                "{label}: forces of {} {} on bodies that measure {} {} and have a stiffness of up to {} {} make strains \
+                 of about {}, where small ones are meant; are their units the same?",
+                short((factor * sum).abs()),
+                units.force(dim),
+                short(extent),
+                units.length(),
+                short(stiffness),
+                units.stress(),
+                short(strain)
+            ),
+        })
     }
 
     /// Strains from overlaps, compared with the size of the bodies.

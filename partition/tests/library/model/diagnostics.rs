@@ -151,6 +151,10 @@ fn loads_far_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_ar
         ),
         (scaled, "pressure[1] on 'upper top'"),
         (
+            format!("{HELD}{CONTACT}[[force]]\non = 'upper top'\ntotal = [3e5, -4e5]\n"),
+            "force[1] on 'upper top': forces of 5e5 N/m on bodies that measure 2 m",
+        ),
+        (
             body("body_force = [0, -25e3]"),
             "body 'lower': body forces of up to 25000 N/m³",
         ),
