@@ -70,6 +70,13 @@ pub enum FixedStatus {
         /// κ (N/m), force per slip across the direction.
         turning: f64,
     },
+    /// Slipping under a force that turns with the slip, whatever the bound of its point.
+    Turns {
+        /// Ratio of the force to the bound.
+        share: f64,
+        /// κ (N/m), force per slip across the direction.
+        turning: f64,
+    },
     /// Slipping along a line while its contact is about to open, without pressure.
     Parts,
 }
@@ -99,7 +106,9 @@ impl FixedStatus {
     /// Ratio of the force to the bound of its point, and κ (N/m), if it slips.
     pub fn slip(&self) -> Option<[f64; 2]> {
         match *self {
-            Self::Slips { share, turning } => Some([share, turning]),
+            Self::Slips { share, turning } | Self::Turns { share, turning } => {
+                Some([share, turning])
+            }
             _ => None,
         }
     }

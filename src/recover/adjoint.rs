@@ -99,7 +99,13 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
         false => MaterialForces::default(),
     };
     let slipping: OnGroups<SlippingPoints> = (solved.solution.discrete.groups.iter())
-        .map(|(&g, of_group)| (g, SlippingPoints::new(&context.groups[&g], of_group)))
+        .map(|(&g, of_group)| {
+            let in_matrix = solved.fixed.fronts.is_none();
+            (
+                g,
+                SlippingPoints::new(&context.groups[&g], of_group, in_matrix),
+            )
+        })
         .collect();
     if has_derivatives {
         all.about_to_change = about_to_change(solved);

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{BlockId, OnBlocks};
+use contact_dd_partition::id::{BlockId, GroupId, OnBlocks};
 
 use crate::contact::status::FixedStatus;
-use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::recover::fixed_conditions::conditions;
+use crate::recover::refine::prescribed;
+use crate::recover::{DiscreteSolution, GroupSolution};
 
 /// Accuracy of the inverse iteration with an iterative solver.
 const ACCURACY: f64 = 3e-2;
@@ -31,11 +33,14 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
         (b, load.collect())
     };
     let loads: OnBlocks<Vec<f64>> = fixed.condensed.blocks.keys().map(start).collect();
-    let held = solution.groups.iter().map(|(&g, of_group)| {
-        let closed = of_group.closed.iter();
-        (g, closed.map(|closed| FixedStatus::new(!closed)).collect())
-    });
-    let answer = fixed.solve(loads.clone(), held.collect(), &BTreeMap::new(), ACCURACY);
+    let statuses = solution.groups.iter();
+    let statuses = statuses.map(|(&g, of_group)| (g, statuses_of(fixed, g, of_group)));
+    let answer = fixed.solve(
+        loads.clone(),
+        statuses.collect(),
+        &BTreeMap::new(),
+        ACCURACY,
+    );
     let answer = answer.blocks;
 
     // xᵀ D x and xᵀ K x, summed block by block so that the result doesn't depend on the ranks.
@@ -60,6 +65,27 @@ pub fn condition_number(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
         },
     );
     (fixed.root.is_some() && energy > 0.0).then(|| largest as f64 * sum / energy)
+}
+
+/// The statuses of a contact group's constraints. In space, forces of slipping points turn with the slip, which resists
+/// a motion where no point sticks; fronts of an active set leave that out, as it isn't in their matrices.
+fn statuses_of(
+    fixed: &FixedActiveSet<'_>,
+    g: GroupId,
+    of_group: &GroupSolution,
+) -> Vec<FixedStatus> {
+    let context = &fixed.context;
+    if context.catalog.dim == 2 || fixed.fronts.is_some() {
+        let closed = of_group.closed.iter();
+        return closed.map(|closed| FixedStatus::new(!closed)).collect();
+    }
+    let mut aligned = of_group.clone();
+    let statuses = conditions(&context.groups[&g], &mut aligned, &prescribed(context, g));
+    let at_rest = |status: FixedStatus| match status {
+        FixedStatus::Closed { .. } => FixedStatus::Closed { lacks: 0.0 },
+        other => other,
+    };
+    statuses.into_iter().map(at_rest).collect()
 }
 
 fn diagonal<'a>(fixed: &FixedActiveSet<'a>, b: BlockId) -> &'a [f64] {

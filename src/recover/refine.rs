@@ -278,7 +278,7 @@ fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBloc
 }
 
 /// Flags of contact group g's conditions whose jumps supports prescribe; in the plane friction doesn't need them.
-fn prescribed(context: &Context<'_>, g: GroupId) -> Vec<bool> {
+pub(super) fn prescribed(context: &Context<'_>, g: GroupId) -> Vec<bool> {
     let group = &context.groups[&g];
     let of = match context.catalog.dim == 3 && !group.friction().is_empty() {
         true => jumps(context, g, group).map(|jumps| jumps.of),

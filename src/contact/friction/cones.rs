@@ -73,6 +73,9 @@ impl FrictionProblem<'_> {
         let mut tangents = self.tangents.to_vec();
         for tangent in &mut tangents {
             tangent.bound.cohesion = 0.0;
+            if matches!(fixed[tangent.limit], FixedStatus::Turns { .. }) {
+                tangent.bound.coefficient = 0.0;
+            }
             if matches!(tangent.other, OtherTangent::Prescribed(_)) {
                 tangent.other = OtherTangent::Nothing;
             }
@@ -85,10 +88,12 @@ impl FrictionProblem<'_> {
         let act = |point: &PointLaw| match fixed[point.first] {
             FixedStatus::Open => PointStatus::Open,
             FixedStatus::Closed { .. } => PointStatus::Sticks,
-            FixedStatus::Slips { turning, .. } => PointStatus::Slips {
-                direction: point.tangents.map(share),
-                turning,
-            },
+            FixedStatus::Slips { turning, .. } | FixedStatus::Turns { turning, .. } => {
+                PointStatus::Slips {
+                    direction: point.tangents.map(share),
+                    turning,
+                }
+            }
             FixedStatus::Parts => PointStatus::Parts {
                 direction: [1.0, 0.0],
                 turning: 0.0,

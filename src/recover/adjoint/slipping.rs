@@ -2,6 +2,7 @@
 
 use contact_dd_partition::id::OnGroups;
 
+use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
 use crate::vector::axpy;
@@ -23,6 +24,8 @@ pub struct SlippingPoint {
     pub coefficient: f64,
     /// κ (N/m): its force turns with the slip.
     pub turning: f64,
+    /// True if the matrix of the symmetric problem contains that.
+    pub turns_in_matrix: bool,
     /// Approximate stiffness of the bodies against a jump (N/m).
     pub stiffness: f64,
     /// The normal force (N/m).
@@ -32,8 +35,9 @@ pub struct SlippingPoint {
 }
 
 impl SlippingPoints {
-    /// The slipping points of a group in a solution with forces at their bounds, in these directions.
-    pub fn new(group: &ContactGroup, solution: &GroupSolution) -> Self {
+    /// The slipping points of a group in a solution with forces at their bounds, in these directions; forces turn with
+    /// slips `in_matrix`, or by an iteration of their own.
+    pub fn new(group: &ContactGroup, solution: &GroupSolution, in_matrix: bool) -> Self {
         let mut all = Vec::new();
         for law in group.point_laws() {
             let here = solution.point(&law);
@@ -44,14 +48,16 @@ impl SlippingPoints {
             let Some(normal) = law.normal.filter(|_| size > 0.0 && !tangents.is_empty()) else {
                 continue;
             };
+            let turning = match tangents.len() > 1 && distance > 0.0 {
+                true => size / distance,
+                false => 0.0,
+            };
             all.push(SlippingPoint {
                 normal,
                 is_closed: law.is_closed(&solution.closed),
                 coefficient: law.bound.coefficient,
-                turning: match tangents.len() > 1 && distance > 0.0 {
-                    true => size / distance,
-                    false => 0.0,
-                },
+                turning,
+                turns_in_matrix: in_matrix && turning > 0.0,
                 tangents,
                 stiffness: law.stiffness,
                 pressing: solution.forces[normal],
@@ -70,7 +76,7 @@ impl SlippingPoints {
             if point.is_closed {
                 wanted[point.normal] += point.coefficient * along;
             }
-            if point.turning > 0.0 {
+            if point.turning > 0.0 && !point.turns_in_matrix {
                 for &(j, e) in &point.tangents {
                     wanted[j] -= point.turning / point.stiffness * (left[j] - e * along);
                 }
@@ -94,7 +100,8 @@ impl SlippingPoints {
     /// Multiplies a vector on conditions by W = e eᵀ + r/(r + κ) (I − e eᵀ) for every point with the stiffness r:
     /// forces that turn with the slip become as large as others.
     pub fn weigh(&self, of: &mut [f64]) {
-        for point in self.0.iter().filter(|point| point.turning > 0.0) {
+        let turns = |point: &&SlippingPoint| point.turning > 0.0 && !point.turns_in_matrix;
+        for point in self.0.iter().filter(turns) {
             let along: f64 = point.tangents.iter().map(|&(j, e)| e * of[j]).sum();
             let weight = point.stiffness / (point.stiffness + point.turning);
             for &(j, e) in &point.tangents {
@@ -103,10 +110,33 @@ impl SlippingPoints {
         }
     }
 
-    /// Sets the forces at slipping tangents.
+    /// Sets the forces at slipping tangents, except those which the matrix contains.
     pub fn set_forces(&self, forces: &[f64], of_group: &mut GroupSolution) {
-        for (j, _) in self.0.iter().flat_map(|point| &point.tangents) {
+        let others = self.0.iter().filter(|point| !point.turns_in_matrix);
+        for (j, _) in others.flat_map(|point| &point.tangents) {
             of_group.forces[*j] = forces[*j];
+        }
+    }
+
+    /// Sets the forces which the matrix contains, Q (B_s w − b_s), at the start of a problem; the residual jumps are
+    /// those of the group.
+    pub fn start_forces(&self, of_group: &mut GroupSolution) {
+        for point in self.0.iter().filter(|point| point.turns_in_matrix) {
+            let gaps = &of_group.gaps;
+            let along: f64 = point.tangents.iter().map(|&(j, e)| e * gaps[j]).sum();
+            for &(j, e) in &point.tangents {
+                of_group.forces[j] = -point.turning * (of_group.gaps[j] - e * along);
+            }
+        }
+    }
+
+    /// Sets the statuses of the conditions at which the matrix contains forces that turn.
+    pub fn set_turning(&self, statuses: &mut [FixedStatus]) {
+        for point in self.0.iter().filter(|point| point.turns_in_matrix) {
+            for &(j, share) in &point.tangents {
+                let turning = point.turning;
+                statuses[j] = FixedStatus::Turns { share, turning };
+            }
         }
     }
 }

@@ -119,6 +119,12 @@ impl<'a> TransposedProblem<'a> {
         let mut state = self.at_rest(blocks.collect());
         let mut loads = self.loads.clone();
         state.share(context, &loads);
+        for (g, points) in self.slipping {
+            if let Some(of_group) = state.groups.get_mut(g) {
+                points.start_forces(of_group);
+            }
+        }
+        state.share(context, &loads);
         self.correct(&loads, &mut state);
         let slips = self.slipping.values().any(|points| !points.0.is_empty());
         if !context
@@ -242,7 +248,9 @@ impl<'a> TransposedProblem<'a> {
                 true => FixedStatus::Closed { lacks },
                 false => FixedStatus::Open,
             });
-            (g, status.collect())
+            let mut statuses: Vec<FixedStatus> = status.collect();
+            self.slipping[&g].set_turning(&mut statuses);
+            (g, statuses)
         });
         let conditions: FixedStatuses = conditions.collect();
         let change = fixed.solve(on_unknowns, conditions, &BTreeMap::new(), ACCURACY);

@@ -94,7 +94,9 @@ impl Diagnostics<'_> {
             ForceAmount::Total(total) => length(total.value),
             ForceAmount::Each(each) => {
                 let nodes = groups::boundary_nodes(mesh, &force.on, label).ok()?;
-                let at = nodes.iter().map(|&node| each.at(mesh.points[node as usize]));
+                let at = nodes
+                    .iter()
+                    .map(|&node| each.at(mesh.points[node as usize]));
                 at.filter_map(|value| Some(length(value.ok()?))).sum()
             }
         };
