@@ -40,6 +40,15 @@ impl RigidBodyAnalysis {
         let motions = self.closing_motions.iter().flatten();
         motions.fold(0.0, |longest, z| longest.max(z.abs()))
     }
+
+    /// The same for bodies that stay where they are before the load deforms them.
+    pub fn without_closing_motions(&self) -> Self {
+        let at_rest = |of_body: &Vec<f64>| vec![0.0; of_body.len()];
+        Self {
+            closing_motions: self.closing_motions.iter().map(at_rest).collect(),
+            ..self.clone()
+        }
+    }
 }
 
 /// Finds the free rigid-body motions of the scene under `loads`, and the closing motions, which start from those of the

@@ -33,6 +33,9 @@ use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, SweepStatus, Sweeps
 use crate::tree::contact;
 use crate::tree::fronts::ActiveSetFronts;
 
+/// Ratio of closing motions to displacements from which on the digits that their difference loses matter.
+const FAR: f64 = 1e3;
+
 /// Data common to all increments, including all factorized matrices.
 #[derive(Clone, Copy)]
 pub struct Increments<'a> {
@@ -164,12 +167,41 @@ impl Increments<'_> {
     }
 
     /// Solves for the loads at a point of the load path, whose rigid-body analysis is `analysis`, from the state
-    /// `before`. Collective.
+    /// `before`. Where friction holds bodies far from where their closing motions led, digits are lost in the difference:
+    /// such an increment is solved again without these motions. Collective.
     ///
     /// # Errors
     /// Prescribed displacements by which two sides penetrate, a part with a free rigid-body motion, or a signal that
     /// stopped the run.
     fn solve(
+        &self,
+        moment: LoadPoint,
+        analysis: &RigidBodyAnalysis,
+        before: StepState,
+        seconds: &mut RankSeconds,
+    ) -> Result<Increment, Failure> {
+        let closing = analysis.longest_closing_motion();
+        if closing == 0.0 {
+            return self.solve_after(moment, analysis, before, seconds);
+        }
+        let found = self.solve_after(moment, analysis, before.clone(), seconds)?;
+        let moved = found.solution.displacement.values().flatten();
+        if closing <= FAR * self.context.comm.largest(moved) {
+            return Ok(found);
+        }
+        let stays = analysis.without_closing_motions();
+        let again = self.solve_after(moment, &stays, before, seconds)?;
+        Ok(match self.is_converged(&again) {
+            true => again,
+            false => found,
+        })
+    }
+
+    /// Solves for these loads after the closing motions of an `analysis`. Collective.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    fn solve_after(
         &self,
         moment: LoadPoint,
         analysis: &RigidBodyAnalysis,

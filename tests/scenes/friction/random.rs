@@ -111,3 +111,13 @@ fn given_friction_below_an_interference_fit_keeps_to_its_bound_between_clusters(
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
     }
 }
+
+/// Cohesion holds a block that would fall onto an obstacle a million times its displacement away: the digits of that
+/// closing motion aren't taken from those of the displacements.
+#[test]
+fn a_block_that_is_held_far_from_where_it_would_fall_loses_no_digits() {
+    let mut drawn = draw_frictional_in_space(9_101_202, 4);
+    drawn.ranks = 2;
+    let trial = Trial::of(&drawn, built(), LIMIT, None);
+    assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
+}
