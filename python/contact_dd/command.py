@@ -221,8 +221,9 @@ def bars(arguments: argparse.Namespace) -> None:
 def print_bars(found: list[Compared]) -> None:
     for one in found:
         order = "" if one.order is None else f", order {one.order:.1f}"
-        error = "" if one.error is None else f" ± {one.error:.2g}"
-        fault = ", no error: it doesn't converge, as at a singularity or on meshes too coarse" if one.error is None else ""
+        error, fault = f" ± {one.error or 0.0:.2g}", ""
+        if one.error is None:
+            error, fault = "", ", no error: it doesn't converge, as at a singularity or on meshes too coarse"
         on_others = ", ".join(f"{value:.6g}" for value in one.values[:-1])
         print(f"{one.name}: {one.values[-1]:.6g}{error} {one.unit}{fault} (coarser {on_others}{order})")
 

@@ -333,8 +333,8 @@ class PressureMap:
 
 
 def triangulation(chart, faces):
-    """The triangles between the nodes of a chart: those of these faces, nodes around each with `None` for one that isn't
-    there, so that holes stay open; or between all neighbours where faces are unknown."""
+    """The triangles between the nodes of a chart: those of these faces, so that holes stay open, each with the nodes
+    around it, `None` for one that isn't there; or between all neighbours where faces are unknown."""
     triangles = [triangle for face in faces for triangle in triangles_of(face)]
     whole = Triangulation(chart.x, chart.y)
     if not triangles or len(np.unique(triangles)) < MOST_NODES * len(np.unique(whole.triangles)):
