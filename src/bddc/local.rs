@@ -17,7 +17,7 @@ use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
 
 /// Copies the lower triangle of a symmetric matrix to the upper one.
-fn fill_upper_triangle(s: &mut Mat<f64>) {
+fn fill_upper_triangle(mut s: MatMut<'_, f64>) {
     // Tiles keep the rows that are written in the cache.
     const TILE: usize = 32;
     let n = s.nrows();
@@ -108,7 +108,7 @@ impl Shared {
                 let (first, len) = (range.start, range.len());
                 // The cluster may also move with all but this class held; such modes become coarse.
                 let mut s = s.submatrix(first, first, len, len).to_owned();
-                fill_upper_triangle(&mut s);
+                fill_upper_triangle(s.as_mut());
                 hold(s.as_mut(), 0..len, MORE_HOLD, self.round_off);
                 let compliance = match is_looked_into {
                     true => {
@@ -211,13 +211,14 @@ impl Local {
         level: PreconditionerLevel,
         par: Par,
     ) -> Result<(Self, PackedSymmetric), Mechanism> {
-        fill_upper_triangle(&mut s);
         let (mut others, mut coarse) = (Vec::new(), Vec::new());
         for (range, basis) in shared.placement.ranges.iter().zip(&bases) {
             if let Some(q) = &basis.q {
-                let (n, len) = (s.nrows(), range.len());
-                q.multiply_right(s.submatrix_mut(0, range.start, n, len));
-                q.multiply_right(s.submatrix_mut(range.start, 0, len, n).transpose_mut());
+                // The lower triangle alone, with the class's own block as a whole.
+                let (first, len) = (range.start, range.len());
+                fill_upper_triangle(s.submatrix_mut(first, first, len, len));
+                q.multiply_right(s.submatrix_mut(first, first, s.nrows() - first, len));
+                q.multiply_right(s.submatrix_mut(first, 0, len, range.end).transpose_mut());
             }
             coarse.extend(range.start..range.start + basis.coarse);
             others.extend(range.start + basis.coarse..range.end);
@@ -228,9 +229,13 @@ impl Local {
         let n = order.len();
         let mut permuted = Mat::zeros(n, n);
         for j in 0..n {
-            let from = s.col_as_slice(order[j]);
-            let lower = permuted.col_as_slice_mut(j)[j..].iter_mut();
-            lower.zip(&order[j..]).for_each(|(to, &i)| *to = from[i]);
+            let (of_j, from) = (order[j], s.col_as_slice(order[j]));
+            for (to, &i) in permuted.col_as_slice_mut(j)[j..]
+                .iter_mut()
+                .zip(&order[j..])
+            {
+                *to = if i >= of_j { from[i] } else { s[(of_j, i)] };
+            }
         }
         let factor = |mut held: Mat<f64>, share: f64| {
             hold(held.as_mut(), 0..n, share, 0.0);

@@ -1,11 +1,15 @@
 //! S of a cluster on the unknowns left by closed contact conditions.
 
+use std::ops::Range;
+
 use faer::Mat;
 
 use crate::schur::symmetric::PackedSymmetric;
 
 /// Most terms of a row of T that are processed one by one.
 const FEW_TERMS: usize = 8;
+/// Columns of S that are transposed together.
+const AT_A_TIME: usize = 16;
 
 /// The lower triangle of Tᵀ S T, for S with `springs` on its diagonal; T has a row of terms for every unknown of S.
 pub fn transformed(
@@ -124,12 +128,42 @@ fn is_permutation(places: &[usize], n: usize) -> bool {
 /// The lower triangle of S with its unknowns at the positions `places`.
 fn permuted(s: &PackedSymmetric, places: &[usize]) -> Mat<f64> {
     let mut new = Mat::<f64>::zeros(s.size(), s.size());
-    for (j, &b) in places.iter().enumerate() {
-        for (&a, &value) in places[j..].iter().zip(s.column(j)) {
-            new[(a.max(b), a.min(b))] = value;
+    let runs = runs(places);
+    for (k, columns) in runs.iter().enumerate() {
+        for rows in &runs[k..] {
+            if places[rows.start] >= places[columns.start] {
+                for j in columns.clone() {
+                    let first = rows.start.max(j);
+                    let from = &s.column(j)[first - j..rows.end - j];
+                    let to = &mut new.col_as_slice_mut(places[j])[places[first]..];
+                    to[..from.len()].copy_from_slice(from);
+                }
+                continue;
+            }
+            // Transposed, some columns at a time, so that what is written is contiguous.
+            for first in columns.clone().step_by(AT_A_TIME) {
+                let of = first..columns.end.min(first + AT_A_TIME);
+                let from: Vec<&[f64]> = of.map(|j| &s.column(j)[rows.start - j..]).collect();
+                for (i, &a) in places[rows.clone()].iter().enumerate() {
+                    let to = &mut new.col_as_slice_mut(a)[places[first]..];
+                    to.iter_mut()
+                        .zip(&from)
+                        .for_each(|(to, from)| *to = from[i]);
+                }
+            }
         }
     }
     new
+}
+
+/// The runs of unknowns whose positions follow one another.
+fn runs(places: &[usize]) -> Vec<Range<usize>> {
+    let mut first = 0;
+    let of_run = |run: &[usize]| {
+        first += run.len();
+        first - run.len()..first
+    };
+    places.chunk_by(|a, b| a + 1 == *b).map(of_run).collect()
 }
 
 /// Adds `value` at (a, b) and (b, a), of which only the lower one is stored.
@@ -171,14 +205,17 @@ mod tests {
 
     #[test]
     fn a_permutation_is_what_terms_of_one_unknown_each_are() {
-        let full = Mat::from_fn(7, 7, |i, j| (i.max(j) * 31 + i.min(j) * 7) as f64);
-        let s = PackedSymmetric::new(&full);
-        let places = [3, 0, 6, 1, 5, 2, 4];
-        let terms: Vec<_> = places.iter().map(|&place| vec![(place, 1.0)]).collect();
-        let by_place = transformed(&s, &[], &terms, 7);
-        let by_terms = transformed(&s, &[0.0; 7], &terms, 7);
-        for j in 0..7 {
-            (j..7).for_each(|i| assert_eq!(by_place[(i, j)], by_terms[(i, j)]));
+        let with_runs = (20..39).chain(0..7).chain((7..20).rev()).chain([39]);
+        for places in [vec![3, 0, 6, 1, 5, 2, 4], with_runs.collect()] {
+            let n = places.len();
+            let full = Mat::from_fn(n, n, |i, j| (i.max(j) * 31 + i.min(j) * 7) as f64);
+            let s = PackedSymmetric::new(&full);
+            let terms: Vec<_> = places.iter().map(|&place| vec![(place, 1.0)]).collect();
+            let by_place = transformed(&s, &[], &terms, n);
+            let by_terms = transformed(&s, &vec![0.0; n], &terms, n);
+            for j in 0..n {
+                (j..n).for_each(|i| assert_eq!(by_place[(i, j)], by_terms[(i, j)], "{i}, {j}"));
+            }
         }
     }
 }
