@@ -85,7 +85,7 @@ pub struct Subdomain {
     pub steps: Vec<StepLoads>,
     /// Number of reference nodes of couplings, which follow the nodes of its cells and move with its body.
     pub reference_nodes: usize,
-    /// Number of [auxiliary](auxiliary) nodes of contact points, which are the last ones and aren't stored in files.
+    /// Number of [auxiliary] nodes of contact points, which are the last ones and aren't stored in files.
     pub auxiliary_nodes: usize,
 }
 
