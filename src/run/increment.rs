@@ -190,10 +190,10 @@ impl Increments<'_> {
             return Ok(found);
         }
         let stays = analysis.without_closing_motions();
-        let again = self.solve_after(moment, &stays, before, seconds)?;
-        Ok(match self.is_converged(&again) {
-            true => again,
-            false => found,
+        // Without them the contacts that hold the bodies may not be found at all.
+        Ok(match self.solve_after(moment, &stays, before, seconds) {
+            Ok(again) if self.is_converged(&again) => again,
+            _ => found,
         })
     }
 
