@@ -283,8 +283,9 @@ impl Bddc {
         (std::mem::replace(&mut self.classes, classes), changed)
     }
 
-    /// Improves a preconditioner that converges too slowly or can't be factorized: first by more coarse unknowns in the
-    /// classes; once that is exhausted, by keeping it as good as it can be. Returns false if no improvement is left.
+    /// Moves to the next [`PreconditionerLevel`] where the preconditioner converges too slowly or can't be factorized:
+    /// first coarse unknowns chosen by their energies, then rigid motions with weak springs on all unknowns. The
+    /// classes are determined anew. Returns false after the last level.
     pub fn look_deeper(&mut self) -> bool {
         let Some(deeper) = self.level.next() else {
             return false;
@@ -294,7 +295,7 @@ impl Bddc {
         true
     }
 
-    /// True if slow convergence may still be cured by a better preconditioner.
+    /// True at the levels that are abandoned for a better preconditioner when they converge slowly.
     pub fn is_judged(&self) -> bool {
         matches!(
             self.level,

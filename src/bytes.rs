@@ -1,7 +1,7 @@
-//! Lists of numbers in messages: their bytes as they lie in memory, copied in one piece.
+//! Lists of numbers in messages, serialized as the bytes that represent them in memory.
 //!
 //! `#[serde(with = "crate::bytes")]` on a `Vec` of numbers, or [`Reals`] around it; [`mod@matrix`] and [`lower`] on
-//! matrices. Number after number would take a run's largest messages many times as long.
+//! matrices. Serializing the numbers one by one would take many times as long for the largest messages.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -10,7 +10,7 @@ use bytemuck::Pod;
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A list of reals that travels as its bytes.
+/// A list of reals, serialized as bytes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reals(#[serde(with = "self")] pub Vec<f64>);
 
@@ -25,13 +25,13 @@ pub fn serialize<T: Pod, S: Serializer>(list: &[T], serializer: S) -> Result<S::
 /// Reads a list.
 ///
 /// # Errors
-/// It isn't there, or cut short.
+/// The data is missing, truncated, or of another length than expected.
 pub fn deserialize<'de, T, D>(deserializer: D) -> Result<Vec<T>, D::Error>
 where
     T: Pod,
     D: Deserializer<'de>,
 {
-    // Asked for bytes that it may lend, a reader of streams gives no more than its buffer holds.
+    // `deserialize_bytes` of a deserializer that reads a stream is limited to the length of its buffer.
     deserializer.deserialize_byte_buf(List(PhantomData))
 }
 
@@ -54,7 +54,7 @@ impl<T: Pod> Visitor<'_> for List<T> {
     }
 }
 
-/// The lower triangle of a symmetric matrix, column after column; the upper one arrives as zero.
+/// The lower triangle of a symmetric matrix, column by column; the upper triangle is read as zero.
 pub mod lower {
     use faer::Mat;
     use serde::de::Error;
@@ -79,7 +79,7 @@ pub mod lower {
     /// Reads the triangle.
     ///
     /// # Errors
-    /// It isn't there, or cut short.
+    /// The data is missing, truncated, or of another length than expected.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Mat<f64>, D::Error> {
         let (size, Reals(columns)): (usize, Reals) = Deserialize::deserialize(deserializer)?;
         if columns.len() != size * (size + 1) / 2 {
@@ -96,7 +96,7 @@ pub mod lower {
     }
 }
 
-/// The lower triangle of a symmetric matrix, both of whose triangles arrive.
+/// A symmetric matrix, serialized as its lower triangle and read with both triangles.
 pub mod symmetric {
     use faer::Mat;
     use serde::{Deserializer, Serializer};
@@ -114,7 +114,7 @@ pub mod symmetric {
     /// Reads the lower triangle and mirrors it.
     ///
     /// # Errors
-    /// It isn't there, or cut short.
+    /// The data is missing, truncated, or of another length than expected.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Mat<f64>, D::Error> {
         let mut matrix = lower::deserialize(deserializer)?;
         for j in 0..matrix.ncols() {
@@ -126,7 +126,7 @@ pub mod symmetric {
     }
 }
 
-/// A matrix, column after column.
+/// A matrix, column by column.
 pub mod matrix {
     use faer::Mat;
     use serde::de::Error;
@@ -150,7 +150,7 @@ pub mod matrix {
     /// Reads the matrix.
     ///
     /// # Errors
-    /// It isn't there, or cut short.
+    /// The data is missing, truncated, or of another length than expected.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Mat<f64>, D::Error> {
         let (rows, columns, Reals(values)): (usize, usize, Reals) =
             Deserialize::deserialize(deserializer)?;

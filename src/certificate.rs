@@ -33,7 +33,7 @@ pub struct Certificate {
     /// ‖K u − f + Bᵀλ‖∞ / ‖|K||u| + |f| + |Bᵀλ|‖∞.
     pub equilibrium: f64,
     /// ‖K u − f + Bᵀλ‖∞ over the largest load, contact force or reaction at a node: round-off amplified by the
-    /// condition of the scene.
+    /// condition number of the scene.
     pub equilibrium_of_load: f64,
     /// The largest load at a node over that scale: near 0 if forces are round-off of a scene without load, or
     /// displacements drive it.

@@ -112,7 +112,7 @@ impl Comm {
         Err(failure)
     }
 
-    /// True if any rank was asked to stop. Collective.
+    /// True if any rank received a signal to stop. Collective.
     pub fn is_any_asked_to_stop(&self) -> bool {
         self.is_any(is_asked_to_stop())
     }

@@ -19,7 +19,7 @@ pub enum FailureKind {
     IllPosed = 4,
     /// The output can't be written.
     Output = 5,
-    /// A signal asked the run to stop.
+    /// A signal requested the end of the run.
     Interrupted = 6,
 }
 
@@ -29,7 +29,7 @@ pub enum FailureKind {
 pub struct Failure {
     /// The kind of the failure, which decides the exit code.
     pub kind: FailureKind,
-    /// The message: where the failure is, and what was expected.
+    /// The message: place of the failure and expectation.
     pub message: String,
 }
 
@@ -54,7 +54,7 @@ impl Failure {
         Self::new(FailureKind::IllPosed, message)
     }
 
-    /// A run that was asked to stop.
+    /// A run that was stopped by a signal.
     pub fn interrupted(message: impl Into<String>) -> Self {
         Self::new(FailureKind::Interrupted, message)
     }

@@ -18,10 +18,10 @@ use crate::settings::Settings;
 use crate::settings::command_line::InterfaceMethod;
 use crate::sweep::{Method, SweepStatus};
 
-/// Pivot, relative to its diagonal entry, that can't be told from zero.
+/// Pivot, relative to its diagonal entry, below which it may be zero.
 const SUSPICIOUS_PIVOT: f64 = 1e-13;
 
-/// Condition number from which round-off is worth a warning.
+/// Condition number above which a warning of round-off is given.
 const BAD_CONDITION: f64 = 1e10;
 
 /// Collects every rank's times and memory on the root. Collective.

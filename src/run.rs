@@ -143,7 +143,7 @@ impl Stages<'_> {
     /// stage. Where the chosen solver doesn't converge, a more robust one continues from there. Collective.
     ///
     /// # Errors
-    /// Those of the whole run.
+    /// Errors of the whole run.
     fn solve(
         &self,
         steps: Range<usize>,
@@ -179,7 +179,7 @@ impl Stages<'_> {
     /// returns the handover to a more robust solver if one is needed. Collective.
     ///
     /// # Errors
-    /// Those of the whole run.
+    /// Errors of the whole run.
     fn solve_from(
         &self,
         handover: Option<Handover>,
@@ -242,7 +242,7 @@ impl Stages<'_> {
     /// another solver took over, if one did. Returns the handover to a more robust solver if one is needed. Collective.
     ///
     /// # Errors
-    /// Those of the whole run.
+    /// Errors of the whole run.
     fn solve_steps(
         &self,
         steps: &StageSteps<'_>,

@@ -20,7 +20,7 @@ use crate::plan::choice::Wishes;
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 
-/// The settings of a run, as the report shows them: `None` is what the method decides.
+/// The settings of a run, as the report shows them: `None` if the method decides.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(description = "The options of a run.")]
 pub struct Settings {
@@ -44,13 +44,13 @@ pub struct Settings {
     pub max_sweeps: Option<usize>,
     /// Relaxation of picard; 1 is the paper's (18) to the letter.
     pub relaxation: Option<f64>,
-    /// Solver of the linear interface problem; the one that takes less time where it isn't said.
+    /// Solver of the linear interface problem; by default the faster one.
     pub interface: Option<InterfaceMethod>,
     /// Threads of each rank.
     pub threads: u16,
     /// True if stresses are left out: neither recovered nor written.
     pub no_stress: bool,
-    /// True to go on after the load steps that a stopped run finished.
+    /// True to continue after the load steps that a stopped run finished.
     pub restart: bool,
     /// True to look for another solution where there is friction.
     pub second_start: bool,

@@ -9,7 +9,7 @@ use crate::element::ElementKind;
 use crate::example::EXAMPLES;
 use crate::manual::{Document, Manual};
 
-/// Text of the manual beside the options.
+/// Text of the manual other than the options.
 pub const MANUAL: Manual = Manual {
     examples: &[
         (

@@ -64,7 +64,7 @@ impl Destination {
     /// The file that an earlier run [kept](Self::keep) for `path`, to be completed.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Errors of [`new`](Self::new).
     pub fn kept(path: &Path) -> Result<Self, OutputError> {
         let target = target_of(path)?;
         let kept = TempPath::try_from_path(unfinished(&target));
@@ -169,7 +169,7 @@ fn remove_left(folder: &Path, prefix: &OsStr) {
 /// The file `.NAME.ending` next to the file `path`, after following links.
 ///
 /// # Errors
-/// Those of [`Destination::new`].
+/// Errors of [`Destination::new`].
 pub fn beside(path: &Path, ending: &str) -> Result<PathBuf, OutputError> {
     let target = target_of(path)?;
     let mut name = hidden(&target);

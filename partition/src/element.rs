@@ -1,6 +1,6 @@
 //! Elements: x(ξ) = Σ N_i(ξ) x_i, u(ξ) = Σ N_i(ξ) u_i over a reference element.
 //!
-//! An [`ElementKind`] is a byte, stored in lists and files; it stands for a [`ReferenceElement`] with nodes, shape
+//! An [`ElementKind`] is a byte, stored in lists and files; it identifies a [`ReferenceElement`] with nodes, shape
 //! functions, facets and quadrature rules. A new kind needs a [`Definition`](definition::Definition) and an entry here.
 
 pub mod definition;

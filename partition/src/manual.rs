@@ -1,5 +1,5 @@
-//! The manual of a program: its help, its man page, completions for shells, and the answer to a
-//! command line that asks for no work.
+//! The manual of a program: its help, its man page, completions for shells, and the output of command lines that only
+//! request documentation or are invalid.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -18,16 +18,16 @@ pub const BAD_USAGE: u8 = 2;
 /// Exit code of output that can't be written.
 const UNWRITABLE: u8 = 5;
 
-/// The parts of a program's manual beside its options, which the parser knows.
+/// The parts of a program's manual other than its options, which the parser describes.
 #[derive(Clone, Copy, Debug)]
 pub struct Manual {
-    /// Commands, each with what it does.
+    /// Commands with descriptions.
     pub examples: &'static [(&'static str, &'static str)],
-    /// Exit codes and what they mean.
+    /// Exit codes with their meanings.
     pub exit_codes: &'static [(&'static str, &'static str)],
-    /// Files and what they hold.
+    /// Files with their contents.
     pub files: &'static [(&'static str, &'static str)],
-    /// Environment variables and what they change.
+    /// Environment variables with their effects.
     pub environment: &'static [(&'static str, &'static str)],
     /// The page of the other program.
     pub see_also: &'static str,
@@ -46,17 +46,17 @@ pub enum Document {
     CompleteFish,
 }
 
-/// The answer of a program to a command line that asks for no work.
+/// The output of a program for a command line that only requests documentation or is invalid.
 #[derive(Clone, Debug)]
 pub enum Answer {
-    /// Text for stdout, with the codes of colours.
+    /// Text for stdout, with escape codes of colours.
     Text(String),
-    /// The fault of a command line.
+    /// Error in a command line.
     Refusal(String),
 }
 
 impl Answer {
-    /// The answer that stands for what the parser found: help, the version, or an error.
+    /// The output for a result of the parser: help, the version, or an error.
     pub fn of(error: &clap::Error) -> Self {
         let said = error.render();
         match error.kind() {
@@ -73,7 +73,7 @@ impl Answer {
         }
     }
 
-    /// Prints the answer; returns what the program ends with.
+    /// Prints the output; returns the exit code of the program.
     pub fn print(&self) -> ExitCode {
         match self {
             Self::Text(text) => match message::say(text) {

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 )]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// Newton: S_0 + S_CON is inverted, contact conditions included.
+    /// Newton: S_0 + S_CON is inverted, contact constraints included.
     Newton,
     /// Accelerated chord: S_0 + S_CON' of the bilateral problem is inverted.
     Anderson,
@@ -71,12 +71,12 @@ impl fmt::Display for Positive {
     }
 }
 
-/// Parses the value of an option that says yes where it has none.
+/// Parses the value of an option that is true without a value.
 ///
 /// # Errors
 /// It is neither `true` nor `false`.
 pub fn truth(text: &str) -> Result<bool, String> {
-    // A parser that told its values to shells would have them offered where a file's name belongs.
+    // A parser with possible values would make shells complete them where a file name is expected.
     text.parse().map_err(|_| "expected true or false".into())
 }
 

@@ -33,7 +33,7 @@ pub struct Class {
 
 /// Combinations of the unknowns of a class of two clusters: those that both have, then those that one of them has.
 ///
-/// They occur under closed contact conditions: with its own displacements replaced by another cluster's, a cluster has
+/// They occur under closed contact constraints: with its own displacements replaced by another cluster's, a cluster has
 /// only as many combinations of these as it has conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
@@ -104,7 +104,7 @@ impl Classes {
         self.list.iter().map(home).collect()
     }
 
-    /// The classes of clusters that have these unknowns, with closed contact conditions that tie some to others.
+    /// The classes of clusters that have these unknowns, with closed contact constraints that tie some to others.
     pub fn new(unknowns: &ClusterUnknowns, ties: &Ties) -> Self {
         let dofs = &unknowns.dofs;
         let (of, partial) = unknowns.by_clusters_under(ties);
@@ -136,8 +136,8 @@ impl Classes {
     }
 }
 
-/// The combinations of the unknowns of a class with two clusters, one of which doesn't have all; `None` if there are
-/// more clusters, or combinations that neither has.
+/// The combinations of the unknowns of a class with two clusters, one of which lacks some; `None` for more than two
+/// clusters and for combinations that neither has.
 fn turned(
     class: &Class,
     dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>,

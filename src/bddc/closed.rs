@@ -1,4 +1,4 @@
-//! Contact conditions between clusters: a closed one ties a displacement to others, an open one ties nothing.
+//! Contact constraints between clusters: a closed one ties a displacement to others, an open one ties nothing.
 
 use std::collections::BTreeMap;
 
@@ -141,7 +141,7 @@ pub struct Ties {
 type Terms = Vec<(InterfaceDof, f64)>;
 
 impl Ties {
-    /// The ties of unknowns to what is in their place, but for constants; not yet resolved.
+    /// The ties of unknowns to the linear combinations that replace them, without constants; not yet resolved.
     pub fn new(direct: Vec<(InterfaceDof, Terms)>) -> Self {
         Self {
             direct,

@@ -18,7 +18,7 @@ pub struct ClusterUnknowns {
     pub dofs: Numbered<MergeRootId, Vec<InterfaceDof>>,
     /// Every unknown with every cluster that has it, ascending.
     ends: Vec<(InterfaceDof, MergeRootId)>,
-    /// All of them, where nothing is tied.
+    /// The unknowns by their clusters, without ties.
     by_clusters: ByClusters,
 }
 

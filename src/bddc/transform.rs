@@ -1,4 +1,4 @@
-//! S of a cluster on the unknowns left by closed contact conditions.
+//! S of a cluster on the unknowns left by closed contact constraints.
 
 use std::ops::Range;
 

@@ -24,7 +24,7 @@ use crate::vector::{axpy, dot};
 const NOT_ROUND_OFF: f64 = 1e-12;
 
 /// Balance of energy in a load step, with the mean of the forces at both ends of every increment (J, per metre of
-/// thickness in the plane); in a load step in which bodies or contacts come or go, from unloaded bodies.
+/// thickness in the plane); in a load step that adds or removes bodies or contacts, from unloaded bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EnergyBalance {
     /// Work of loads.
@@ -33,8 +33,8 @@ pub struct EnergyBalance {
     pub work_of_supports: f64,
     /// Change of the elastic energy ½ uᵀ K u.
     pub elastic_energy: f64,
-    /// Work of contacts: `dissipated_work`, and an error of finite increments, which vanishes as these become small;
-    /// negative where an interference fit brings energy in.
+    /// Work of contacts: `dissipated_work` plus an error of finite increments, which vanishes as these become small;
+    /// negative where an interference fit supplies energy.
     pub work_of_contacts: f64,
     /// Difference between the sum of the first two and that of the other two, relative to the largest of the four and
     /// of the elastic energy.
@@ -91,7 +91,7 @@ impl BlockEnergy {
         }
     }
 
-    /// Work in the increment from the state `before`, from unloaded bodies if there is none.
+    /// Work in the increment from the state `before`, or from unloaded bodies.
     pub fn work(&self, before: Option<&Self>) -> BlockWork {
         let mut increment = self.displacement.0.clone();
         if let Some(before) = before {

@@ -52,7 +52,7 @@ impl Scales {
             most.driven = larger(most.driven, self.displacement);
         }
         if most.scale < NOTHING * self.terms {
-            // Nothing acts at all; contacts may have carried nothing before, either.
+            // Without any load, contacts may have carried no force in the earlier load step either.
             most.contact_force = larger(most.contact_force, self.terms);
         }
         for (own, earlier) in [
@@ -80,7 +80,7 @@ impl SlipScales {
     /// The lesser of a slip (m) and of the shortfall of a force (N/m), each over its scale.
     pub(super) fn lesser(self, slip: f64, lacks: f64) -> f64 {
         if lacks <= 0.0 {
-            // Without any contact force there is no scale of it either.
+            // Without contact forces their scale is zero.
             return 0.0;
         }
         let slip = slip / (SLIP_LIKE_FORCE * self.displacement);

@@ -20,8 +20,8 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// Those of rank `me` among these routes, from one rank to another. Both ranks of a route need all routes between
-    /// them, in the same order.
+    /// The routes that begin or end at rank `me` among `all`, each from one rank to another. Both ranks of a route must
+    /// pass all routes between them in the same order.
     pub fn new(me: usize, all: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let mut bundles: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
         for (i, route) in all.into_iter().enumerate() {

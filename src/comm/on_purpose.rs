@@ -18,7 +18,7 @@ pub fn set_rank(rank: usize) {
     RANK.get_or_init(|| rank);
 }
 
-/// Ends or stops this rank if the variable asks for that in `phase`.
+/// Ends or stops this rank if the variable requests it in `phase`.
 #[expect(clippy::panic, reason = "that's the purpose")]
 pub fn end(phase: &str) {
     match wish(phase).as_deref() {
@@ -34,13 +34,13 @@ pub fn end(phase: &str) {
     }
 }
 
-/// The failure that the variable asks for on this rank in `phase`.
+/// The failure that the variable requests on this rank in `phase`.
 pub fn failure(phase: &str) -> Option<Failure> {
     let wish = wish(phase)?;
     (wish == "failure").then(|| Failure::ill_posed("on purpose"))
 }
 
-/// The kind of end that the variable asks for on this rank in `phase`.
+/// The kind of end that the variable requests on this rank in `phase`.
 fn wish(phase: &str) -> Option<String> {
     let wish = env::var("CONTACT_DD_END").ok()?;
     let mut words = wish.splitn(3, ' ');

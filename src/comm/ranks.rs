@@ -82,9 +82,10 @@ pub struct RankReport {
     /// Time in each phase.
     #[serde(flatten)]
     pub seconds: PhaseSeconds,
-    /// Processor time of each phase, without messages and waiting for them; with several threads, of the first.
+    /// Processor time of each phase, without messages and waiting; with several threads, of the first one.
     pub work: PhaseSeconds,
-    /// Time of each phase on a core of its own: its work, and messages by a network of 12.5 GB/s and 2 µs.
+    /// Modelled time of each phase with a core for each rank: its work, and messages over a network of 12.5 GB/s and 2
+    /// µs.
     pub modelled: PhaseSeconds,
     /// Peak resident memory (bytes).
     pub peak_memory_bytes: u64,

@@ -1,4 +1,4 @@
-//! Signals that ask a run to stop.
+//! Signals that request the end of a run.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};

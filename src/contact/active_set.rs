@@ -2,8 +2,8 @@
 //!
 //! t are the normal jumps of the conditions, of one pair or of all, H the stiffness condensed onto
 //! them, c the load that drives them; λ = c − H t − Dᵀ μ ≥ 0 and μ ≥ 0 are the contact forces. D is
-//! empty but where more conditions meet than there are directions. Flags, bounds and forces are
-//! those of normal jumps, then those of linearly dependent constraints.
+//! empty except where more constraints meet at a node than it has directions. Flags, bounds and
+//! forces are those of normal jumps, then those of linearly dependent constraints.
 //!
 //! The active set, the closed conditions, is found by the first of three strategies that converges:
 //!
@@ -42,7 +42,7 @@ const MOST_DUAL_STEPS: usize = 1000;
 pub struct ContactProblem<'a> {
     /// H, symmetric positive semidefinite.
     pub h: MatRef<'a, f64>,
-    /// The diagonal of the matrix that H is condensed from: what H's round-off is relative to.
+    /// The diagonal of the matrix from which H is condensed; H's round-off is relative to it.
     pub diagonal: &'a [f64],
     /// c.
     pub c: &'a [f64],
@@ -114,7 +114,7 @@ impl ContactProblem<'_> {
         if !solution.converged {
             let before = solution.steps;
             let (mut named, center, named_in) = self.interior_point();
-            // Keeps bodies that nothing resists within their gaps.
+            // Keeps bodies without resistance within their gaps.
             let centered = ContactProblem {
                 center: &center,
                 ..*self
@@ -136,8 +136,8 @@ impl ContactProblem<'_> {
         solution
     }
 
-    /// Solution t = 0 without load and overlap: round-off of a linear system, singular where contact alone holds
-    /// bodies, would move them as far as their gaps let them.
+    /// Solution t = 0 without load and overlap: where contact alone restrains bodies the linear system is singular, and
+    /// its round-off would move them up to their gaps.
     fn at_rest(&self, open: &mut [bool]) -> Option<ContactSolution> {
         let rests = self.c.iter().all(|&c| c == 0.0) && self.bounds.iter().all(|&g| g >= 0.0);
         rests.then(|| {

@@ -2,7 +2,7 @@
 //!
 //! Goldfarb and Idnani's dual method: closed conditions are independent of each other and in compression; a violated
 //! one closes as its force grows from zero, and each that would come under tension meanwhile opens. The energy rises
-//! with every condition that closes, so that no set comes back.
+//! with every condition that closes, so that no active set recurs.
 
 use super::active_equalities::ActiveEqualities;
 use super::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE, Trial};

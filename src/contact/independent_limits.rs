@@ -27,7 +27,7 @@ struct IndependentLimits<'a> {
 
 impl ContactLaws<'_> {
     /// Makes contradicting limits that are to close or stick `now`, at an iterate, independent of each other; those
-    /// closed or sticking `before` come first. A tangential limit slips where others make it slip.
+    /// closed or sticking `before` take precedence. A tangential limit whose slip the others determine slips.
     pub fn make_independent(&self, at: &Iterate, before: &Statuses, now: &mut Statuses) {
         if self.rows.is_empty() {
             return;

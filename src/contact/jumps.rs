@@ -1,4 +1,4 @@
-//! Jumps t = b·u: contact conditions B u ≤ g as bounds t ≤ g, and slips as tangential jumps.
+//! Jumps t = b·u: contact constraints B u ≤ g as bounds t ≤ g, and slips as tangential jumps.
 //!
 //! A condition `b·v ≤ g` bounds the normal jump t = b·v of the two sides, less the part that supports prescribe.
 //! Solving that equation for one of its unknowns replaces this unknown by t, so that a pair's problem has only bounds t

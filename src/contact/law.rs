@@ -195,7 +195,7 @@ impl PointLaw {
             false => self.bound.line(is_closed),
         };
         let weight = self.stiffness / (self.stiffness + turning);
-        // The law of one force stands alone where the other isn't an unknown.
+        // If only one tangential force is unknown, its law is scalar.
         let alone = self.tangents[1].is_none();
         let equation = |(k, limit): (usize, Option<usize>)| {
             let share = e[k] * if alone && !parts { weight } else { 1.0 };

@@ -14,7 +14,7 @@ pub use super::tangent::{OtherTangent, TangentialLimit};
 /// Slip, relative to the prescribed displacements, below which it counts as zero.
 const ROUND_OFF: f64 = 1e-14;
 
-/// A tangential jump that supports prescribe on both sides, so that its force moves nothing.
+/// A tangential jump that supports prescribe on both sides, so that its force does no work.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct PrescribedSlip {
     /// The condition, and the normal condition of its point.

@@ -231,8 +231,8 @@ pub fn newton<O: ContactOperator>(
     }))
 }
 
-/// Whether a step with this residual is accepted, where the one before `missed` so much; true if it is the last one: as accurate
-/// as round-off lets it be, or no more accurate than the one before.
+/// Whether a step with this residual is accepted, where `missed` is the residual of the previous one; true if it is the
+/// last: its accuracy is limited by round-off, or no better than that of the previous one.
 fn accepted(
     total: &TotalResidual,
     accuracy: StepAccuracy,

@@ -10,7 +10,8 @@ use super::dependent::DependentConstraints;
 use crate::vector::largest;
 
 /// Moves those `jumps` of a group that occur in its dependent `rows` to the nearest ones within these `bounds`, and
-/// closes or opens their limits accordingly; returns how many changed. Values of the rows stand behind the jumps.
+/// closes or opens their limits accordingly; returns how many changed. The values of the rows follow those of the
+/// jumps.
 pub fn project(
     rows: &DependentConstraints,
     bounds: &[f64],

@@ -67,7 +67,7 @@ pub struct TangentialLimit {
 /// Slip of a point along its other tangent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum OtherTangent {
-    /// No slip: the plane has but one tangent, or supports let nothing move along the other.
+    /// No slip: the plane has only one tangent, or supports restrain the other.
     #[default]
     Nothing,
     /// The slip of this limit.

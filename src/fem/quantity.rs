@@ -4,30 +4,30 @@ use contact_dd_partition::id::OnBlocks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A quantity that the scene asks for.
+/// A quantity that the scene requests.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityValue {
     /// The name in the scene.
     pub name: String,
-    /// The kind, by the scene's word for it.
+    /// The kind, named as in the scene.
     pub kind: String,
     /// The value (m, Pa, Pa √m, N, N m or J; forces, moments and energies in the plane per metre of thickness).
     pub value: f64,
-    /// Estimated error of the mesh: the value less the exact one, about; `null` where there is no estimate.
+    /// Estimated discretization error: approximately the value less the exact one; `null` without an estimate.
     pub error: Option<f64>,
     /// Tag of the node whose value it is, or that has the largest pressure; `null` of other quantities.
     pub node: Option<i64>,
-    /// The derivatives with respect to the parameters of the scene; empty where there are none.
+    /// The derivatives with respect to the parameters of the scene; empty without parameters.
     pub derivatives: Vec<Derivative>,
 }
 
-/// Derivative of a quantity with respect to a parameter of the scene, with what is open, closed, sticking and slipping as it is.
+/// Derivative of a quantity with respect to a parameter of the scene, with fixed contact status.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Derivative {
     /// Name of the parameter.
     pub parameter: String,
     /// The kind: "load", a factor that is 1; "stiffness", Young's modulus or a factor of a stiffness; "gap" and
-    /// "displacement", what is added to those of the scene; "friction", the coefficient.
+    /// "displacement", an addition to those of the scene; "friction", the coefficient.
     pub kind: String,
     /// The value; `null` where it isn't the same everywhere.
     pub at: Option<f64>,

@@ -16,8 +16,8 @@ use super::tightened_bolt::TightenedBolt;
 /// Relative difference of a slipping point's force from its cohesion that may be round-off.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Penetration over the largest displacement above which a warning is given: on a curved surface it corresponds to a
-/// facet of a third of the contact's length.
+/// Penetration over the largest displacement above which a warning is given: where two curved bodies approach each
+/// other by the largest displacement, facets as long as a third of the contact penetrate that far.
 const SEEN: f64 = 0.05;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane; around an axis the force
@@ -50,9 +50,9 @@ pub struct ContactResultant {
     pub name: String,
     /// The kind: "contact", "tie", "equation", "spring", "coupling", "pretension" or "held pretension".
     pub kind: String,
-    /// Number of conditions.
+    /// Number of contact constraints.
     pub conditions: usize,
-    /// Number of those that are closed.
+    /// Number of closed constraints.
     pub closed: usize,
     /// Resultant on side a, of equations on the first node of each, of springs on their first end.
     #[serde(flatten)]
@@ -66,7 +66,7 @@ pub struct ContactResultant {
     /// Number of constraints about to open, which slip under a part of their cohesion.
     #[serde(skip)]
     pub parting: usize,
-    /// Largest penetration at the nodes of the side that has no conditions, where nodes don't match (m).
+    /// Largest penetration at the nodes of the master side, where nodes don't match (m).
     pub penetration: f64,
     /// The penetration at those nodes.
     #[serde(skip)]
@@ -93,9 +93,9 @@ pub struct Probed {
 /// State and work of friction in a load step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Friction {
-    /// Number of closed conditions with friction that stick.
+    /// Number of closed constraints with friction that stick.
     pub sticking: usize,
-    /// Number of those that slip.
+    /// Number of closed constraints that slip.
     pub slipping: usize,
     /// Work dissipated by friction (J, per metre of thickness in the plane).
     pub dissipated_work: f64,
@@ -210,10 +210,11 @@ fn is_parting(point: &ContactPoint<u32>, state: &ContactState) -> bool {
         && length(state.tangential_force) < bound - ROUND_OFF * cohesion * point.area
 }
 
-/// Reaction of a condition that prescribes displacements.
+/// Reaction of a support or a prescribed displacement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reaction {
-    /// The condition: its kind, its number among those, where it holds, and which others hold a part of it.
+    /// The boundary condition: its kind, its number among those of its kind, its groups, and the conditions with which
+    /// it shares displacements.
     pub support: String,
     /// Resultant on the bodies.
     #[serde(flatten)]
@@ -231,11 +232,12 @@ pub struct Resultants {
     pub pretensions: Vec<TightenedBolt>,
     /// Stress intensity of crack tips in the plane; empty where stresses are left out.
     pub crack_tips: Vec<StressIntensity>,
-    /// Quantities that the scene asks for.
+    /// Quantities that the scene requests.
     pub quantities: Vec<QuantityValue>,
-    /// Contact points whose status is about to change, in words: a derivative is the one on the side where it doesn't.
+    /// Contact points whose status is about to change, as text; derivatives are one-sided there, for the present
+    /// status.
     pub about_to_change: Vec<String>,
-    /// Why quantities have no derivatives, or one of them, in words; `null` where all have some.
+    /// Reason why all quantities, or one of them, have no derivatives, as text; `null` if all have derivatives.
     pub without_derivatives: Option<String>,
 }
 

@@ -18,7 +18,7 @@ pub struct StressIntensity {
     /// K_I, of opening (Pa √m). Below 0 the faces penetrate each other, which contact prevents.
     #[serde(rename = "k_i")]
     pub opening: f64,
-    /// K_II, of sliding (Pa √m): positive where what lies to the left of `direction` moves along it.
+    /// K_II, of sliding (Pa √m): positive if the material to the left of `direction` moves along it.
     #[serde(rename = "k_ii")]
     pub sliding: f64,
     /// Energy that is released by growth straight on (J/m², N/m): J.

@@ -15,7 +15,7 @@ pub struct TightenedBolt {
     pub force: f64,
     /// Length that is taken out of the bolt at the cut (m).
     pub shortening: f64,
-    /// True if the shortening is held, as it is given or locked.
+    /// True if the shortening is fixed: prescribed or locked.
     pub held: bool,
 }
 

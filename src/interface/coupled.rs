@@ -177,7 +177,7 @@ impl<'a> CoupledContact<'a> {
     }
 
     /// The change of U, and of jumps and forces of every pair, under loads `r` on Γ and `loads` on the normal jumps,
-    /// where limits keep their statuses. Motions that nothing restrains are zero unless it `moves`.
+    /// where limits keep their statuses. Unrestrained motions are zero unless it `moves`.
     pub fn solve_fixed(
         &self,
         r: &[f64],

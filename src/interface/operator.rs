@@ -16,8 +16,8 @@ use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;
 use crate::schur::pattern::{LowerPattern, SparseSymmetric};
 
-/// Fraction of the pairs' bilateral Schur complements that picard adds to S_0 if this is singular: small enough that
-/// (18) keeps its convergence behaviour, divergence for equally stiff sides included.
+/// Fraction of S_CON' of the bilateral problem that picard adds to S_0 if S_0 is singular: small enough that (18) still
+/// diverges for equally stiff sides.
 const SHARE: f64 = 0.05;
 /// Pivot, relative to its diagonal entry, below which an operator is singular.
 const SINGULAR_PIVOT: f64 = 1e-13;
@@ -147,8 +147,8 @@ impl Interface {
         &self.s_0
     }
 
-    /// The factor of S_0 plus a multiple of the pairs' bilateral Schur complements, 0 or `SHARE`, whichever first makes
-    /// it regular, and that multiple; `None` if it is singular with both.
+    /// The factor of S_0, or of S_0 + `SHARE` S_CON' of the bilateral problem if S_0 is singular, and the factor of
+    /// S_CON', 0 or `SHARE`; `None` if both are singular.
     pub fn factor_s_0(&self) -> Option<(BoundaryLastCholesky, f64)> {
         let regular = |matrix: &SparseSymmetric| {
             let factor = BoundaryLastCholesky::new(matrix, self.len, self.par).ok()?;

@@ -61,7 +61,7 @@ struct Direction {
 }
 
 impl RigidBasis {
-    /// The basis for normal jumps with this `diagonal` D, by two passes of Gram-Schmidt. Soft bodies come first: the
+    /// The basis for normal jumps with this `diagonal` D, by two passes of Gram-Schmidt. Soft bodies are first: the
     /// remainders of stiff bodies' motions then leave the small loads along the soft ones unchanged.
     pub fn new(drive: &RigidModes, diagonal: &[f64]) -> Self {
         let root: Vec<f64> = diagonal.iter().map(|k| k.max(0.0).sqrt()).collect();

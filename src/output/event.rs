@@ -150,7 +150,7 @@ pub enum Event<'a> {
     Error {
         /// The exit code of the program.
         exit_code: u8,
-        /// Where the failure is, and what was expected.
+        /// The message: place of the failure and expectation.
         message: &'a str,
     },
 }

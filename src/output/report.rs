@@ -19,21 +19,21 @@ use crate::settings::{Origins, Settings};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// The tolerance is met and the active set stays.
+    /// The tolerance is met and the active set has settled.
     Converged,
-    /// The tolerance isn't met, or contacts still change; the results are written all the same.
+    /// The tolerance isn't met, or contacts still change; the results are written nevertheless.
     NotConverged,
 }
 
-/// Operator with which contact conditions are solved.
+/// Operator with which contact constraints are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactOperator {
-    /// A matrix of the conditions, of all or of each group.
+    /// A dense matrix of the constraints, of all or of each group.
     Dense,
-    /// The fronts of the hierarchy, eliminated again for every active set.
+    /// The fronts of the hierarchy, refactorized for every active set.
     Tree,
-    /// The same within clusters, and between them iterations preconditioned by BDDC.
+    /// Fronts within clusters, and iterations preconditioned by BDDC between the clusters.
     Bddc,
 }
 
@@ -48,14 +48,14 @@ pub struct ErrorEstimate {
     pub energy_norm: f64,
 }
 
-/// A load step. Of sweeps that ended without converging the answer is there all the same.
+/// A load step, also one whose sweeps ended without converging.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StepReport {
     /// The name.
     pub name: String,
     /// The time on the load path.
     pub time: f64,
-    /// Names of the bodies and contacts that aren't there; contacts of absent bodies needn't be among them.
+    /// Names of the inactive bodies and contacts; contacts of inactive bodies may be omitted.
     pub absent: Vec<String>,
     /// Status in which its sweeps ended.
     pub status: Status,
@@ -63,18 +63,18 @@ pub struct StepReport {
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
     pub active_set_iterations: usize,
-    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active
+    /// Number of linear problems solved for contact constraints: those within contact problems, or with fixed active
     /// sets one for every load; abandoned attempts included.
     pub linear_solves: usize,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
     /// Iterations of the interface solver in the start and in every sweep; empty where it is direct.
     pub interface_iterations: Vec<usize>,
-    /// Number of contact conditions that are closed.
+    /// Number of closed contact constraints.
     pub active_contacts: usize,
     /// Checks of its solution.
     pub certificate: Certificate,
-    /// Estimate of the condition number; `null` where it can't be made.
+    /// Estimate of the condition number; `null` where none is possible.
     pub condition_number: Option<f64>,
     /// Estimate of the mesh's error; `null` where stresses are left out.
     pub error_estimate: Option<ErrorEstimate>,
@@ -93,8 +93,8 @@ pub struct FrictionOfStep {
     pub friction: Friction,
     /// Balance of energy.
     pub energy: EnergyBalance,
-    /// True if friction is at its limit: nothing else holds a body, and it gives all the force that it can, so that the
-    /// position is one of many; a warning names the motion.
+    /// True if friction is at its limit: a body is held by friction alone, which is fully mobilized, so that its
+    /// position isn't unique; a warning names the motion.
     pub at_limit: bool,
     /// Number of increments of the load step, of several load steps the largest; slip and status are those of the last
     /// one.
@@ -114,18 +114,18 @@ pub struct Report {
     pub sweeps: usize,
     /// Number of linear systems solved within contact problems.
     pub active_set_iterations: usize,
-    /// Number of linear problems solved for contact conditions: those within contact problems, or with fixed active
+    /// Number of linear problems solved for contact constraints: those within contact problems, or with fixed active
     /// sets one for every load; abandoned attempts included.
     pub linear_solves: usize,
-    /// Fallback methods that were used, in words.
+    /// Fallback methods that were used, as text.
     pub fallbacks: Vec<String>,
     /// Relative residual of the interface problem at the end.
     pub interface_residual: f64,
     /// Solver of the linear interface problem: `direct` or `iterative`.
     pub interface_solver: InterfaceMethod,
-    /// Reason of that choice, in words.
+    /// Reason for that choice, as text.
     pub interface_choice: String,
-    /// Operator with which contact conditions were solved.
+    /// Operator with which contact constraints were solved.
     pub contact_operator: ContactOperator,
     /// Iterations of the interface solver in the start and in every sweep, load step after load step; empty where it is
     /// direct.
@@ -136,9 +136,9 @@ pub struct Report {
     pub dofs: usize,
     /// Number of degrees of freedom on Γ.
     pub interface_dofs: usize,
-    /// Number of contact conditions.
+    /// Number of contact constraints.
     pub contact_conditions: usize,
-    /// Number of those that are closed.
+    /// Number of closed contact constraints.
     pub active_contacts: usize,
     /// Number of subdomains.
     pub subdomains: usize,
@@ -146,14 +146,14 @@ pub struct Report {
     pub contact_pairs: usize,
     /// Number of ranks.
     pub ranks: usize,
-    /// Number of hosts that they ran on.
+    /// Number of hosts that the ranks ran on.
     pub hosts: usize,
     /// Number of threads of each rank.
     pub threads: usize,
     /// Checks of the solution.
     pub certificate: Certificate,
     /// Estimate of the condition number of the stiffness, scaled to a unit diagonal, with the
-    /// contacts as they are in the solution; `null` where it can't be made.
+    /// contact status of the solution; `null` where none is possible.
     pub condition_number: Option<f64>,
     /// Time of each phase, that of the slowest rank.
     pub seconds: PhaseSeconds,
@@ -168,16 +168,17 @@ pub struct Report {
     pub resultants: Resultants,
     /// State and work of friction in all contacts; `null` where there is none.
     pub friction: Option<FrictionOfStep>,
-    /// The load steps, where the problem has any. Above, sweeps, inner steps and friction's work are those of
-    /// all, residual, certificate and condition those of the worst, and all else is that of the last one.
+    /// The load steps; empty for a problem without. In the fields above, sweeps, inner steps and work of friction are
+    /// sums over all load steps, residual, certificate and condition number those of the worst, the others those of the
+    /// last.
     pub steps: Vec<StepReport>,
-    /// Parts of a run that the scene didn't need, in words.
+    /// Parts of a run that the scene didn't need, as text.
     pub skipped: Vec<String>,
-    /// Warnings, in words.
+    /// Warnings, as text.
     pub warnings: Vec<String>,
-    /// The settings; `null` is what the method decides.
+    /// The settings; `null` if the method decides.
     pub settings: Settings,
-    /// Origin of each of them.
+    /// Origin of each setting.
     pub settings_from: Origins,
     /// Version of the program.
     pub version: String,
@@ -196,8 +197,8 @@ impl Report {
 /// The build of this program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Build {
-    /// Commit of its source, with `-dirty` behind it where files were changed; `null` in a debug
-    /// build and where the source was no repository.
+    /// Commit of its source, with `-dirty` appended if files were changed; `null` in a debug build
+    /// and outside a repository.
     pub commit: Option<String>,
     /// `release` or `debug`.
     pub profile: String,
@@ -205,9 +206,9 @@ pub struct Build {
     pub compiler: String,
     /// Target of the compilation.
     pub target: String,
-    /// The MPI library that it runs with.
+    /// The MPI library.
     pub mpi: String,
-    /// The version of the HDF5 library that it runs with.
+    /// The version of the HDF5 library.
     pub hdf5: String,
 }
 

@@ -12,8 +12,8 @@ use super::Plan;
 use crate::comm::Comm;
 
 impl Plan {
-    /// Sends the data that blocks `say` about nodes to the groups that use them: for every group of this rank, node by
-    /// node. Collective; `say` is called on the owner of a block for some of its nodes.
+    /// Sends data of nodes from their blocks to the groups that use them: for every group of this rank, node by node.
+    /// Collective; `say` returns the data of some nodes of a block, on the owner of the block.
     pub fn nodes_to_groups<T: Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,

@@ -51,7 +51,7 @@ const RECIPROCITY: f64 = 1e-7;
 const GOOD: f64 = 1e-10;
 const REFINEMENTS: usize = 3;
 
-/// The quantities that the scene asks for, if this load point is the end of a load step; with derivatives if the slips
+/// The quantities that the scene requests, if this load point is the end of a load step; with derivatives if the slips
 /// with which it began are known. Collective.
 pub fn quantities_at(
     moment: LoadPoint,

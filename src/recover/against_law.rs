@@ -13,7 +13,7 @@ const MOST: usize = 20;
 /// Violation of a law that counts as round-off, relative to the largest contact force.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The contact points that violate their laws most, else those whose status cycles, in words; on the root. Collective.
+/// The contact points that violate their laws most, else those whose status cycles, as text; on the root. Collective.
 pub fn names_against_law(
     context: &Context<'_>,
     solution: &DiscreteSolution,

@@ -43,7 +43,7 @@ pub struct FixedActiveSet<'a> {
     pub step: &'a StepProblem<'a>,
     /// The longest closing motion of a body (m).
     pub closing_motions: f64,
-    /// Motions that are free whatever the contacts do; springs at pins constrain them.
+    /// Motions that are free even with all contacts closed; springs at pins constrain them.
     pub free: Motions<'a>,
     /// Parts that the root alone holds.
     pub root: Option<FixedActiveSetRoot<'a>>,
@@ -65,7 +65,7 @@ pub struct FixedActiveSetRoot<'a> {
     pub is_refined: bool,
     /// True if statuses of contacts with friction cycle.
     pub cycles: bool,
-    /// True if loads at round-off of the displacements move bodies that nothing resists.
+    /// True if loads at round-off of the displacements move bodies without resistance.
     pub moves: bool,
 }
 
@@ -220,7 +220,7 @@ impl<'a> FixedActiveSet<'a> {
         }
         let mut fronts = fronts.borrow_mut();
         let Ok(is_held) = fix(&self.context, &mut fronts, &mut open, &laws, false) else {
-            // The remaining contacts hold nothing: no change is the best answer.
+            // The remaining contacts restrain nothing: zero is the best change.
             return Change::default();
         };
         let condensed = factors.condense(loads, &tied);

@@ -73,7 +73,7 @@ impl GroupSolution {
     }
 
     /// Opens normal conditions that are closed without a force and closes open ones with an overlap; returns whether
-    /// there was any.
+    /// any changed.
     pub fn open_or_close(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
         let unilateral = group.points.iter().enumerate();
@@ -102,8 +102,9 @@ impl GroupSolution {
         }
     }
 
-    /// Lets points slip that stick beyond their bound, and stick that slip under a force that drives them. A slipping
-    /// point without a force, lost with its pressure, gets the one of its law. Returns whether any changed.
+    /// Changes sticking points beyond their bound to slipping, and slipping points whose force drives the slip to
+    /// sticking. A slipping point without a force, lost with its pressure, gets that of its law. Returns whether any
+    /// changed.
     pub fn stick_or_slip(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
         for point in group.point_laws() {

@@ -94,8 +94,8 @@ impl FixedActiveSet<'_> {
         changes.into_iter().filter_map(of_cluster).collect()
     }
 
-    /// Undoes slips: closed points return to where they stuck, with whatever forces that takes, as the solution moves
-    /// under these `loads`. Collective.
+    /// Undoes slips: closed points return to their positions of stick, with the forces that this takes, as the solution
+    /// moves under these `loads`. Collective.
     pub fn hold_slips(&self, solution: &mut DiscreteSolution, loads: OnUnknowns) {
         for (&g, of_group) in &mut solution.groups {
             for point in self.context.groups[&g].point_laws() {

@@ -27,8 +27,8 @@ const OPENED: f64 = 1e-13;
 /// Most corrections of the round-off that a move leaves unbalanced; each moves bodies again, by less.
 const CORRECTIONS: usize = 2;
 
-/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free whatever the contacts
-/// do, in the Euclidean sense over the nodes of the bodies that take part. Collective.
+/// Makes the displacement of all blocks, node by node, orthogonal to every motion that is free even with all contacts
+/// closed, in the Euclidean sense over the nodes of the moving bodies. Collective.
 pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     let blocks = solution.blocks.iter_mut();
     let displacement = blocks.map(|(&b, s)| (b, &mut s.u)).collect();
@@ -41,9 +41,9 @@ pub fn remove_free_modes(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolu
 /// Outcome of the minimum-norm solution for released modes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MinimumNorm {
-    /// True if there were modes beyond those that are free whatever the contacts do; on all ranks.
+    /// True if there were modes beyond those that are free even with all contacts closed; on all ranks.
     pub has_released_modes: bool,
-    /// True if loads work along motions that nothing in the solution resists; on the root.
+    /// True if loads do work along motions without resistance in the solution; on the root.
     pub is_driven: bool,
     /// Number of conditions that opened through it; on the root.
     pub opened: usize,
@@ -113,8 +113,8 @@ pub fn take_minimum_norm(
     minimum_norm
 }
 
-/// Moves the bodies to the position of least displacement, whatever its certificate, and returns the motions free in
-/// it. Collective.
+/// Moves the bodies to the position of least displacement, even if that worsens the certificate, and returns the
+/// motions free in it. Collective.
 fn move_nearer(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
@@ -231,8 +231,8 @@ fn open_all(
     all
 }
 
-/// Opens the points of a group that have a gap, and counts them. What has moved from where it stuck without force
-/// doesn't stick any more, and an open contact has no friction of its pressure.
+/// Opens the points of a group that have a gap, and counts them. A point without force that has left its position of
+/// stick no longer sticks, and an open contact has no friction from pressure.
 fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
     let mut opened = 0;
     let may_open = |(_, condition): &(usize, Condition)| !condition.is_tied;
@@ -260,7 +260,7 @@ fn released_modes(
     Some(scene.released_modes(&analysis.motions.free, &conditions))
 }
 
-/// The motions along which a `solution` may slide under the same forces, in words; on the root. Collective.
+/// The motions along which a `solution` may slide under the same forces, as text; on the root. Collective.
 pub fn friction_limit(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,

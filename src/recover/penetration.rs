@@ -1,4 +1,4 @@
-//! Penetration at nodes without a contact condition: those of the other side.
+//! Penetration at the nodes of the master side, which carry no contact constraint.
 
 use std::collections::BTreeMap;
 

@@ -218,7 +218,7 @@ fn decide(fixed: &FixedActiveSet<'_>, decision: bool) -> bool {
     fixed.context.comm.decide(able && decision)
 }
 
-/// Corrects a solution by its unbalanced forces, if possible, whatever its certificate is then. Collective.
+/// Corrects a solution by its unbalanced forces, if possible, even if that worsens the certificate. Collective.
 pub fn correct_once(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
     if decide(fixed, true) {
         correct(fixed, solution);

@@ -36,13 +36,13 @@ pub struct Solution {
     pub condition: Option<f64>,
     /// Outcome of released modes.
     pub minimum_norm: MinimumNorm,
-    /// The motions along which friction at its bounds lets bodies slide under the same forces, in words; on the root.
+    /// The motions along which friction at its bounds lets bodies slide under the same forces, as text; on the root.
     pub friction_limit: Vec<String>,
     /// Reactions of supports; on the root.
     pub reactions: Vec<Reaction>,
     /// Stress intensity of crack tips, where there are stresses; on the root.
     pub stress_intensities: Vec<StressIntensity>,
-    /// The quantities that the scene asks for, once they are evaluated; on the root.
+    /// The quantities that the scene requests, once they are evaluated; on the root.
     pub quantities: Quantities,
     /// The estimate of the mesh's error, where there are stresses; on the root.
     pub estimate: Option<CellError>,
@@ -57,7 +57,7 @@ impl Solution {
         self.certificate.is_a_number() && estimate.error.is_finite() && estimate.energy.is_finite()
     }
 
-    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are asked for,
+    /// Refines a `discrete` solution against the full discrete problem, and recovers stresses if they are requested,
     /// those of load step `stress_of`. Collective.
     pub fn new(
         fixed: &FixedActiveSet<'_>,

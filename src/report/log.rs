@@ -30,22 +30,22 @@ const NOT_CONVERGED: u8 = 3;
 /// Time between progress events for programs.
 const PULSE: Duration = Duration::from_secs(1);
 
-/// Result of validating load steps in which the same is there.
+/// Result of validating the load steps of a stage, in which the same bodies and contacts are present.
 #[derive(Debug)]
 pub struct Checked {
     /// Warnings of their rigid motions.
     pub warnings: Vec<String>,
     /// Estimated cost of solving them, for every rank.
     pub costs: Vec<CostEstimate>,
-    /// Memory that there is (bytes).
+    /// Available memory (bytes).
     pub available: f64,
-    /// Reason for the choice of the solver of contact conditions, in words.
+    /// Reason for the choice of the operator for contact constraints, as text.
     pub why: String,
     /// Coarse unknowns of an iterative interface solver.
     pub coarse_dofs: Option<usize>,
 }
 
-/// Prints on the root what a user wants to follow, and nothing elsewhere.
+/// The log of a run, printed by the root only.
 pub struct RunLog<'a> {
     comm: &'a Comm,
     settings: &'a Settings,
@@ -57,7 +57,7 @@ pub struct RunLog<'a> {
     heard: Cell<Instant>,
     /// The first load step of this run, and when it began.
     first_step: Cell<Option<(usize, Instant)>>,
-    /// Error of an event that couldn't be written. A run goes on: it writes its results to a file.
+    /// Error of the first event that couldn't be written. It doesn't end the run, because the results go to a file.
     unheard: OnceCell<OutputError>,
 }
 
@@ -77,7 +77,7 @@ impl Listener for RunLog<'_> {
 }
 
 impl<'a> RunLog<'a> {
-    /// Speaks on the root unless `settings` ask for quiet, of a run that `began` then.
+    /// The log of a run that started at `began`; silent on other ranks than the root and if `settings` are quiet.
     pub fn new(comm: &'a Comm, settings: &'a Settings, began: Instant) -> Self {
         let voice = (comm.is_root() && !settings.quiet).then_some(settings.log);
         Self {
@@ -92,7 +92,7 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// Prints lines, where text is what is printed.
+    /// Prints lines if the format of the log is text.
     fn say(&self, text: &str) {
         if self.voice == Some(LogFormat::Text) {
             (self.bar).aside(|| self.remember(message::say(&format!("{text}\n"))));
@@ -118,10 +118,10 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// An error where events couldn't be written; a closed pipe is no error.
+    /// Fails if an event couldn't be written; a closed pipe is no error.
     ///
     /// # Errors
-    /// The first that couldn't.
+    /// The error of the first such event.
     pub fn heard(&self) -> Result<(), Failure> {
         match self.unheard.get() {
             None => Ok(()),
@@ -129,7 +129,7 @@ impl<'a> RunLog<'a> {
         }
     }
 
-    /// The run comes to another phase, of so many steps where that is known.
+    /// Begins a phase of the run, with its number of steps if known.
     pub fn phase(&self, phase: &'static str, steps: Option<usize>) {
         comm::phase(phase);
         self.bar.begin(phase);
@@ -140,7 +140,7 @@ impl<'a> RunLog<'a> {
         });
     }
 
-    /// Prints the problem and the settings, and `why` contact conditions are solved for as they are.
+    /// Prints the problem, the settings, and `why` this operator for contact constraints was chosen.
     pub fn problem(&self, catalog: &Catalog, plan: &Plan, why: &str) {
         let summary = Summary {
             version: env!("CARGO_PKG_VERSION"),
@@ -198,7 +198,7 @@ impl<'a> RunLog<'a> {
         }));
     }
 
-    /// Log line of a load step that begins, where there are any.
+    /// Prints the start of load step `k`; nothing in a problem without load steps.
     pub fn step(&self, catalog: &Catalog, k: usize) {
         let Some(step) = catalog.steps.get(k) else {
             return;
@@ -219,22 +219,22 @@ impl<'a> RunLog<'a> {
         }));
     }
 
-    /// The head of the table of sweeps, if there are going to be any.
+    /// Prints the header of the table of sweeps if anything is in contact.
     pub fn sweeps(&self, in_contact: bool) {
         if in_contact {
             self.say(terminal::SWEEP_HEADER);
         }
     }
 
-    /// One sweep.
+    /// Prints a sweep.
     pub fn sweep(&self, record: &SweepRecord) {
         self.tell(&Event::Sweep(record));
     }
 
-    /// Makes the report, has it written with the results, and says how the run ended. On the root.
+    /// Makes the report, writes it with the results, and prints how the run ended. On the root.
     ///
     /// # Errors
-    /// Something can't be written.
+    /// Results or log can't be written.
     pub fn finish(
         &self,
         totals: &Totals<'_>,

@@ -1,4 +1,4 @@
-//! Everything the report is made of, gathered on the root: load step by load step, then together.
+//! The data of the report, gathered on the root: of every load step, and combined.
 
 use contact_dd_partition::problem::Catalog;
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ pub struct Totals<'a> {
     pub catalog: &'a Catalog,
     /// The owners of blocks and fronts.
     pub plan: &'a Plan,
-    /// Reason for the choice of the solver of contact conditions, in words.
+    /// Reason for the choice of the operator for contact constraints, as text.
     pub why: &'a str,
     /// Every load step, one where the problem has none.
     pub steps: Vec<StepTotals>,
@@ -37,9 +37,9 @@ pub struct Totals<'a> {
 pub struct StepTotals {
     /// The outcome of the sweeps.
     pub outcome: SweepOutcome,
-    /// Linear problems solved for contact conditions, in tries that were given up, too.
+    /// Number of linear problems solved for contact constraints, abandoned attempts included.
     pub linear_solves: usize,
-    /// Closed conditions.
+    /// Number of closed constraints.
     pub active: usize,
     /// The certificate.
     pub certificate: Certificate,
@@ -165,12 +165,12 @@ impl Totals<'_> {
         }
     }
 
-    /// The solver of the interface problem that didn't converge before another one took over, and why, in words.
+    /// The solver of the interface problem that didn't converge and was replaced, with the reason, as text.
     pub fn took_over(&self) -> Option<&str> {
         (self.steps.iter()).find_map(|step| step.outcome.took_over.as_deref())
     }
 
-    /// Fallbacks that were used, in words.
+    /// Fallbacks that were used, as text.
     pub fn fallbacks(&self) -> Vec<String> {
         let all = self.steps.iter().flat_map(|step| &step.outcome.fallbacks);
         once_each(all.cloned())

@@ -259,7 +259,7 @@ fn fall(
 }
 
 /// Removes as much of the `slip` of closed contacts as motions allow: sides that stick once they touch have no slip,
-/// whatever path brought the bodies there.
+/// independent of the path of the bodies.
 fn without_slip(
     rows: &[RigidRow],
     kinematics: &Kinematics,

@@ -224,8 +224,9 @@ impl Forces {
         }
     }
 
-    /// The part of a load that the forces leave unbalanced in their span, and the motion along which it drives the
-    /// bodies.
+    /// The part of a load that the forces leave unbalanced, and a motion along which the load does more work than the
+    /// forces can absorb; `None` if the singular values can't be computed. Without friction the part of the load
+    /// outside the span of the forces is left out; with friction only that outside the span of all constraints.
     fn in_span(
         &self,
         b: &DMatrix<f64>,

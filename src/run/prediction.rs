@@ -41,7 +41,7 @@ impl Stages<'_> {
     /// Collective.
     ///
     /// # Errors
-    /// Those of the whole run.
+    /// Errors of the whole run.
     fn close_without_friction(
         &self,
         stage: &Stage<'_>,

@@ -52,7 +52,7 @@ impl Stages<'_> {
     /// Solves the cases of a study and writes the table of their quantities; returns true if all converged. Collective.
     ///
     /// # Errors
-    /// Those of the whole run, except that a case may be ill-posed; a problem with load steps, which a study can't
+    /// Errors of the whole run, except that a case may be ill-posed; a problem with load steps, which a study can't
     /// have.
     pub fn study(&self, path: &Path) -> Result<bool, Failure> {
         let catalog = self.file.catalog();

@@ -113,8 +113,8 @@ fn without_friction(
 }
 
 /// The solution with friction, by Newton's method. If that stalls, it starts again with the conditions closed that are
-/// compressed while everything sticks along tangents, open or closed: a convex problem, in which no body comes loose
-/// because contacts far from each other open. Collective.
+/// compressed while everything sticks along tangents, open or closed: a convex problem, in which no body loses its
+/// restraint because contacts far from each other open. Collective.
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.

@@ -108,8 +108,8 @@ impl ActiveSetFronts {
         Ok(fronts)
     }
 
-    /// True if slipping points have to be held: springs hold open contacts, as something moves without them, and
-    /// friction in space depends on the length of that motion.
+    /// True if slipping points have to be held: springs restrain motions that the contacts leave free, and friction in
+    /// space depends on the length of these motions.
     pub fn has_to_hold(&self, context: &Context<'_>) -> bool {
         self.spring > 0.0 && context.catalog.dim == 3 && context.catalog.has_friction()
     }

@@ -31,7 +31,7 @@ pub(super) struct TreeOperator<'a, 's, 'o> {
     steps: &'s mut Steps<'o>,
     /// The last solution; all ranks have one or none does, although some have no clusters.
     pub solution: Option<ActiveSetSolution>,
-    /// True if slips are prescribed, as something moves otherwise.
+    /// True if slips are prescribed because parts of the scene would otherwise move freely.
     is_held: bool,
     /// True if springs of earlier statuses were removed.
     is_released: bool,

@@ -86,7 +86,7 @@ pub(super) struct Steps<'o> {
 }
 
 impl<'o> Steps<'o> {
-    /// No steps yet; the `observer` is told of each.
+    /// No steps yet; the `observer` receives a record of each.
     pub fn new(observer: &'o mut dyn FnMut(&SweepRecord)) -> Self {
         Self {
             began: Instant::now(),

@@ -119,8 +119,8 @@ impl Descent {
     }
 }
 
-/// The fraction of the step from `jumps` to those `found` at which the first wrong open condition closes; infinite if
-/// there is none.
+/// The fraction of the step from `jumps` to those `found` at which the first wrong open condition closes; infinite
+/// without such a condition.
 fn part(jumps: &[f64], found: &[f64], bounds: &[f64], open: &[bool], wrong: &[usize]) -> f64 {
     let part = |&j: &usize| ((bounds[j] - jumps[j]) / (found[j] - jumps[j])).max(0.0);
     let penetrating = wrong.iter().filter(|&&j| open[j]);

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::scene::coupling::COMPONENTS;
 
-/// A node and a local axis from 0; for a reference node, rotations follow the axes.
+/// A node and a component from 0: the translations along the axes, then for a reference node the rotations.
 pub(super) type NodeAxis = (u32, usize);
 
-/// Translations and rotations of a reference node.
+/// Number of translations and rotations of a reference node.
 pub(super) const FREEDOMS: usize = COMPONENTS.len();
 
 /// The degrees of freedom of a reference node in the plane: along x and y, and about z.
@@ -46,8 +46,8 @@ impl Reference {
         self.coupled.iter().filter(|&&coupled| coupled).count() == 1
     }
 
-    /// The reference node and its component for a degree of freedom, from 0 on; `None` if there is none in `dim`
-    /// dimensions or it isn't coupled.
+    /// The reference node and its component for a degree of freedom, from 0; `None` if the component doesn't exist in
+    /// `dim` dimensions or isn't coupled.
     pub(super) fn component(&self, freedom: usize, dim: usize) -> Option<NodeAxis> {
         let component = self.first + freedom;
         let is_coupled = self.coupled.get(component) == Some(&true);

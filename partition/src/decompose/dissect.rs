@@ -150,7 +150,7 @@ impl Set<'_> {
         }
     }
 
-    /// The ids that a vertex of its graph stands for.
+    /// The ids of the items that a vertex of the graph represents.
     fn ids(&self, vertex: usize) -> &[u32] {
         match self {
             Self::Vertices(graph) => &graph.ids[vertex..=vertex],

@@ -50,7 +50,7 @@ impl Summary<'_> {
         pairings
     }
 
-    /// Number of subdomains of contact groups, in plain words.
+    /// Number of contact groups by their number of subdomains, as text.
     fn sizes_of_groups(&self) -> String {
         let sizes = self.groups();
         let words = [

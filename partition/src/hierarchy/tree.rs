@@ -1,6 +1,6 @@
 //! The hierarchy: a tree along which the Schur complements of the subdomains are merged.
 //!
-//! A node of the tree stands for the subdomains under it. It eliminates the nodes of Γ whose subdomains all lie under
+//! A node of the tree represents the subdomains under it. It eliminates the nodes of Γ whose subdomains all lie under
 //! it, but not all under one child, and keeps those that are shared with subdomains outside. Γ holds the nodes shared
 //! by several subdomains and all nodes of contact points: a contact point belongs to the lowest tree node under which
 //! all subdomains with its nodes lie. There its normal jump replaces a displacement.

@@ -60,7 +60,7 @@ fn read_unnamed(path: &Path) -> Result<Mesh, InputError> {
 /// Reads a mesh from the bytes of an MSH file.
 ///
 /// # Errors
-/// Those of [`read`].
+/// Errors of [`read`].
 pub fn parse(bytes: &[u8]) -> Result<Mesh, InputError> {
     import::mesh(contents(bytes)?)
 }

@@ -13,7 +13,7 @@ use crate::scene::material::Elasticity;
 /// The parameters of a scene, and the nodal forces of those that are loads.
 ///
 /// # Errors
-/// Those of the scene's loads.
+/// The parameters of the scene's loads.
 pub(super) fn parameters(
     on: Loaded<'_>,
     of_scene: &steps::Loads,

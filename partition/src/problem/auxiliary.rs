@@ -14,7 +14,7 @@ use crate::model::{SpringBlock, Support};
 /// Marks supports and springs without a boundary condition in the scene, which no report lists.
 const NO_CONDITION: u32 = u32::MAX;
 
-/// The largest tag of an auxiliary node: below the tags in files, and below −1, which stands for no node.
+/// The largest tag of an auxiliary node: below the tags in files, and below −1, which means no node.
 const FIRST_TAG: i64 = -2;
 
 /// Coordinate axes.

@@ -4,7 +4,7 @@ use super::Problem;
 use super::datasets::Datasets;
 use crate::quantity::{ParameterKind, QuantityKind};
 
-/// Writes them; nothing if no quantity is requested.
+/// Writes the quantities and parameters; nothing if no quantity is requested.
 pub(super) fn write(problem: &Problem, datasets: &mut Datasets) -> hdf5::Result<()> {
     let all = || problem.catalog.quantities.iter();
     if all().len() == 0 {

@@ -13,7 +13,7 @@ pub enum Units {
 }
 
 impl Units {
-    /// All of them.
+    /// All units.
     pub const ALL: [Self; 2] = [Self::Metre, Self::Millimetre];
 
     /// The unit of lengths, which is its name in scenes and files.

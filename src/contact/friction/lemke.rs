@@ -1,10 +1,10 @@
 //! Lemke's method on jumps and forces: a path to a solution from a problem with a known one.
 //!
 //! With θ p added to every normal force and θ b to every given bound, all limits are closed and stick for large θ. From
-//! there θ decreases. Wherever a force or a jump reaches its limit, one status changes, and θ goes on in the direction,
-//! up or down, in which the previous quantity leaves its limit: a piecewise linear path that never returns. No piece is
-//! endless: along an endless one jumps x would have xᵀ H x ≤ 0. So the path reaches θ = 0 whatever the coefficients of
-//! friction, except for round-off and for loads along motions without resistance.
+//! there θ decreases. Wherever a force or a jump reaches its limit, one status changes, and θ continues in the
+//! direction, up or down, in which the previous quantity leaves its limit: a piecewise linear path that never returns.
+//! No piece is endless: along an endless one jumps x would have xᵀ H x ≤ 0. So the path reaches θ = 0 whatever the
+//! coefficients of friction, except for round-off and for loads along motions without resistance.
 //!
 //! A. Klarbring, J.-S. Pang, *Existence of solutions to discrete semicoercive frictional contact problems*, SIAM J.
 //! Optim. 8 (1998).

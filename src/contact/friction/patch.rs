@@ -7,7 +7,7 @@
 //! ```
 //!
 //! leave a problem of the same form on the patch p, which is solved in the same manner. Points whose t_o exceeds its
-//! bound join the patch until there is none: then the solution is that of the whole problem.
+//! bound join the patch until none is left: then the solution is that of the whole problem.
 
 use std::rc::Rc;
 

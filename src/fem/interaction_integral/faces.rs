@@ -9,8 +9,9 @@ use contact_dd_partition::element::ElementKind;
 use super::{DEGREE, RADII, TipDisc, Work};
 
 impl TipDisc<'_> {
-    /// W at the nodes of the faces: ∫ N q a,₁ ds over ∫ N ds. The traction at the tip is taken from its neighbour, and
-    /// that at a node outside the disc from the node before it, because not all cells around these are evaluated.
+    /// W at the nodes of the faces: ∫ N q a,₁ ds over ∫ N ds. The share of the tip is added to the next node of its
+    /// facet, that of a node outside the disc to the end of its facet nearer to the tip, because not all cells around
+    /// the tip and outside the disc are evaluated.
     pub(super) fn work_on_faces(&self) -> BTreeMap<i64, [Work; RADII.len()]> {
         let mut sums: BTreeMap<i64, ([Work; RADII.len()], f64)> = BTreeMap::new();
         for facet in &self.tip.facets {

@@ -9,7 +9,7 @@ const NEAR: f64 = 1e-6;
 /// Most points that are named.
 const MOST: usize = 20;
 
-/// The points whose status is about to change, in words; on the root. Collective.
+/// The points whose status is about to change, as text; on the root. Collective.
 pub fn about_to_change(solved: Solved<'_>) -> Vec<String> {
     let context = &solved.fixed.context;
     let discrete = &solved.solution.discrete;
@@ -42,7 +42,7 @@ pub fn about_to_change(solved: Solved<'_>) -> Vec<String> {
     names
 }
 
-/// The points of a group of which a force or a way is less than these sizes, or friction as near to its bound.
+/// The points of a group with a force or a distance to contact below these sizes, or friction as near to its bound.
 fn near(
     group: &ContactGroup,
     solution: &GroupSolution,

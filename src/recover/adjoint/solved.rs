@@ -15,7 +15,7 @@ pub struct Solved<'a> {
 }
 
 impl Solved<'_> {
-    /// Reason why there are no derivatives, in words; on the root.
+    /// Reason why there are no derivatives, as text; on the root.
     pub fn without_derivatives(&self) -> Option<String> {
         let solution = self.solution;
         let root = self.fixed.root?;

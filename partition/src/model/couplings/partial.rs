@@ -11,7 +11,8 @@ use crate::element::geometry::{cross, difference, dot, length};
 /// Inertia about an axis, relative to the largest, below which it is zero.
 pub(super) const NO_INERTIA: f64 = 1e-12;
 
-/// Relative part of a load or a prescribed motion along uncoupled components that is round-off.
+/// Part of a load or of a prescribed motion along uncoupled components, relative to the whole, that counts as
+/// round-off.
 const NOTHING: f64 = 1e-9;
 
 /// The components of a point's motion that occur in no equation.
@@ -20,7 +21,7 @@ pub(super) struct Uncoupled {
     pub motions: Vec<[f64; 6]>,
 }
 
-/// A node that follows the point only along some directions.
+/// A node that is coupled to the point along some directions only.
 pub(super) struct FollowingNode {
     pub node: u32,
     /// The position (m).
@@ -29,7 +30,7 @@ pub(super) struct FollowingNode {
     pub directions: Vec<[f64; 3]>,
 }
 
-/// The equations of nodes that follow the point.
+/// The coupling equations of the nodes.
 pub(super) fn forms(frame: &Frame, nodes: &[FollowingNode]) -> Vec<Form> {
     let mut all = Vec::new();
     for of in nodes {
@@ -127,7 +128,7 @@ impl Uncoupled {
     /// Removes prescribed components without coupling from the loads of the point.
     ///
     /// # Errors
-    /// A load along an uncoupled component, in words, or a prescribed component that is coupled in part.
+    /// A load along an uncoupled component, or a prescribed component that is coupled in part; the message says which.
     pub fn free(&self, frame: &Frame, acting: &mut Acting) -> Result<(), String> {
         let [force, moment] = [acting.force, acting.moment.map(|m| m / frame.size)];
         let load = [

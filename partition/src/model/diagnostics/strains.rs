@@ -164,7 +164,7 @@ impl Diagnostics<'_> {
             .collect()
     }
 
-    /// Those strains of the body with this index and `first` cell, in a loading.
+    /// The large strains of the body with this index and `first` cell, in a loading.
     fn of_body(&self, loading: &Loading, (index, first): (usize, usize)) -> Vec<Estimate> {
         let units = self.scene.units;
         let Some((name, body)) = self.scene.bodies.iter().nth(index) else {

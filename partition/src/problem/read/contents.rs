@@ -137,7 +137,7 @@ impl Contents {
     /// Reads all integers of a one-dimensional dataset.
     ///
     /// # Errors
-    /// Those of [`Contents::integers`].
+    /// Errors of [`Contents::integers`].
     pub fn all_integers(&self, path: &str) -> Result<Slice<i64>, InputError> {
         let rows = self.datasets.get(path).map_or(0, Dataset::rows);
         self.integers(path, 0..rows)
