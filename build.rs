@@ -13,8 +13,7 @@ fn main() {
     set("BUILD_TARGET", &given("TARGET"));
     let compiler = said_by(&given("RUSTC"), &["--version"]);
     set("BUILD_COMPILER", &compiler.unwrap_or_default());
-    // A debug build is made of what is being written, which is no commit; it would only be made again
-    // after each.
+    // The source of a debug build is usually not committed, and every commit would cause another build.
     if profile != "release" {
         return;
     }
@@ -39,7 +38,7 @@ fn main() {
     }
 }
 
-/// Output of a program, in one line; `None` where it can't be run or fails.
+/// Output of a program, in one line; `None` if it can't be run or fails.
 fn said_by(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let said = String::from_utf8(output.stdout).ok()?;

@@ -82,7 +82,7 @@ impl Scene {
         (dofs, schur, s, load)
     }
 
-    /// The same as what a merge takes.
+    /// A condensed block in the form that a merge takes.
     pub fn of_block(&self, b: usize) -> Condensed {
         let (dofs, schur, s, _) = self.condensed(b);
         Condensed {

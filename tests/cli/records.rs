@@ -214,7 +214,7 @@ fn a_row_holds_what_the_program_says_of_a_run() {
             continue;
         };
         assert_eq!(row.exit, Some(0));
-        // Without any load there is no system to solve.
+        // A scene without load needs no linear solve.
         assert!(
             solves >= newton && (newton >= sweeps || newton == 0),
             "{seed}: {sweeps} {newton} {solves}"

@@ -1,5 +1,5 @@
-//! Bytes of a problem file changed at random, in its headers and in its data: with its digest such a file is refused
-//! before the HDF5 library sees it; without one, as of another program, what the library does is found in words.
+//! Bytes of a problem file changed at random, in its headers and in its data: a file with digest is refused before the
+//! HDF5 library reads it; without one, as written by other programs, a crash of the library is reported as a message.
 
 use std::fs;
 use std::path::Path;
@@ -38,7 +38,7 @@ impl Random {
 /// Places of most headers of the small problem (bytes).
 const HEADERS: usize = 6000;
 
-/// Size of what is behind the end of the HDF5 file (bytes).
+/// Size of the trailer after the end of the HDF5 file (bytes).
 const TRAILER: usize = 40;
 
 /// A file as other programs write it: strings of variable length, which are in HDF5's global heap, and no digest.

@@ -20,7 +20,7 @@ pub enum Change {
     Lengthen,
     /// One dimension more.
     Deepen,
-    /// The same numbers as other ones, or as words.
+    /// The same numbers as another numeric type, or as strings.
     Retype(Type),
     /// Another integer in one place.
     Integer(usize, i64),
@@ -59,7 +59,7 @@ impl fmt::Display for Change {
     }
 }
 
-/// All changes of what stands at `place`.
+/// All changes of the dataset or attribute at `place`.
 pub fn changes(path: &Path, place: &Place) -> Vec<Change> {
     let file = without_locks().open(path).unwrap();
     let container = open(&file.group(&place.group).unwrap(), place);

@@ -1,6 +1,6 @@
-//! Every dataset and attribute of a good problem file dropped, shortened, lengthened, emptied,
-//! retyped and poisoned: it is refused with words, or says what it said, or is another problem where
-//! nothing else in the file speaks against it.
+//! Every dataset and attribute of a valid problem file is dropped, shortened, lengthened, emptied, retyped and
+//! poisoned: the file is refused with a message, gives the same result, or is another problem that is consistent with
+//! the remainder of the file.
 
 #![expect(
     clippy::unwrap_used,
@@ -98,10 +98,10 @@ const FREE: [&str; 65] = [
     "/contact/shear_bound",
 ];
 
-/// Of so many files that say something else, or are refused, one is tried on 3 ranks.
+/// Number of changed or refused files of which one is run on 3 ranks.
 const SAMPLE: usize = 100;
 
-/// Far more than the small problem takes, less than what a header may claim (bytes).
+/// Limit of memory: far above the need of the small problem, below the sizes that a header may claim (bytes).
 const MEMORY: u64 = 16 << 30;
 
 /// The fate of a changed file.

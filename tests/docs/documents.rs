@@ -9,9 +9,9 @@
 //! - any block after a paragraph that ends with a file's name in backticks and a colon is written to that file;
 //! - `text` after a paragraph that ends with "prints:" is the expected output of the block before.
 //!
-//! In the output `…` stands for anything; as a line of its own it stands for any number of lines. A block that can't be
-//! run here is preceded by a comment `<!-- not run: reason -->`, or, for all following blocks,
-//! `<!-- none of this page is run: reason -->`; any other block that isn't run is an error.
+//! In the output `…` matches any text within a line; as a line of its own it matches any number of lines. A block that
+//! can't be run here is preceded by a comment `<!-- not run: reason -->`, or, for all following blocks, `<!-- none of
+//! this page is run: reason -->`; any other block that isn't run is an error.
 //!
 //! `DOCUMENTS_PYTHON` names the Python, which `scripts/setup --documents` installs; without it the tests that need it
 //! are ignored. `DOCUMENTS_KEEP` names a folder that keeps the pages' output.

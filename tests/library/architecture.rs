@@ -1,4 +1,4 @@
-//! Data flows one way: who imports whom, checked against what ARCHITECTURE.md says.
+//! Layers: the imports of modules, checked against ARCHITECTURE.md.
 
 mod functions;
 mod imports;
@@ -16,10 +16,10 @@ const CRATES: [(&str, &str); 2] = [
     ("src", "contact_dd_mpi"),
 ];
 
-/// Most floors of rooms, each of which stands above all that it imports.
+/// Largest number of layers of folders; a folder is one layer above the highest that it imports.
 const MOST_FLOORS: usize = 9;
 
-/// Lines of a function, and its arguments, from which on it has many; the most functions that do.
+/// Numbers of lines and of arguments above which a function is large, each with the largest number of such functions.
 const MANY_LINES: (usize, usize) = (60, 10);
 const MANY_ARGUMENTS: (usize, usize) = (6, 5);
 
@@ -90,7 +90,7 @@ fn no_files_import_each_other_in_a_circle() {
         let Some(above) = imports.keys().find(|module| !floors.contains_key(*module)) else {
             continue;
         };
-        // From one that stands on a circle, down to one that comes again.
+        // From a module above a cycle down the imports until one recurs.
         let mut way = vec![above];
         let circle = loop {
             let below =

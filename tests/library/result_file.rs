@@ -18,7 +18,7 @@ use contact_dd_partition::scene::units::Units;
 use hdf5::File;
 
 /// Strips of triangles, the first of them subdomain `first`, with `cells` cells each; every number
-/// tells where it belongs.
+/// encodes its place.
 fn strips(first: usize, cells: &[usize]) -> SubdomainResults {
     let mut results = SubdomainResults {
         first,

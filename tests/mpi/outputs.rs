@@ -24,7 +24,7 @@ pub fn unwritable_output(trials: &mut Trials) {
     }
 }
 
-/// A full file system, at whatever stage it fills up, and a read-only one.
+/// A file system that fills up at every possible stage, and a read-only one.
 pub fn full_disk(trials: &mut Trials) {
     let full = "No space left on device";
     // The result has some 150 kB, the report some 4 kB, and the older file one page of 4 kB.
@@ -132,7 +132,7 @@ pub fn full_terminal(trials: &mut Trials) {
     }
 }
 
-/// A memory limit that is too small, at whatever stage it is reached.
+/// A memory limit that is reached at every possible stage.
 pub fn little_memory(trials: &mut Trials) {
     for ranks in [0, 2] {
         trials.once(&format!("little_memory::on_{ranks}_ranks"), move || {

@@ -64,7 +64,7 @@ fn a_deck_and_the_scene_that_is_written_of_it_make_the_same_problem() {
         said.ends_with("contact-dd-partition made/scene.toml\n"),
         "{said}"
     );
-    // What is there already is written again as it is.
+    // Existing files with the same content are accepted.
     done(&["part.inp", "--write-scene", "made", "-o", "again.h5"]);
     done(&["made/scene.toml", "-o", "made.h5"]);
     let bytes = |name: &str| fs::read(dir.path().join(name)).unwrap();

@@ -1,4 +1,4 @@
-//! `--info`: what a problem file holds.
+//! `--info`: the content of a problem file.
 
 use std::fs;
 use std::path::Path;

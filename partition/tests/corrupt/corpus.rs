@@ -1,5 +1,4 @@
-//! Files that once were taken for good, or broke something: each is refused with the words behind
-//! `expected:` in it.
+//! Invalid files that were once accepted or caused a crash: each is refused with the text after `expected:` in it.
 
 use std::fs;
 use std::path::Path;

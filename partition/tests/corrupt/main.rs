@@ -1,5 +1,5 @@
-//! Scenes and meshes that are broken at random: an error in words, or a problem file that can be
-//! read; never a panic, and no memory that nothing in the file needs.
+//! Randomly damaged scenes and meshes: the result is an error message or a readable problem file, never a panic or an
+//! allocation much larger than the file needs.
 
 #![expect(
     clippy::unwrap_used,
@@ -30,10 +30,10 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 /// A scene of the meshes in `../library/gmsh/files`.
 const SCENE: &str = include_str!("corpus/good.toml");
 
-/// Far more than the small meshes take, less than what a file may claim (bytes).
+/// Limit of memory: far above the need of the small meshes, below the sizes that a damaged file may claim (bytes).
 const MEMORY: u64 = 16 << 30;
 
-/// So many cases; what fails is kept by hand in the corpus.
+/// A number of cases; failing ones are added to the corpus by hand.
 fn cases(count: u32) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,
@@ -41,7 +41,7 @@ fn cases(count: u32) -> ProptestConfig {
     }
 }
 
-/// Makes what claims too much memory fail.
+/// Limits the memory, so that excessive allocations fail.
 fn limit_memory() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -53,7 +53,7 @@ fn limit_memory() {
     });
 }
 
-/// All that the tool does with a scene and a mesh. What it makes can be read again.
+/// The whole path from scene and mesh to a problem file, which is read back.
 fn partition(scene: &str, mesh: &[u8]) -> Result<(), InputError> {
     limit_memory();
     let scene = Scene::parse(scene)?;
@@ -68,7 +68,7 @@ fn partition(scene: &str, mesh: &[u8]) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Fails unless an error is a line of words.
+/// Fails unless an error is a message without control characters.
 fn is_said(error: &InputError) -> Result<(), TestCaseError> {
     let message = error.to_string();
     prop_assert!(
@@ -78,7 +78,7 @@ fn is_said(error: &InputError) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// One step by which a text is broken.
+/// A change that damages a text.
 #[derive(Clone, Debug)]
 enum Break {
     DropLine(Index),

@@ -27,7 +27,7 @@ const MESHES: [&[u8]; 8] = [
     include_bytes!("../library/gmsh/files/version2.2-binary-parametric.msh"),
 ];
 
-/// Starts of files after which anything may come.
+/// Beginnings of files, which are followed by random bytes.
 const STARTS: [&[u8]; 5] = [
     b"",
     b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n",

@@ -1,4 +1,4 @@
-//! Meshes and scenes in space, broken one by one: each is refused in words that say what is wrong.
+//! Meshes and scenes in space with one defect each: all are refused with a message that names the defect.
 
 use super::partition;
 use super::table::cases;
@@ -6,7 +6,8 @@ use super::table::cases;
 const MESH: &str = include_str!("corpus/good-in-space.msh");
 const SCENE: &str = include_str!("corpus/good-in-space.toml");
 
-/// A text and its replacement, and below them the words expected; of the mesh: a hexahedron below six tetrahedra.
+/// A text and its replacement, and in the next line the expected message; for the mesh: a hexahedron below six
+/// tetrahedra.
 const MESHES: &str = r#"
 \n15 1.25 1 2\n => \n15 0.25 0 1.5\n
     element 12 has no volume
@@ -146,7 +147,7 @@ name = "ball" => name = "joint"
     joint
 "#;
 
-/// Faults of the answers to a text that is broken as a table says.
+/// The rows of a table of defects whose message isn't the expected one.
 fn faults(text: &str, table: &str, refused: impl Fn(&str) -> Option<String>) -> Vec<String> {
     let fault = |(from, to, words): (String, String, String)| {
         assert_eq!(text.matches(&from).count(), 1, "{from}");

@@ -50,7 +50,7 @@ fn length(mesh: &Mesh, side: &str) -> f64 {
         .sum()
 }
 
-/// A point on a grid fine enough to tell nodes apart and coarse enough to bear rounding.
+/// A point on a grid fine enough to distinguish nodes and coarse enough to absorb rounding.
 fn key(point: [f64; 3]) -> [i64; 2] {
     [0, 1].map(|i| (point[i] * 1e9).round() as i64)
 }
@@ -142,7 +142,7 @@ fn examples_of_any_cells_are_the_same_scene() {
             for (contact, other) in model.contacts.iter().zip(&linear.contacts) {
                 let share = |c: &Contact| c.points.iter().map(|r| r.area).sum::<f64>();
                 assert!(contact.points.len() >= other.points.len());
-                // At a crack tip there is no condition, and its share is smaller.
+                // A crack tip carries no constraint, and its share is smaller.
                 assert!(
                     share(contact) > (1.0 - 1e-12) * share(other),
                     "{}",

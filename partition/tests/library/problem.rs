@@ -353,7 +353,7 @@ fn a_body_is_what_hangs_together() {
         .collect();
     assert_eq!(names.len(), 3);
     assert_eq!(names[1], "plate");
-    // The point that tells a piece lies in one of its cells, and of no other.
+    // The point that identifies a part of the body lies in a cell of that part only.
     for (body, number) in [(0, 1), (2, 2)] {
         let point = names[body]
             .strip_prefix(&format!("die #{number} at ("))

@@ -18,8 +18,8 @@ use contact_dd_partition::quantity::Goals;
 use contact_dd_partition::scene::units::Units;
 use contact_dd_partition::solver::SolverSettings;
 
-/// A model under construction on the lattice of whole numbers; nodes are told apart by their
-/// place and a layer, so that two sides of a contact can lie on each other.
+/// A model under construction on the lattice of whole numbers; nodes are distinguished by
+/// position and a layer, so that two sides of a contact can lie on each other.
 #[derive(Default)]
 pub struct Builder {
     nodes: HashMap<(usize, usize, usize), u32>,
@@ -38,7 +38,7 @@ impl Builder {
         })
     }
 
-    /// Adds a square of two triangles; `layer` tells the layer of each of its nodes.
+    /// Adds a square of two triangles; `layer` returns the layer of each of its nodes.
     fn square(&mut self, i: usize, j: usize, body: u32, layer: impl Fn(usize, usize) -> usize) {
         let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
         let [a, b, c, d] = corners.map(|(x, y)| self.node((x, y, layer(x, y))));

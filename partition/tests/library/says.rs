@@ -1,6 +1,6 @@
-//! Messages that say what they should.
+//! Comparison of messages with expected ones.
 
-/// Fails unless a message has what is expected, whose parts are set apart by `…`.
+/// Fails unless a message contains the parts of `expected`, separated by `…`, in their order.
 #[track_caller]
 pub fn says(message: &str, expected: &str) {
     let mut rest = message;

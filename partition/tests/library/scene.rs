@@ -1,4 +1,4 @@
-//! Reading scene.toml: every key of it, and what is said about wrong ones.
+//! Reading scene.toml: every key, and the messages about invalid ones.
 
 mod page;
 mod refused;

@@ -1,4 +1,4 @@
-//! Tables of what is replaced in a text and what is said of it then.
+//! Tables of replacements in a text with the expected messages.
 
 /// A text, its replacement, and in the line below the message; `\n` is the end of a line.
 pub fn cases(table: &str) -> impl Iterator<Item = (String, String, String)> {

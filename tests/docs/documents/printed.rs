@@ -3,7 +3,7 @@
 /// The placeholder for any text.
 const ANYTHING: char = '…';
 
-/// True if `printed` agrees with the page. `…` stands for anything within a line, and as a line for any number of
+/// True if `printed` agrees with the page. `…` matches any text within a line, and as a line any number of
 /// lines; trailing blanks and empty lines at the end are ignored.
 pub fn is_shown(shown: &str, printed: &str) -> bool {
     lines_match(&lines(shown), &lines(printed))
@@ -43,7 +43,7 @@ fn line_matches(shown: &str, printed: &str) -> bool {
     rest.ends_with(tail)
 }
 
-/// A test: which texts dots stand for, and which not.
+/// A test: the texts that `…` matches, and some that it doesn't.
 pub fn dots() {
     for (shown, printed) in [
         ("a\nb", "a\nb\n"),

@@ -36,7 +36,7 @@ const CALLS: [&str; 22] = [
     "#[error(",
 ];
 
-/// A word that occurs only in errors, in any call.
+/// Text that occurs in errors only, in any call.
 const EXPECTED: &str = "expected ";
 
 /// Folders of the two programs.

@@ -58,7 +58,7 @@ fn arguments(list: &str) -> usize {
     let parts = list.split(|c: char| {
         depth += match c {
             '(' | '[' | '{' | '<' => 1,
-            // An arrow closes nothing.
+            // The arrow `->` isn't a closing bracket.
             '>' if before == '-' => 0,
             ')' | ']' | '}' | '>' => -1,
             _ => 0,

@@ -91,8 +91,7 @@ impl Imports {
         }
     }
 
-    /// The floor of every node of a graph, one above all that it names, from 1; nothing of nodes in circles, and above
-    /// them.
+    /// The layer of every node of a graph from 1, one above all of its successors; nodes in and above cycles have none.
     pub fn floors<T: Ord + Clone>(graph: &BTreeMap<T, BTreeSet<T>>) -> BTreeMap<T, usize> {
         let mut floors: BTreeMap<T, usize> = BTreeMap::new();
         loop {
@@ -116,7 +115,7 @@ impl Imports {
     }
 }
 
-/// The module that a path leads to, and what is left of it there; `None` where it leads out of the crate.
+/// The module that a path leads to, and the remaining path; `None` outside the crate.
 fn walk(
     code: &BTreeMap<Module, String>,
     from: &Module,
@@ -153,7 +152,7 @@ fn walk(
     code.contains_key(&at).then(|| (at, rest.to_vec()))
 }
 
-/// A text without comments and what stands between quotes.
+/// A text without comments and string literals.
 fn without_comments(text: &str) -> String {
     let mut code = String::new();
     for line in text.lines() {

@@ -1,4 +1,4 @@
-//! Ranks that fill a result file beside each other.
+//! Parallel writing of a result file by several ranks.
 
 use contact_dd_mpi::output::vtkhdf::ResultFile;
 use contact_dd_mpi::output::vtkhdf::beside::FileBeside;

@@ -1,4 +1,4 @@
-//! Load steps that are kept for a run that goes on.
+//! Checkpoints: load steps that are kept for a restart.
 
 use std::fs;
 use std::ops::Range;
@@ -16,7 +16,7 @@ fn in_steps() -> Layout {
     layout
 }
 
-/// Writes load step `k`, and keeps it under a state that names it.
+/// Writes load step `k`, and a checkpoint whose state names it.
 fn write_step(file: &mut ResultFile, k: usize) {
     let mut results = strips(0, &CELLS);
     let moved = results.displacement.iter_mut();
@@ -30,7 +30,7 @@ fn write_step(file: &mut ResultFile, k: usize) {
     }
 }
 
-/// Goes on after the steps that are kept for `path`, and returns how many these were.
+/// Restarts after the steps that are kept for `path`, and returns their number.
 fn go_on(path: &Path) -> usize {
     let kept = Kept::read(path).unwrap().unwrap();
     let state = String::from_utf8(kept.state.clone()).unwrap();
@@ -97,7 +97,7 @@ fn whatever_becomes_of_the_next_step_and_of_the_end_those_before_are_gone_on_fro
     let first = Folder::after(0..1);
     let kept = fs::read(first.unfinished()).unwrap();
     let state = fs::read(first.state()).unwrap();
-    // What the file would be like later on: its next steps, and beside its columns what only its end writes.
+    // The file in a later state: with its next steps, and with the parts outside its columns written at the end.
     let later = Folder::after(0..0);
     let mut file = ResultFile::create(&later.result(), &in_steps()).unwrap();
     (0..3).for_each(|k| write_step(&mut file, k));
@@ -105,7 +105,7 @@ fn whatever_becomes_of_the_next_step_and_of_the_end_those_before_are_gone_on_fro
     file.finish(&"a long report ".repeat(1000)).unwrap();
     let later = fs::read(later.result()).unwrap();
     assert!(later.len() > kept.len());
-    // Any part of it may have reached the disk; between what changes at all there is no difference.
+    // Any part of it may have reached the disk; only ends at bytes that differ have to be distinguished.
     let changes = (0..later.len()).filter(|&at| kept.get(at) != Some(&later[at]));
     let changes: Vec<usize> = changes.collect();
     let ends = changes.iter().step_by(changes.len() / 23).copied();
@@ -170,7 +170,7 @@ fn finished_steps_that_arent_what_was_written_are_refused_by_name() {
         fs::write(folder.unfinished(), &whole[..length]).unwrap();
         assert!(refused().contains("isn't what was written"));
     }
-    // It is what it was: nothing is written into what is refused.
+    // A refused file isn't changed.
     assert_eq!(
         fs::read(folder.unfinished()).unwrap().len(),
         whole.len() / 2
@@ -206,7 +206,7 @@ fn a_state_that_isnt_what_was_written_is_refused() {
     other[at] = b'9';
     fs::write(folder.state(), &other).unwrap();
     assert!(refused().contains("of version 9"), "{}", refused());
-    // Half of what belongs together is nothing to go on from.
+    // The state without its file, or the file without its state, is no checkpoint.
     fs::remove_file(folder.state()).unwrap();
     assert!(Kept::read(&folder.result()).unwrap().is_none());
     fs::write(folder.state(), &whole).unwrap();

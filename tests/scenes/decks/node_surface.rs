@@ -64,7 +64,7 @@ fn pair(interaction: &str) -> String {
     )
 }
 
-/// Three feet of the upper cube stand inside the face of the lower one, away from its nodes.
+/// Three corners of the upper cube touch the face of the lower one, away from its nodes.
 #[test]
 fn nodes_stand_on_the_face_that_they_are_in_front_of() {
     let equations: String = [(11, 0.2, 0.3), (12, 0.8, 0.3), (14, 0.2, 0.9)]

@@ -122,7 +122,7 @@ fn given_friction_and_cohesion_hold_a_pull_up_to_their_bounds() {
     }
 }
 
-/// It falls obliquely, and its slip before the contact has no friction.
+/// The block falls obliquely; its tangential motion before contact causes no friction.
 #[test]
 fn a_block_that_falls_on_a_plane_stands_on_it_as_one_that_was_there() {
     let n = [8, 2];

@@ -16,7 +16,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// It may fail to converge, if it reports that.
+    /// The run may fail to converge if it reports so.
     #[test]
     fn a_random_scene_with_friction_is_not_answered_wrongly(seed in 0_u64..1_000_000) {
         let mut drawn = draw_frictional(seed, 4);

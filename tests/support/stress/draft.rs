@@ -17,7 +17,7 @@ pub struct Draft {
     /// Keys of the scene's root, which have to precede its tables.
     head: String,
     tables: String,
-    /// True if it is built to have an equilibrium; `None` if only [`super::Balance`] can tell.
+    /// True if an equilibrium exists by construction; `None` if that follows from [`super::Balance`] only.
     pub equilibrium: Option<bool>,
     /// Young's modulus around which those of the bodies vary (Pa).
     young: f64,
@@ -73,7 +73,7 @@ impl Draft {
         let mut draft = Self::new(random, cells);
         draft.head.clear();
         draft.kind = kind;
-        // Only statics can tell.
+        // Existence of an equilibrium has to be found by statics.
         draft.equilibrium = None;
         draft.tilted = draft.random.chance(0.3);
         draft.matching = draft.random.chance(0.5);

@@ -66,7 +66,7 @@ pub fn inclusion(draft: &mut Draft) {
     loads(draft);
 }
 
-/// Loads of the plate, which stands on rollers below and at its left; the other sides are pushed or pulled.
+/// Loads of the plate, which is supported by rollers below and on the left; the other sides are pushed or pulled.
 fn loads(draft: &mut Draft) {
     let loose = draft.random.chance(0.08);
     draft.equilibrium = Some(!loose);

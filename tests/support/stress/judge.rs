@@ -1,4 +1,4 @@
-//! Check whether an answer is the solution. Without friction the problem is convex: an answer that fulfils all its
+//! Check whether an answer is the solution. Without friction the problem is convex: an answer that fulfils all
 //! conditions is the only solution. With Coulomb's friction it is a solution, though there may be others.
 //!
 //! The conditions are checked with matrices independent of the program, in twice the precision; and the linear problem

@@ -102,7 +102,7 @@ pub struct Drawn {
     /// Factor of gaps, loads and prescribed displacements.
     pub factor: f64,
     pub model: Model,
-    /// True if it was built to have an equilibrium; `None` if only [`Balance`] can tell.
+    /// True if an equilibrium exists by construction; `None` if that follows from [`Balance`] only.
     pub equilibrium: Option<bool>,
     /// The wanted number of subdomains, which the scene may not allow.
     pub subdomains: usize,
@@ -110,8 +110,8 @@ pub struct Drawn {
     pub ranks: usize,
     /// The laws of friction, if there are any.
     pub friction: Option<Law>,
-    /// True if the resultants of all contacts follow from statics, so that elastic bodies with friction balance
-    /// whatever rigid ones can.
+    /// True if the resultants of all contacts follow from statics, so that elastic bodies with friction balance the
+    /// same loads as rigid ones.
     pub determined: bool,
 }
 

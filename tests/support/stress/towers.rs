@@ -11,8 +11,8 @@ enum Fall {
     Pushed,
 }
 
-/// Blocks that get narrower towards the top, with smooth or rough joints; they stand freely, or against rollers at
-/// their left.
+/// Blocks that get narrower towards the top, with smooth or rough joints, free or supported by rollers on the
+/// left.
 pub fn tower(draft: &mut Draft) {
     pile(draft, |draft, _| draft.random.magnitude(-3.0, 0.3));
 }

@@ -28,7 +28,7 @@ pub enum Verdict {
     Wrong,
     /// Different bits on several ranks.
     Differs,
-    /// A refusal although there is an equilibrium.
+    /// A refusal although an equilibrium exists.
     Refused,
     /// A solution of a scene without equilibrium.
     Missed,
@@ -70,14 +70,14 @@ impl Verdict {
 /// A scene with its verdict.
 pub struct Trial {
     pub verdict: Verdict,
-    /// The reason for the verdict in words; empty if it is right.
+    /// The reason for the verdict as text; empty if the answer is right.
     pub reason: String,
-    /// True if there is an equilibrium; `None` if that depends on round-off, so that both a solution and the message of
-    /// its absence are right, or on the strength of friction.
+    /// True if an equilibrium exists; `None` if that depends on round-off, so that both a solution and the message that
+    /// none exists are right, or on the strength of friction.
     pub equilibrium: Option<bool>,
     /// True if rigid bodies are held by friction, which may not suffice for elastic ones.
     pub by_friction: bool,
-    /// True if a load step was made in parts, after it didn't converge as a whole.
+    /// True if a load step was divided because it didn't converge as a whole.
     pub in_parts: bool,
     /// The program's exit code, and the time it took (s).
     pub exit: Option<i32>,
@@ -361,7 +361,7 @@ impl Trial {
         })
     }
 
-    /// The words of a list in the program's report.
+    /// The strings of a list in the program's report.
     pub fn listed(&self, key: &str) -> Option<Vec<&str>> {
         let words = self.report.as_ref()?.get(key)?.as_array()?;
         Some(words.iter().filter_map(Value::as_str).collect())

@@ -2,7 +2,7 @@
 
 use super::{read, tags};
 
-/// A shape: its volume, where its corners are, and for every face where it lies, ξ·a = b.
+/// A shape: its volume, its corners, and for every face its plane ξ·a = b.
 struct Shape {
     measure: f64,
     corners: &'static [[f64; 3]],

@@ -1,4 +1,4 @@
-//! Decks that Abaqus or CalculiX read, written in other ways than by the book: the same mesh comes of them.
+//! Decks in unusual forms that Abaqus or CalculiX accept: they give the same mesh.
 
 use super::{SQUARES, read, tags};
 use crate::says::says;

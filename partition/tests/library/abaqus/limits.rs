@@ -1,4 +1,4 @@
-//! Small decks that stand for more than any memory holds: they are read, or refused with the limit.
+//! Small decks that expand to more than any memory: they are read, or refused with the limit.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::{SQUARES, read, read_all, tags};
 use crate::says::says;
 
-/// Far more than such a deck takes, far less than what it stands for.
+/// Far above the time for reading such a deck, far below the time for expanding it.
 const AT_ONCE: Duration = Duration::from_secs(20);
 
 #[test]

@@ -1,4 +1,4 @@
-//! Materials and directions: what different ways to write one thing have in common.
+//! Materials and directions: equivalent notations have the same meaning.
 
 use super::{CUBES, MODEL, read, scene, step};
 use contact_dd_partition::scene::Scene;

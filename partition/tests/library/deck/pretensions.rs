@@ -1,4 +1,4 @@
-//! Bolts whose force or shortening stands at a node.
+//! Bolts whose force or shortening is given at a node.
 
 use super::refused::refused;
 use super::{CUBES, MODEL, means, step};

@@ -1,4 +1,4 @@
-//! Tables that decks ask for.
+//! Tables that decks request.
 
 use contact_dd_partition::deck::prints::{Prints, Table};
 

@@ -1,4 +1,4 @@
-//! Refusals of keywords, by line, with what to do instead.
+//! Refusals of keywords, with the line and advice.
 
 use super::{CUBES, MODEL, read, step};
 use crate::says::says;
@@ -219,7 +219,7 @@ fn loads_that_arent_read_are_refused_with_their_line() {
         &format!("{CUBES}{MODEL}{up_and_down}{load}"),
         "line 54: the amplitude isn't linear within the step",
     );
-    // Without friction the way doesn't matter.
+    // Without friction the load path doesn't matter.
     let without = MODEL.replace("*FRICTION\n0.2\n", "");
     assert!(read(&format!("{CUBES}{without}{up_and_down}{load}")).is_ok());
 }

@@ -1,4 +1,4 @@
-//! Steps: what goes on, what is replaced, and how much of it an amplitude leaves.
+//! Steps: conditions that continue, conditions that are replaced, and amplitudes.
 
 use super::{means, scene, step};
 use contact_dd_partition::scene::Scene;

@@ -198,7 +198,7 @@ fn normals_close(element: &ReferenceElement) {
     );
 }
 
-/// A cell that is said to have no fold has none, and one that is said to have one has it there.
+/// The Jacobian of a cell reported without fold is positive everywhere, and that of a folded one isn't where reported.
 fn the_jacobian_is_bounded(element: &ReferenceElement) {
     let mut seed = 5_u64;
     let mut draw = || {
@@ -224,7 +224,7 @@ fn the_jacobian_is_bounded(element: &ReferenceElement) {
                 sound += 1;
                 assert!(least > floor, "{}: {least}", element.name());
             }
-            // What it names is a value of the Jacobian.
+            // The reported value is that of the Jacobian at the reported position.
             Some(fold) => {
                 folded += 1;
                 assert!(

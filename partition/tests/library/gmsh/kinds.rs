@@ -1,4 +1,4 @@
-//! Files of Gmsh itself with cells of every kind; `kinds/make.py` and `kinds/make3d.py` say of what.
+//! Files written by Gmsh with cells of every kind, made by `kinds/make.py` and `kinds/make3d.py`.
 
 use std::f64::consts::PI;
 

@@ -51,7 +51,7 @@ fn numbering_and_orientation_in_the_mesh_file_dont_matter() {
         assert_eq!(tag_a, tag_b);
         (0..3).for_each(|i| close(a[i], b[i], 1e-14));
     }
-    // What rows prescribe is their projector, whichever rows they are.
+    // Different support rows of a node are equivalent if their projectors are equal.
     let projector = |model: &Model| {
         let mut sums = std::collections::BTreeMap::new();
         for s in &model.supports {

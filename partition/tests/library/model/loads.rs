@@ -14,7 +14,7 @@ fn block() -> Blocks {
         .moved(|[x, y, z]| [x + 0.1 * x * y, y + 0.05 * x * x * y, z])
 }
 
-/// Σ F·(1, x, y), by component: what a load does on rigid and linear displacements.
+/// Σ F·(1, x, y), by component: work of a load in rigid and linear displacements.
 fn moments(model: &Model) -> [[f64; 3]; 2] {
     let mut sum = [[0.0; 3]; 2];
     for &(node, force) in &model.forces {

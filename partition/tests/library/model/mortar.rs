@@ -165,9 +165,9 @@ fn no_weight_is_large_however_little_of_a_facet_is_covered() {
         for slave in ["lower", "upper"] {
             for row in conditions(&blocks, &contact(slave)) {
                 let own = row.entries[0].1;
-                // On a part of a facet forces act beside the node; one that has less hands over.
+                // On partly covered facets forces act beside the node; weights below 1 % are added to the neighbour's.
                 assert!(own > 0.009_8, "{row:?}");
-                // Both ends of a facet carry what a narrow block presses on its middle.
+                // Both ends of a facet carry the pressure of a narrow block on its middle.
                 if n != [4, 1] && n != [1, 3] {
                     assert!(row.row().all(|(_, c)| c[1].abs() < 8.0), "{row:?}");
                 }
@@ -245,7 +245,7 @@ fn nodes_decide_unless_the_scene_does() {
         .model(&(text.clone() + "pairing = 'nodes'"))
         .unwrap_err();
     says(&error, "the sides don't match at");
-    // Where nodes match both ways say the same.
+    // Where nodes match both pairings give the same constraints.
     let nodes = conditions(&matching, &(text.clone() + "pairing = 'nodes'"));
     let mortar = conditions(&matching, &(text + "pairing = 'mortar'"));
     assert_eq!(nodes.len(), mortar.len());

@@ -114,7 +114,7 @@ fn the_normal_at_a_node_is_that_of_the_curved_edges_there() {
     for support in &model.supports {
         let [x, y, _] = model.mesh.points[support.node as usize];
         let along = (x * support.direction[0] + y * support.direction[1]) / 2.0;
-        // At both ends, where one edge has its say, to third order in its length.
+        // At both ends only one edge determines the normal: accurate to third order in its length.
         let is_end = x.min(y) < 1e-9;
         close(along, 1.0, if is_end { 1e-4 } else { 1e-14 });
     }

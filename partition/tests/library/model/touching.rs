@@ -20,7 +20,7 @@ const ALL: &str = "[[contact]]\nname = 'joints'\nbetween = 'all'\n";
 /// A condition, whichever of its sides is side a: the row of B by coordinate of node tags, gap, area and law.
 type Row = (Vec<(i64, [f64; 3])>, [f64; 2], Law);
 
-/// The conditions of all contacts of two sides, each by what doesn't depend on the order of its sides.
+/// The constraints of all contacts of two sides, described independently of the order of the sides.
 fn rows(model: &Model) -> Vec<Row> {
     let row = |point: &ContactPoint<u32>| {
         let mut entries: Vec<(i64, [f64; 3])> = (point.row())
@@ -125,7 +125,7 @@ fn sides_that_do_not_match_have_the_conditions_of_their_explicit_contacts() {
     let explicit = "[[contact]]\nname = 'b'\nsides = ['left top', 'upper bottom']
         [[contact]]\nname = 'h'\nsides = ['left right', 'right left']\n";
     for blocks in [uneven(), uneven().quadratic()] {
-        // As side a of a contact found has no facets beyond what it touches.
+        // Like those of a contact found automatically, which has no facets beyond the touching part on side a.
         let found = blocks.model(ALL).unwrap();
         assert_eq!(names(&found), ["joints left-right", "joints left-upper"]);
         are_same(&found, &blocks.model(explicit).unwrap());
@@ -145,7 +145,7 @@ fn as_one_body(mut mesh: Mesh) -> Mesh {
     mesh
 }
 
-/// Rock cut by joints into blocks, and the scene that says so joint by joint.
+/// Rock cut by joints into blocks, and the scene with an explicit contact for every joint.
 fn joints() -> (Blocks, String) {
     let mut blocks = Blocks::new();
     let mut text = String::new();

@@ -71,8 +71,8 @@ fn refuses(write: fn(&Path), defects: &[Defect]) {
     }
 }
 
-/// Fails unless a file that `write` makes is refused with a single entry of a dataset exchanged, or without a dataset: a
-/// line of the `table` each, and below it what is said.
+/// Fails unless a file that `write` makes is refused with a single entry of a dataset changed, or without a dataset: a
+/// line of the `table` each, followed by the expected message.
 fn refuses_values(write: fn(&Path), table: &str) {
     for [damage, expected] in table.trim().lines().collect::<Vec<_>>().as_chunks().0 {
         let (what, rest) = damage.split_once(": ").unwrap();
@@ -91,7 +91,7 @@ fn refuses_values(write: fn(&Path), table: &str) {
     }
 }
 
-/// Entries of datasets, and what is said where they are these.
+/// Invalid entries of datasets with the expected messages.
 const VALUES: &str = "
 point that isn't finite: /VTKHDF/Points[3] = nan
     /VTKHDF/Points, row 1 … finite

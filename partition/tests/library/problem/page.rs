@@ -7,10 +7,10 @@ use std::{env, fs};
 
 use contact_dd_partition::problem::schema::{ATTRIBUTES, FIELDS, Field, LETTERS};
 
-/// Stands before a table, and says which.
+/// Mark before a table of the page; the name of the table follows it.
 const MARK: &str = "<!-- table of the schema: ";
 
-/// The table that a mark asks for: letters, the attributes of a group, or the datasets below a path.
+/// The table for a mark: letters, the attributes of a group, or the datasets below a path.
 fn table(what: &str) -> String {
     let (head, rows): (&str, Vec<String>) = match what.strip_prefix("attributes of ") {
         Some(group) => {

@@ -1,4 +1,4 @@
-//! docs/scene.md: what it shows can be read, and it names all that can be written.
+//! docs/scene.md: its examples are valid, and it documents every key.
 
 #![expect(
     clippy::unwrap_used,

@@ -95,7 +95,7 @@ fn badness(verdict: Verdict) -> usize {
     }
 }
 
-/// The respects in which one row falls short of another; the words name the better value first.
+/// The respects in which one row is worse than another, with the better value first.
 fn falls_short(good: &Row, bad: &Row) -> Vec<String> {
     let mut words = Vec::new();
     if badness(bad.verdict) > badness(good.verdict) {

@@ -49,7 +49,7 @@ fn bodies_that_touch_at_a_point_have_no_contact() {
         &error,
         "contact 'joints': no facets … 'lower' and 'upper' touch at a point or an edge only",
     );
-    // Turned, so that the corner stands on the other's top: 20° are less than a corner.
+    // Rotated by 20°, so that only a corner touches the top of the other block.
     let mut tipped = Blocks::new()
         .block("lower", [-2.0, 2.0], [-1.0, 0.0], [4, 2])
         .block("upper", [0.0, 1.0], [0.0, 1.0], [2, 2]);
@@ -89,7 +89,7 @@ fn bodies_that_share_nodes_are_tied_and_that_is_said() {
     says(&fragments().model(ALL).unwrap_err(), tied);
     let named = ALL.replace("'all'", "['lower', 'upper']");
     says(&fragments().model(&named).unwrap_err(), tied);
-    // Where something else touches the others are tied without a contact all the same.
+    // If only other bodies touch, bodies that share nodes are still bonded, with a warning.
     let more = fragments().block("lid", [0.0, 1.0], [2.0, 3.0], [2, 2]);
     let model = more.model(ALL).unwrap();
     assert_eq!(names(&model), ["joints"]);

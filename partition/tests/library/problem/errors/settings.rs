@@ -8,7 +8,7 @@ use hdf5::types::VarLenUnicode;
 
 use super::{Defect, problem, refuses};
 
-/// A file that says how it wants to be solved.
+/// A problem file with settings of the solver.
 fn write_with_settings(path: &Path) {
     let mut problem = problem();
     problem.catalog.solver = SolverSettings {
