@@ -47,7 +47,7 @@ macro_rules! ids {
             }
         }
 
-        #[doc = concat!("Something for some of what [`", stringify!($id), "`] numbers, in the order of the numbers.")]
+        #[doc = concat!("Values by [`", stringify!($id), "`], in ascending order; not every index needs one.")]
         pub type $on<T> = BTreeMap<$id, T>;
     )*};
 }

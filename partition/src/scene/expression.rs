@@ -134,6 +134,11 @@ impl Expression {
     pub fn is_constant(&self) -> bool {
         self.is_constant
     }
+
+    /// True if it contains z.
+    pub fn has_z(&self) -> bool {
+        self.z_at.is_some()
+    }
 }
 
 /// An error at a byte of an expression.

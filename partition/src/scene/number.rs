@@ -50,9 +50,12 @@ impl Number {
         let [x, y, z] = point;
         match self {
             Self::Constant(_) => format!("{value:e}; expected {expected}"),
+            Self::Varying(expression) if expression.is_constant() => {
+                format!("'{}' is {value:e}; expected {expected}", expression.text())
+            }
             Self::Varying(expression) => {
                 let text = expression.text();
-                let z = match z == 0.0 {
+                let z = match z == 0.0 && !expression.has_z() {
                     true => String::new(),
                     false => format!(", z = {z}"),
                 };

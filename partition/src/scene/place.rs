@@ -139,7 +139,19 @@ fn with_advice(text: &str, message: &str, path: &[Step]) -> String {
     let table = keys.collect::<Vec<_>>().join(".");
     match syntax::double_brackets(&table) {
         Some(advice) if message.starts_with("invalid type: map") => format!("{message}; {advice}"),
-        _ => message.to_owned(),
+        _ => in_plain_words(message),
+    }
+}
+
+/// The message of `serde` about a value, without names of Rust's types.
+fn in_plain_words(message: &str) -> String {
+    match message {
+        "wanted string or table" => "invalid type: expected a word in quotes".into(),
+        "floating-point number overflowed" => "too large; expected a finite number".into(),
+        _ => match message.strip_prefix("invalid length ") {
+            Some(rest) => format!("the number of entries is {rest}"),
+            None => message.replace(" usize", " a whole number, 0 or more"),
+        },
     }
 }
 

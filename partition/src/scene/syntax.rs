@@ -33,10 +33,12 @@ pub(super) fn described(text: &str, start: usize, error: &Error) -> String {
             of_value(key.trim(), value.trim())
         }),
     };
-    let mut said = error.message().to_owned();
-    if let Some(advice) = advice {
-        said += &format!("; {advice}");
-    }
+    let said = error.message();
+    let mut said = match advice {
+        Some(advice) => format!("{said}; {advice}"),
+        None if is_repeated => said.to_owned(),
+        None => format!("this isn't valid TOML: {said}"),
+    };
     if line.chars().count() <= LONGEST {
         let shown = error.to_string();
         for line in shown.lines().skip(1).take(3) {

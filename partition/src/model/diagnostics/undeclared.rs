@@ -32,8 +32,9 @@ impl Diagnostics<'_> {
             let place = place[..self.bodies.mesh.dim].iter();
             let place: Vec<String> = place.map(|&c| short(c)).collect();
             Some(format!(
-                "{who} without a contact, as at ({}): nothing keeps them from passing through each other",
-                place.join(", ")
+                "{who} without a contact, as at ({}) {}: nothing keeps them from passing through each other",
+                place.join(", "),
+                self.scene.units.length()
             ))
         });
         warnings.collect()
