@@ -140,13 +140,39 @@ impl Conclusions {
 
     /// In words.
     pub fn text(&self) -> String {
-        let mut text = "## In short\n\n".to_owned();
+        let mut text = format!("## In short\n\n{}", self.table());
         for scene in SCENES {
             text += &self.elements(scene).unwrap_or_default();
         }
         text += &self.grading().unwrap_or_default();
         text += &self.tolerance();
         text
+    }
+
+    /// The fastest quadratic and the fastest linear cells for each scene.
+    fn table(&self) -> String {
+        let mut text = format!(
+            "| {} % in the energy | fastest cells | dofs | ms | fastest linear cells | dofs | ms |\n\
+             |---|---|--:|--:|---|--:|--:|\n",
+            100.0 * GOAL
+        );
+        for scene in SCENES {
+            let of = |is_quadratic: bool| -> Option<String> {
+                let (place, reached) =
+                    self.fastest(|p| p.scene == scene && p.is_quadratic == is_quadratic)?;
+                Some(format!(
+                    "{} `{}` | {:.0} | {:.1}",
+                    place.mesh,
+                    place.element,
+                    reached.dofs,
+                    1e3 * reached.seconds[0]
+                ))
+            };
+            if let (Some(quadratic), Some(linear)) = (of(true), of(false)) {
+                text += &format!("| {scene} | {quadratic} | {linear} |\n");
+            }
+        }
+        text + "\n"
     }
 
     /// Which cells to take for a scene.

@@ -93,8 +93,8 @@ fn tolerances(all: &Measurements, conclusions: &Conclusions) -> String {
     let mut text = format!(
         "## The tolerance of the sweeps\n\n\
          Sweeps stop when the residual of the interface problem, relative to its terms, is below `--tolerance` \
-         and no contact changes. Up to three Newton steps then refine the solution to round-off (not with more \
-         than 6000 contact conditions). Both on {} meshes in 8 subdomains.\n\n\
+         and no contact changes. Up to three Newton steps then refine the solution to round-off. Both on {} meshes in 8 \
+         subdomains.\n\n\
          **Without refinement** (`anderson`): relative change of the error in the energy.\n\n\
          | residual | largest change | changed by more than {} % |\n|--:|--:|--:|\n",
         all.tried.len(),
