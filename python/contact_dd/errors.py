@@ -21,7 +21,7 @@ class InputError(ContactError):
 
 
 class NotConverged(ContactError):
-    """The iteration ended without converging. What it found is in `result`."""
+    """The iteration ended without converging. `result` has the last iterate."""
 
     exit_code = 3
     result: Result

@@ -1,4 +1,4 @@
-"""A model: a mesh, and what its groups mean."""
+"""A model: a mesh, and the roles of its groups."""
 
 from __future__ import annotations
 
@@ -356,7 +356,8 @@ class Model:
         self, folder: str | Path | None, subdomains: int | None,
         progress: bool | Callable[[dict[str, Any]], None],
     ) -> tuple[tempfile.TemporaryDirectory[str] | None, Path, Callable[[str], str]]:
-        """Writes the problem file into a folder; returns that if it is temporary, the file, and what words messages."""
+        """Writes the problem file into a folder; returns the folder if it is temporary, the file, and a function that
+        completes messages."""
         try:
             temporary = tempfile.TemporaryDirectory(prefix="contact-dd-") if folder is None else None
         except OSError as error:

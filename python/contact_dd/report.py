@@ -1,4 +1,4 @@
-"""The report of a run as the package reads it: what there has to be, and of which kind."""
+"""The report of a run as the package reads it: required fields and their types."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import json
 import math
 from typing import Any
 
-# A type, several of which one fits, a list with what its entries are, or a mapping with what it has at least.
+# A type, alternatives, a list with the shape of its entries, or a mapping with its required keys.
 Shape = Any
 
 NUMBER = (int, float)
-# What isn't finite the solver writes as null.
+# The solver writes numbers that aren't finite as null.
 MAYBE = (int, float, type(None))
 
 FRICTION: Shape = {"slipping": int, "dissipated_work": MAYBE}
@@ -45,7 +45,7 @@ DERIVATIVE: Shape = {"parameter": str, "kind": str, "at": MAYBE, "derivative": M
 QUANTITY: Shape = {
     "name": str, "kind": str, "value": MAYBE, "error": MAYBE, "node": (int, type(None)), "derivatives": [DERIVATIVE],
 }
-# What may be null or missing.
+# Fields that may be null or missing.
 OPTIONAL: dict[str, Shape] = {
     "error_estimate": ESTIMATE, "friction": FRICTION, "crack_tips": [TIP], "quantities": [QUANTITY],
     "about_to_change": [str], "without_derivatives": str,

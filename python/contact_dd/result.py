@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+# Kinds of problems by the `plane` of a result.
+KINDS = {"strain": "plane strain", "stress": "plane stress", "axisymmetric": "axisymmetric"}
+
 # What of a contact table has a row for each load step.
 STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip", "overclosure")
 
@@ -86,6 +89,31 @@ class Result:
         except (OSError, LookupError, TypeError, AttributeError, RuntimeError) as error:
             # What HDF5 and NumPy raise of a file that has something else where fields should be.
             raise InputError(f"{path}: isn't a result of contact-dd-mpi, a file .vtkhdf") from error
+
+    def __repr__(self) -> str:
+        return f"<Result of step {self.step} of {self.steps} in {str(self.path)!r}>"
+
+    def __str__(self) -> str:
+        """What was solved, its size, the status, the largest stress and the estimated error, a line each."""
+        report, part = self.report, self._report_of_step()
+        kind = "in space" if self.is_in_space else KINDS.get(self.plane or "", "in the plane")
+        contacts, subdomains = counted(len(self.contacts), "contact"), counted(report["subdomains"], "subdomain")
+        step = f", load step {self.step} of {self.steps}" if self.steps > 1 else ""
+        status = "converged" if part["status"] == "converged" else "not converged, numbers aren't to be used"
+        closed = f"{part['active_contacts']} of {report['contact_conditions']} contact constraints closed"
+        stress = "stresses were left out"
+        if len(self.stress):
+            unit = "MPa" if self.units == "mm" else "Pa"
+            stress = f"largest von Mises stress {np.nanmax(self.von_mises):.5g} {unit}"
+        relative = (part.get("error_estimate") or {}).get("relative")
+        error = "no error estimate" if relative is None else f"estimated error {relative:.2%} in the energy norm"
+        return "\n".join([
+            f"{self.title or self.path.name}: {kind}, {contacts}{step}",
+            f"{report['dofs']} degrees of freedom in {subdomains}",
+            f"{status} after {counted(part['sweeps'], 'sweep')} of {report['method']}, {closed}",
+            stress,
+            error,
+        ])
 
     def _read(self, file: h5py.File, step: int | None) -> None:
         grid = file["VTKHDF"]
@@ -240,6 +268,11 @@ def since(steps: list[dict[str, Any]], step: int) -> int:
     """The last step before `step`, from 1, at whose end bodies or contacts were added; 0 where there is none."""
     absent = [set(one["absent"]) for one in steps[:step]]
     return max((k for k in range(1, step) if absent[k - 1] - absent[k]), default=0) if absent else 0
+
+
+def counted(count: int, noun: str) -> str:
+    """A number with a noun."""
+    return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def number(value: float | None) -> float:

@@ -33,7 +33,7 @@ class Strained:
         """Weights of the points, (cells, points); around an axis of the whole ring."""
         gradients = np.einsum("qnk,cqkd->cqnd", slopes, np.linalg.inv(jacobian))
         self.operator = operator(gradients, 4 if is_around_axis else None)
-        """B, (cells, points, components, displacements): what makes strains of nodal displacements."""
+        """B, (cells, points, components, displacements), which maps nodal displacements to strains."""
         if is_around_axis:
             radius = np.einsum("qn,cn->cq", self.values, corners[..., 0])
             self.operator[:, :, 2, ::2] = self.values / radius[..., None]

@@ -1,4 +1,4 @@
-"""What the tests share: built-in scenes, and the numbers of their pages."""
+"""Fixtures of the tests: built-in scenes, and the numbers of their pages."""
 
 import re
 import subprocess
@@ -25,7 +25,7 @@ def scene(tmp_path_factory):
 
 
 def numbers_of(page):
-    """The table of a page of the gallery: what was found, and where the report has it."""
+    """The table of a page of the gallery: values, and their paths in the report."""
     text = (ROOT / "partition/src/example" / page / "README.md").read_text()
     for found, where in re.findall(r"^\| [^|]+ \| ([^|]+) \|[^|]*\|[^|]*\| `([^`]+)` \|$", text, re.MULTILINE):
         if not where.startswith(("PointData", "CellData")):
@@ -33,7 +33,7 @@ def numbers_of(page):
 
 
 def in_report(report, where):
-    """What a report has at a path; entries of lists by their names or numbers."""
+    """The value of a report at a path; entries of lists by their names or numbers."""
     for name in re.split(r"/(?![^\[]*\])", where):
         if isinstance(report, dict):
             report = report[name]

@@ -1,4 +1,4 @@
-"""What is written over, and what stays."""
+"""Files that are overwritten, and files that are kept."""
 
 import resource
 import subprocess

@@ -1,4 +1,4 @@
-"""What pictures show, beside how they look."""
+"""Contents of pictures."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What a run says, and how it fails."""
+"""Output and errors of runs."""
 
 import stat
 import tomllib
@@ -40,6 +40,32 @@ def test_messages_are_raised_by_exit_code(scene, tmp_path):
         run(["--method", "picard", "--max-sweeps", "3"])
     assert raised.value.result.report["status"] == "not_converged"
     assert len(raised.value.result.points) == 2575
+
+
+def test_a_result_is_printed_in_five_lines(scene):
+    model = Model.from_scene(scene("granite"))
+    result = model.run(progress=False)
+    problem, size, status, stress, error = str(result).splitlines()
+    assert problem == "Loaded granite block with cracks: plane strain, 2 contacts"
+    assert size.startswith(f"{result.report['dofs']} degrees of freedom in ")
+    closed = sum((table["status"] > 0).sum() for table in result.contacts.values())
+    assert status.startswith("converged after ")
+    assert f", {closed} of " in status
+    assert stress == f"largest von Mises stress {result.von_mises.max():.5g} Pa"
+    assert error == f"estimated error {result.report['error_estimate']['relative']:.2%} in the energy norm"
+    assert repr(result).startswith("<Result of step 1 of 1 in ")
+    without = str(model.run(options=["--no-stress"], progress=False))
+    assert without.splitlines()[3:] == ["stresses were left out", "no error estimate"]
+
+
+def test_load_steps_are_named_where_a_result_is_printed(scene):
+    last = Model.from_scene(scene("mindlin")).run(progress=False)
+    first = last.at_step(1)
+    for result, step in [(first, 1), (last, last.steps)]:
+        lines = str(result).splitlines()
+        assert lines[0].endswith(f", load step {step} of {last.steps}")
+        assert len(lines) == 5
+        assert f", {last.report['steps'][step - 1]['active_contacts']} of " in lines[2]
 
 
 def test_contacts_are_found_between_bodies(scene):

@@ -131,7 +131,7 @@ def test_what_isnt_there_isnt_drawn_and_what_came_lies_where_it_belongs(scene, t
 
 
 def contents(text):
-    """What a page says of its view, and a function that gives its numbers."""
+    """The data of the view in a page, and a function that decodes its numbers."""
     about, packed = re.search(r'json">(.*?)</script><script type="text/plain">(.*?)</script>', text, re.DOTALL).groups()
     data = zlib.decompress(base64.b64decode(packed))
     return json.loads(about), lambda place: np.frombuffer(data, place["kind"], place["length"], place["at"])

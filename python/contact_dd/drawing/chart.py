@@ -20,7 +20,7 @@ class Chart:
     """Places of the conditions on paper."""
 
     rows: np.ndarray
-    """Which ones are seen."""
+    """Flags of the conditions that are seen."""
     x: np.ndarray
     y: np.ndarray
     labels: tuple[str, str]

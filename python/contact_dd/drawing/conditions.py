@@ -16,7 +16,7 @@ UNREADABLE = (OSError, LookupError, TypeError, ValueError, AttributeError, Runti
 
 @dataclass
 class Support:
-    """Where a node is held: along which unit vectors, and whether it is moved there, or held by springs."""
+    """Support of a node: its unit vectors, and whether it is moved along them, or held by springs."""
 
     node: int
     axes: np.ndarray
@@ -35,7 +35,7 @@ class Conditions:
     bodies: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
 
     def seen(self, nodes, bodies=None):
-        """Those of the nodes and bodies that are shown, both as truths for each; without `bodies` all of these."""
+        """The conditions of the `nodes` and `bodies` that are shown, flags for each; without `bodies` of all bodies."""
         is_loaded = nodes[self.nodes]
         supports = [support for support in self.supports if nodes[support.node]]
         shown = range(len(self.bodies)) if bodies is None else np.flatnonzero(bodies)
@@ -47,7 +47,7 @@ class Conditions:
 
 
 def conditions_of(result, surface):
-    """What holds and loads the bodies that are there in the result's step; nothing where the problem file isn't beside
+    """Supports and loads of the bodies that are active in the result's step; empty where the problem file isn't beside
     the result, or is of another mesh. `surface` are the rows of nodes on the surface of bodies."""
     for path in candidates(result):
         try:
@@ -60,7 +60,7 @@ def conditions_of(result, surface):
 
 
 def candidates(result):
-    """Where the problem file may be: where the run found it, or beside the result."""
+    """Candidates for the problem file: the path in the report, and one beside the result."""
     named = Path(str(result.report["settings"]["problem"]))
     beside = [result.path.parent / named.name, result.path.with_suffix(".h5")]
     return [path for path in dict.fromkeys([*beside, named]) if path.is_file()]
@@ -100,7 +100,7 @@ class Problem:
         return self.row[(node.T + start).T]
 
     def of_step(self, values):
-        """Of an array with load steps those of the result's."""
+        """The rows of the result's load step in an array of all steps."""
         return values[:, self.result.step - 1] if "steps" in self.file else values
 
     def supports(self):

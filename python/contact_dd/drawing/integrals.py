@@ -43,7 +43,7 @@ class Rule:
 
 @cache
 def rule_of(kind):
-    """That by which all cells of a kind are integrated here."""
+    """The integration rule for all cells of a kind."""
     at, weights = points_of(kind, len(NODES[kind][0]))
     return Rule(*shapes(kind, at), weights)
 

@@ -1,4 +1,4 @@
-"""The opening of a page on a run: what it is, what came out in sentences, warnings, and the run in numbers."""
+"""The opening of a page on a run: title, summary in sentences, warnings, and key numbers."""
 
 import numpy as np
 
@@ -35,7 +35,7 @@ def cards(report):
     found = [
         (f"{report['dofs']:,}".replace(",", " "), "degrees of freedom"),
         (report["subdomains"], "subdomains"),
-        (f"{report['active_contacts']} of {report['contact_conditions']}", "contact conditions closed"),
+        (f"{report['active_contacts']} of {report['contact_conditions']}", "contact constraints closed"),
         (report["sweeps"], f"sweeps of {report['method']}"),
         (si(report["seconds"]["total"], "s"), "from start to end"),
         (si(report["peak_memory_bytes"], "B"), "memory of all ranks"),

@@ -98,13 +98,13 @@ def overview(result, scale):
 
 
 def within(places, panel):
-    """Which places are within a panel."""
+    """Flags of the places within a panel."""
     low, high = panel
     return np.all((places >= low) & (places <= high), axis=1)
 
 
 def seen_in(conditions, moved, panels):
-    """Those of the supports and loads that are within one of the panels."""
+    """The supports and loads within one of the panels."""
     nodes = [within(moved, panel) for panel in panels]
     bodies = [within(conditions.centres()[:, :2], panel) for panel in panels]
     return conditions.seen(np.any(nodes, axis=0), np.any(bodies, axis=0))

@@ -40,9 +40,9 @@ STATES = {
     1: {"color": "#1f5fa8"},
     2: {"color": SLIPPING},
 }
-# So few are told in words.
+# Number of sweeps up to which they are described in a sentence.
 FEW_SWEEPS = 3
-# More of them are on the page in words only: one has to be able to look at it.
+# Largest numbers of curves and rows, so that the page stays readable; further ones are listed by name.
 MOST_CURVES = 12
 MOST_ROWS = 24
 

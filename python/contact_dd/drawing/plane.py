@@ -82,7 +82,7 @@ class Plane:
         return tuple(np.concatenate(part) for part in (weights, nodes, triangles, owner))
 
     def at_points(self, values):
-        """What nodes have, at the points of the triangles, by the cells' shape functions."""
+        """Values of nodes at the points of the triangles, by the cells' shape functions."""
         return np.einsum("pk,pk...->p...", self.weights, values[self.nodes])
 
     def normals(self):

@@ -1,4 +1,4 @@
-"""Sides a of contacts as curves: contact conditions in their order along the mesh, and the arc length."""
+"""Sides a of contacts as curves: contact constraints in their order along the mesh, and the arc length."""
 
 from dataclasses import dataclass
 

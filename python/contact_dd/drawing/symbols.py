@@ -12,7 +12,7 @@ from matplotlib.transforms import Affine2D
 # Most symbols of a kind, and the least distance between two of them over the size of what is shown, in the plane and in
 # space, where supports hide stresses.
 MOST, APART, APART_IN_SPACE = 20, 0.045, 0.1
-# Colours: of supports, of what is prescribed (loads and motions), and between lines.
+# Colours: of supports, of loads and prescribed motions, and between lines.
 HELD, GIVEN, PAPER = "#222222", "#a3159b", "#ffffff"
 # In legends: of a support that leaves displacements across its axis free.
 ROLLER = "roller, held along its axis"
@@ -64,7 +64,7 @@ class Paper:
 TRIANGLE = [(0, 0), (-0.55, -1), (0.55, -1), (0, 0)]
 # Without direction: a ring with its middle, as of an arrow that is seen from its end.
 RING = Path.circle((0, 0), 0.45 * TALL)
-# Under a triangle what it rolls on, or what it is fixed to.
+# Lines under a triangle: those of a roller, and those of a fixed support.
 ROLLED = [[(-0.6, -1.3), (0.6, -1.3)]]
 FIXED = [[(-0.75, -1), (0.75, -1)], *([(x, -1), (x - 0.25, -1.35)] for x in (-0.5, -0.1, 0.3, 0.7))]
 ZIGZAG = [[(0, 0), (0, -0.25), (-0.35, -0.4), (0.35, -0.65), (-0.35, -0.9), (0.35, -1.15), (0, -1.3), (0, -1.55)],
@@ -195,7 +195,7 @@ def draw_bodies(axes, paper, centres, forces):
 
 
 def draw(axes, paper, conditions):
-    """Symbols of what holds and loads bodies. Returns the supports that have one, and the loads."""
+    """Symbols of supports and loads. Returns the supports that have one, and the loads."""
     drawn = draw_supports(axes, paper, conditions.supports)
     draw_loads(axes, paper, conditions.nodes, conditions.forces)
     forces = np.array([force for _, force in conditions.bodies]).reshape(-1, paper.frame.shape[1])
