@@ -61,14 +61,14 @@ const ITERATIVE: &str = "\
 ";
 
 const IN_SHORT: &str = "
-*No answer* are runs that end with exit code 3 or were stopped: nothing false is said. *Refused* are scenes that are called
-without equilibrium and may have one, *unclear* those of which the checker can't tell. *Wrong* is an answer that claims to have
-converged and misses what the independent checker asks for; its certificate may fall short, of which the run then warns. Scenes
-are harder than models are: what isn't right has stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999 or large coefficients of friction.
+*No answer*: the run ended with exit code 3 or was stopped, without a false result. *Refused*: the run reports that no equilibrium exists,
+although one may exist; *unclear*: the checker can't decide. *Wrong*: the run reports convergence, but the independent checker rejects the
+answer; a warning that the certificate falls short may accompany it. The scenes are harder than real models: those that aren't right have
+stiffness ratios up to 1e8, Poisson's ratios up to 0.4999999 or large coefficients of friction.
 
-Rows of `--interface iterative` are of [scenes drawn anew](#what-methods-behind-newtons-are-worth) on 2026-11-28, whose answers that aren't
-right were counted without their kinds, and of the two wrong ones without their solver. Without friction the iterative solver has no count
-of its own here.
+The rows of `--interface iterative` are for [other random scenes](#what-methods-behind-newtons-are-worth) on 2026-11-28, where answers that
+aren't right were counted without their kinds, and the two wrong ones without their solver. Without friction the iterative solver has no
+separate count here.
 
 The sections that follow are for developers of the solver.
 
