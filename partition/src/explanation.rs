@@ -51,7 +51,7 @@ impl Explanation {
         let found = ALL.iter().find(|one| one.name == name);
         found.ok_or_else(|| {
             InputError::new(format!(
-                "--explain: there is no message of the name '{name}'; expected one that stands behind a message in brackets"
+                "--explain: there is no message of the name '{name}'; expected a name in brackets at the end of a message"
             ))
         })
     }

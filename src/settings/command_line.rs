@@ -93,7 +93,7 @@ pub struct CommandLine {
     )]
     generate: Option<Document>,
 
-    /// Explain a message by its name, which stands behind it in brackets
+    /// Explain a message by its name, given in brackets at its end
     #[arg(
         long,
         value_name = "NAME",
