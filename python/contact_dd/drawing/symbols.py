@@ -1,5 +1,6 @@
 """Symbols of supports and loads: of many nodes those of a few that are spread over them, of one size on paper."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,12 +28,14 @@ CORNER = 0.95
 @dataclass
 class Paper:
     """Where nodes are on paper, and the outward normals at those on the surface (0 elsewhere); `frame` takes directions
-    in space to paper, of which a part of this size is shown."""
+    in space to paper, of which a part of this size is shown; `areas` says how much of a surface between given nodes
+    belongs to each of them, where that is known."""
 
     places: np.ndarray
     normals: np.ndarray
     frame: np.ndarray
     size: float
+    areas: Callable[[np.ndarray], np.ndarray] | None = None
 
     def is_in_space(self):
         return self.frame.shape[1] == 3
@@ -89,6 +92,12 @@ def arrow(direction, length, ends_here):
     if not ends_here:
         outline[:, 1] += length
     return turned([outline], -np.asarray(direction), 1.0)
+
+
+def in_legend():
+    """The outline of an arrow to the right around its middle."""
+    outline = arrow((1, 0), 20.0, False)
+    return Path(outline.vertices - (10, 0), outline.codes)
 
 
 def put(axes, paths, places, face, edge, width, zorder):
@@ -155,15 +164,20 @@ def outward_of(paper, node, axis):
 
 
 def draw_loads(axes, paper, nodes, forces):
-    """Arrows at loaded nodes, the longer the more of the load is nearer to them than to others that have some."""
+    """Arrows at loaded nodes, the longer the larger the load is around them, by area where that is known."""
     chosen = paper.spread(nodes)
     if len(chosen) == 0:
         return
     row_of = {int(node): k for k, node in enumerate(nodes)}
     away = np.linalg.norm(paper.places[nodes][:, None] - paper.places[chosen], axis=2)
     share = np.zeros((len(chosen), forces.shape[1]))
-    np.add.at(share, away.argmin(axis=1), forces)
+    nearest = away.argmin(axis=1)
+    np.add.at(share, nearest, forces)
     size = np.linalg.norm(share, axis=1)
+    if paper.areas:
+        area = np.bincount(nearest, paper.areas(nodes), len(chosen))
+        # Point forces have none.
+        size = size / area if (area > 0).all() else size
     paths, places = [], []
     for node, relative in zip(chosen, np.sqrt(size / max(size.max(), 1e-300)), strict=True):
         force = forces[row_of[int(node)]]
@@ -207,8 +221,8 @@ def entries(conditions, dimension):
     """Legend of the symbols."""
     found = []
 
-    def add(marker, face, edge, words):
-        style = {"ls": "", "marker": marker, "ms": 7, "mfc": face, "mec": edge}
+    def add(marker, face, edge, words, size=7):
+        style = {"ls": "", "marker": marker, "ms": size, "mfc": face, "mec": edge}
         found.append(Line2D([], [], label=words, **style))
 
     ordinary = [support for support in conditions.supports if not support.is_spring]
@@ -221,7 +235,7 @@ def entries(conditions, dimension):
     if any(one.is_spring for one in conditions.supports):
         add("$\\wr$", HELD, HELD, "spring")
     if len(conditions.nodes):
-        add("$\\rightarrow$", GIVEN, GIVEN, "load")
+        add(in_legend(), GIVEN, GIVEN, "load", 18)
     if conditions.bodies:
-        add("$\\Rightarrow$", PAPER, GIVEN, "body force")
+        add(in_legend(), PAPER, GIVEN, "body force", 18)
     return found
