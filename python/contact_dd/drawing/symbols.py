@@ -12,7 +12,7 @@ from matplotlib.transforms import Affine2D
 
 # Most symbols of a kind, and the least distance between two of them over the size of what is shown, in the plane and in
 # space, where supports hide stresses.
-MOST, APART, APART_IN_SPACE = 20, 0.045, 0.1
+MOST, APART, APART_IN_SPACE = 20, 0.045, 0.12
 # Colours: of supports, of what is prescribed (loads and motions), and between lines.
 HELD, GIVEN, PAPER = "#222222", "#a3159b", "#ffffff"
 # In legends: of a support that leaves displacements across its axis free.
