@@ -39,8 +39,9 @@ WIDTHS = (6.4, 7.6, 9.6)
 # Around panels (inches); below them the scale, and a line for every few entries of the legend.
 LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.35, 0.3, 0.85, 0.64, 0.82
 OF_LINE = 0.19
-# A figure (inches) from which on three entries of the legend have room beside each other.
-WIDE = 6.6
+# A figure in which title and legend have room, and one from which on three entries of the legend have it beside each
+# other (inches).
+NARROWEST, WIDE = 5.6, 6.6
 
 # Where all but a hundredth of the first panel has less than this part of the largest colour, colours go with the
 # square root of the stress: it would be a plain area.
@@ -204,7 +205,8 @@ def layout(panels, entries):
     ratios = [(high - low)[0] / (high - low)[1] for low, high in panels]
     height = float(np.clip(WIDTHS[len(panels) - 1] / sum(ratios), 2.4, 5.2))
     widths = [height * ratio for ratio in ratios]
-    total = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
+    needed = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
+    total = max(needed, NARROWEST)
     below = BELOW + OF_LINE * -(-entries // columns_of(total))
     tall = below + height + ABOVE
     figure = plt.figure(figsize=(total, tall))
@@ -212,7 +214,7 @@ def layout(panels, entries):
     def place(x, width):
         return figure.add_axes((x / total, below / tall, width / total, height / tall))
 
-    axes, x = [], LEFT
+    axes, x = [], LEFT + (total - needed) / 2
     for k, width in enumerate(widths):
         axes.append(place(x, width))
         axes[k].set_xticks([])
