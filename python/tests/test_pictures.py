@@ -225,5 +225,11 @@ def test_a_hole_in_a_side_stays_open_in_its_map():
     assert len(triangulation(chart, [*rim, middle]).triangles) == 8 * 6 + 8
     tip = [None if node in (32, 31, 30) else node for node in middle]
     assert area(triangulation(chart, [*rim, tip])) == pytest.approx(34)
+    # Of four nodes on edges the two opposite ones are joined that differ less.
+    left, below = np.where(np.arange(49) == 21, 1.0, 0.0), np.where(np.arange(49) == 15, 1.0, 0.0)
+    for values, joined, apart in ((left, {15, 29}, {21, 23}), (below, {21, 23}, {15, 29})):
+        mesh = triangulation(chart, [face(0, 2), *rim], values)
+        assert any(joined <= set(triangle) for triangle in mesh.triangles.tolist())
+        assert not any(apart <= set(triangle) for triangle in mesh.triangles.tolist())
     # Where no faces are known, neighbours are joined.
     assert area(triangulation(chart, [])) == pytest.approx(36)

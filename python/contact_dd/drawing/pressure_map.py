@@ -39,7 +39,7 @@ class PressureMap:
             nodes = solid.result.nodes[face].tolist()
             middle = centres.get(tuple(sorted(corners_of(nodes))))
             faces.append([row.get(tag) for tag in [*nodes, middle][: None if middle in row else -1]])
-        self.mesh = triangulation(self.chart, faces)
+        self.mesh = triangulation(self.chart, faces, self.pressure)
         closed = self.pressure > 0
         places = self.chart.x, self.chart.y
         half = AROUND / 2 * max(np.ptp(of[closed]) for of in places)
@@ -87,10 +87,11 @@ class PressureMap:
         return next((step for step in (1, 2, 5, 10, 15, 30, 45) if shown <= 5 * step), 90)
 
 
-def triangulation(chart, faces):
+def triangulation(chart, faces, values=None):
     """The triangles between the nodes of a chart: those of these faces, so that holes stay open, each with the nodes
-    around it, `None` for one that isn't there; or between all neighbours where faces are unknown."""
-    triangles = [triangle for face in faces for triangle in triangles_of(face)]
+    around it, `None` for one that isn't there; or between all neighbours where faces are unknown. Nodes are joined
+    along the values that they are to be coloured by."""
+    triangles = [triangle for face in faces for triangle in triangles_of(face, values)]
     whole = Triangulation(chart.x, chart.y)
     if not triangles or len(np.unique(triangles)) < MOST_NODES * len(np.unique(whole.triangles)):
         return whole
@@ -99,7 +100,7 @@ def triangulation(chart, faces):
     return Triangulation(chart.x, chart.y, triangles, mask=reaches if chart.radius else None)
 
 
-def triangles_of(face):
+def triangles_of(face, values):
     """The triangles of a face between nodes that are there: around the one in its middle, which comes last; without it
     between corners, and nodes on edges unless none of these is."""
     if len(face) == 9:
@@ -111,8 +112,17 @@ def triangles_of(face):
     if all(node is None for node in middles):
         found = fan(corners)
     else:
-        found = [*zip(middles[-1:] + middles[:-1], corners, middles), *fan(middles)]
+        found = [*zip(middles[-1:] + middles[:-1], corners, middles), *fan(along_values(middles, values))]
     return [triangle for triangle in found if None not in triangle]
+
+
+def along_values(middles, values):
+    """The nodes of a polygon from the one that a fan begins with: of four one of those opposite nodes that differ less,
+    without which a value would reach across its face as a spike."""
+    if values is None or len(middles) != 4 or None in middles:
+        return middles
+    a, b, c, d = values[middles]
+    return middles[1:] + middles[:1] if abs(a - c) > abs(b - d) else middles
 
 
 def fan(polygon):
