@@ -141,6 +141,16 @@ def test_arrows_of_a_uniform_load_have_one_length(scene, tmp_path):
     plt.close("all")
 
 
+def test_both_sides_of_a_cut_have_arrows():
+    places = np.array([[x, y] for y in (0.0, 1e-3) for x in (0.0, 0.01)])
+    forces = np.array([[0.0, -1.0], [0.0, -1.0], [0.0, 1.0], [0.0, 1.0]])
+    axes = plt.figure().add_subplot()
+    symbols.draw_loads(axes, symbols.Paper(places, np.zeros((4, 2)), np.eye(2), 1.0), np.arange(4), forces)
+    [arrows] = axes.collections
+    assert len(arrows.get_offsets()) == 2
+    plt.close("all")
+
+
 def test_an_obstacle_is_drawn_where_a_side_faces_no_body(scene, tmp_path):
     for name, has_obstacle in (("wall", True), ("patch", False)):
         result = Model.from_scene(scene(name)).run(folder=tmp_path, progress=False)

@@ -21,6 +21,8 @@ ROLLER = "roller, held along its axis"
 TALL, SHORTEST, LONGEST, OF_BODY = 8.0, 13.0, 24.0, 30.0
 # Cosine of the angle to the eye above which a direction is drawn as a ring.
 TO_EYE = 0.97
+# Cosine of the angle to a load down to which another one isn't opposite to it.
+OPPOSITE = -0.5
 # Length of the mean of the normals around a node below which it is at a corner.
 CORNER = 0.95
 
@@ -165,28 +167,36 @@ def outward_of(paper, node, axis):
 
 def draw_loads(axes, paper, nodes, forces):
     """Arrows at loaded nodes, the longer the larger the load is around them, by area where that is known."""
-    chosen = paper.spread(nodes)
-    if len(chosen) == 0:
+    if len(nodes) == 0:
         return
-    row_of = {int(node): k for k, node in enumerate(nodes)}
-    away = np.linalg.norm(paper.places[nodes][:, None] - paper.places[chosen], axis=2)
-    share = np.zeros((len(chosen), forces.shape[1]))
-    nearest = away.argmin(axis=1)
-    np.add.at(share, nearest, forces)
-    size = np.linalg.norm(share, axis=1)
-    if paper.areas:
-        area = np.bincount(nearest, paper.areas(nodes), len(chosen))
-        # Point forces have none.
-        size = size / area if (area > 0).all() else size
+    # Opposite loads have arrows of their own: of both sides of a cut neither is left out.
+    is_along = forces @ forces[0] > OPPOSITE * np.linalg.norm(forces, axis=1) * np.linalg.norm(forces[0])
+    areas = paper.areas(nodes) if paper.areas else np.zeros(len(nodes))
+    found = [spread_load(paper, nodes[of], forces[of], areas[of]) for of in (is_along, ~is_along) if of.any()]
+    chosen, force, size = (np.concatenate(part) for part in zip(*found, strict=True))
     paths, places = [], []
-    for node, relative in zip(chosen, np.sqrt(size / max(size.max(), 1e-300)), strict=True):
-        force = forces[row_of[int(node)]]
-        direction = paper.direction(force)
-        pushes = paper.normals[node] @ force <= 0
+    for node, pull, relative in zip(chosen, force, np.sqrt(size / max(size.max(), 1e-300)), strict=True):
+        direction = paper.direction(pull)
+        pushes = paper.normals[node] @ pull <= 0
         length = SHORTEST + (LONGEST - SHORTEST) * relative
         paths.append(RING if direction is None else arrow(direction, length, pushes))
         places.append(paper.places[node])
     put(axes, paths, places, GIVEN, GIVEN, 0.3, 7)
+
+
+def spread_load(paper, nodes, forces, areas):
+    """Of loaded nodes a few that are spread over them, their forces, and how large the load is around each."""
+    chosen = paper.spread(nodes)
+    row_of = {int(node): k for k, node in enumerate(nodes)}
+    away = np.linalg.norm(paper.places[nodes][:, None] - paper.places[chosen], axis=2)
+    nearest = away.argmin(axis=1)
+    share = np.zeros((len(chosen), forces.shape[1]))
+    np.add.at(share, nearest, forces)
+    size = np.linalg.norm(share, axis=1)
+    area = np.bincount(nearest, areas, len(chosen))
+    # Point forces have none.
+    size = size / area if (area > 0).all() else size
+    return chosen, forces[[row_of[int(node)] for node in chosen]], size
 
 
 def ends(paper, conditions, length):
