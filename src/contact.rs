@@ -19,6 +19,7 @@ pub mod open_factor;
 pub mod pair;
 pub mod patch;
 pub mod projection;
+pub mod shared_jump;
 pub mod sharing;
 pub mod status;
 pub mod tangent;

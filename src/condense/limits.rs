@@ -6,7 +6,7 @@ use contact_dd_partition::id::{GroupId, OnGroups, OnPairs};
 
 use crate::contact::jumps::JumpOf;
 use crate::contact::jumps::Jumps;
-use crate::contact::limits::Limits;
+use crate::contact::limits::{Conditions, Limits};
 use crate::context::hierarchy::jumps;
 use crate::context::{Context, Loads};
 use crate::error::Failure;
@@ -79,13 +79,14 @@ fn of_group(
             )));
         }
     }
-    Ok(Limits::new(
-        jumps.pivots.len(),
-        &jumps.of,
-        &bounds,
-        &group.friction(),
+    let conditions = Conditions {
+        of: &jumps.of,
+        gaps: &bounds,
+        areas: &group.areas(),
+        friction: &group.friction(),
         scale,
-    ))
+    };
+    Ok(Limits::new(jumps.pivots.len(), conditions))
 }
 
 /// Checks that supports and other ties don't contradict the jump of a tie if they prescribe all of it: `bounds` are the

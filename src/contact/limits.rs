@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::dependent::DependentConstraints;
 use super::jumps::{JumpOf, defining_conditions};
 use super::law::rest_of_bound;
+pub use super::shared_jump::Conditions;
+use super::shared_jump::Sharer;
 use super::status::{FixedStatus, LimitState};
 use super::tangent::{ForceBound, TangentialCondition};
 pub use super::tangent::{OtherTangent, TangentialLimit};
@@ -53,6 +55,8 @@ pub struct Limits {
     pub rows: DependentConstraints,
     /// The condition that sets each bound, and its factor.
     tightest: Vec<(usize, f64)>,
+    /// Conditions that set the same bounds and share the forces.
+    sharers: Vec<Sharer>,
     /// The condition that defines each normal jump as an unknown.
     pub defining: Vec<usize>,
     /// Number of conditions.
@@ -67,20 +71,22 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Bounds on `jumps` unknowns from conditions with these `gaps`, the tangential ones of `friction` last; `scale`
-    /// bounds the prescribed displacements.
-    pub fn new(
-        jumps: usize,
-        of: &[JumpOf],
-        gaps: &[f64],
-        friction: &[TangentialCondition],
-        scale: f64,
-    ) -> Self {
+    /// Bounds on `jumps` unknowns from `conditions`, the tangential ones last.
+    pub fn new(jumps: usize, conditions: Conditions<'_>) -> Self {
+        let Conditions {
+            of,
+            gaps,
+            friction,
+            scale,
+            ..
+        } = conditions;
+        let defining = defining_conditions(of, jumps);
         let mut limits = Self {
             bounds: vec![f64::INFINITY; jumps],
             rows: DependentConstraints::default(),
             tightest: vec![(0, 1.0); jumps],
-            defining: defining_conditions(of, jumps),
+            sharers: conditions.sharers(&defining),
+            defining,
             conditions: of.len(),
             scale,
             tangents: Vec::new(),
@@ -116,7 +122,9 @@ impl Limits {
             let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
             found.is_ok()
         };
-        for (j, (of, gap)) in of.iter().zip(gaps).enumerate() {
+        let shares = |j: usize| self.sharers.iter().any(|sharer| sharer.condition == j);
+        let alone: Vec<bool> = (0..of.len()).map(|j| !shares(j)).collect();
+        for (j, (of, gap)) in of.iter().zip(gaps).enumerate().filter(|(j, _)| alone[*j]) {
             match of {
                 // A tangential jump doesn't bound other jumps, nor do these bound it.
                 &JumpOf::Unknown { number, factor }
@@ -162,12 +170,18 @@ impl Limits {
             .filter_map(|(tangential, other)| {
                 let normal = of_condition.get(&tangential.normal).copied();
                 let (limit, _) = *of_condition.get(&tangential.number)?;
+                let of_sharers = self.sharers.iter().filter(|sharer| sharer.jump == limit);
+                let cohesion = of_sharers.map(|sharer| {
+                    let place = friction.binary_search_by_key(&sharer.condition, |one| one.number);
+                    place.map_or(0.0, |place| friction[place].bound.cohesion)
+                });
                 Some(TangentialLimit {
                     limit,
                     normal: normal.map(|(limit, _)| limit),
                     bound: ForceBound {
                         coefficient: tangential.bound.coefficient
                             / normal.map_or(1.0, |(_, factor)| factor),
+                        cohesion: tangential.bound.cohesion + cohesion.sum::<f64>(),
                         ..tangential.bound
                     },
                     other: other.map_or(OtherTangent::Nothing, other_tangent),
@@ -229,6 +243,12 @@ impl Limits {
             (all.tangents).extend(tangents.map(|tangent| tangent.renamed(place)));
             let shifted =
                 |&(condition, factor): &(usize, f64)| (all.conditions + condition, factor);
+            let sharers = group.sharers.iter().map(|sharer| Sharer {
+                jump: first + sharer.jump,
+                condition: all.conditions + sharer.condition,
+                ..*sharer
+            });
+            all.sharers.extend(sharers);
             let (own, rows) = group.tightest.split_at(m);
             all.rows.append(&group.rows, all.bounds.len());
             dependent.0.extend(&group.bounds[m..]);
@@ -257,13 +277,23 @@ impl Limits {
     pub fn of_limits(&self, forces: &[f64]) -> Vec<f64> {
         let tightest = self.tightest.iter();
         let of_limit = tightest.map(|&(condition, factor)| factor * forces[condition]);
-        of_limit.collect()
+        let mut of_limits: Vec<f64> = of_limit.collect();
+        for sharer in &self.sharers {
+            of_limits[sharer.jump] += sharer.factor * forces[sharer.condition];
+        }
+        of_limits
     }
 
     /// Forces of all conditions from those of the limits.
     pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.conditions];
-        for (force, &(condition, factor)) in of_limits.iter().zip(&self.tightest) {
+        let mut left = of_limits.to_vec();
+        for sharer in &self.sharers {
+            let force = sharer.part * of_limits[sharer.jump];
+            forces[sharer.condition] = force;
+            left[sharer.jump] -= sharer.factor * force;
+        }
+        for (force, &(condition, factor)) in left.iter().zip(&self.tightest) {
             forces[condition] = force / factor;
         }
         for prescribed in self.prescribed_slips.iter().filter(|p| p.slip != 0.0) {
@@ -285,6 +315,9 @@ impl Limits {
         for (&(condition, _), is_closed) in self.tightest.iter().zip(limits) {
             closed[condition] = is_closed;
         }
+        for sharer in &self.sharers {
+            closed[sharer.condition] = closed[self.tightest[sharer.jump].0];
+        }
         for prescribed in &self.prescribed_slips {
             closed[prescribed.condition] = closed[prescribed.normal] && prescribed.slip == 0.0;
         }
@@ -301,7 +334,11 @@ impl Limits {
                 status,
             }
         };
-        self.tightest.iter().map(of_condition).collect()
+        let mut states: Vec<LimitState> = self.tightest.iter().map(of_condition).collect();
+        for sharer in &self.sharers {
+            states[sharer.jump].force += sharer.factor * conditions[sharer.condition].force;
+        }
+        states
     }
 
     /// The statuses of limits in the linear problem from those of its `conditions`.
@@ -348,6 +385,21 @@ mod tests {
         JumpOf::Unknown { number, factor }
     }
 
+    fn conditions<'a>(
+        of: &'a [JumpOf],
+        gaps: &'a [f64],
+        areas: &'a [f64],
+        friction: &'a [TangentialCondition],
+    ) -> Conditions<'a> {
+        Conditions {
+            of,
+            gaps,
+            areas,
+            friction,
+            scale: 0.1,
+        }
+    }
+
     fn limits(gap: f64) -> Limits {
         let combination = JumpOf::Combination(vec![(0, 1.0), (1, -2.0)]);
         let of = [
@@ -356,7 +408,7 @@ mod tests {
             unknown(1, 1.0),
             unknown(1, 2.0),
         ];
-        Limits::new(2, &of, &[gap, 2.5, 8.0, 6.0], &[], 0.1)
+        Limits::new(2, conditions(&of, &[gap, 2.5, 8.0, 6.0], &[1.0; 4], &[]))
     }
 
     #[test]
@@ -378,5 +430,44 @@ mod tests {
         assert_eq!(joined.rows.row(1), [(2, 1.0), (3, -2.0)]);
         let forces = joined.forces(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(forces, [1.0, 5.0, 0.0, 1.0, 3.0, 6.0, 0.0, 2.0]);
+    }
+
+    /// Two points whose nodes an equation joins, and a third with another gap: the first two have one pressure, and the
+    /// friction of both.
+    #[test]
+    fn conditions_with_one_bound_share_the_force_by_their_areas() {
+        let of = [
+            unknown(0, 1.0),
+            unknown(0, 1.0),
+            unknown(0, 1.0),
+            unknown(1, 1.0),
+            unknown(1, 1.0),
+            unknown(1, 1.0),
+        ];
+        let friction: Vec<TangentialCondition> = (0..3)
+            .map(|normal| TangentialCondition {
+                number: 3 + normal,
+                normal,
+                bound: ForceBound {
+                    coefficient: 0.3,
+                    cohesion: [1.0, 3.0, 1.0][normal],
+                    only_closed: true,
+                },
+            })
+            .collect();
+        let gaps = [0.5, 0.5, 0.6, 0.0, 0.0, 0.0];
+        let areas = [1.0, 3.0, 1.0, 1.0, 3.0, 1.0];
+        let limits = Limits::new(2, conditions(&of, &gaps, &areas, &friction));
+        assert_eq!(limits.bounds, [0.5, 0.0, 0.0]);
+        let [first, third] = [0, 1].map(|k| limits.tangents[k].bound);
+        assert_eq!((first.coefficient, first.cohesion), (0.3, 4.0));
+        assert_eq!(third.cohesion, 1.0);
+        let forces = limits.forces(&[8.0, -4.0, 0.5]);
+        assert_eq!(forces, [2.0, 6.0, 0.0, -1.0, -3.0, 0.5]);
+        assert_eq!(limits.of_limits(&forces), [8.0, -4.0, 0.5]);
+        assert_eq!(
+            limits.closed([true, true, false]),
+            [true, true, false, true, true, false]
+        );
     }
 }

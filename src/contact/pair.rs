@@ -297,6 +297,7 @@ impl CondensedContact {
 mod tests {
     use super::*;
     use crate::contact::jumps::JumpOf;
+    use crate::contact::limits::Conditions;
     use crate::schur::condensed::InterfaceDof;
 
     const GAPS: [f64; 3] = [0.1, -0.2, 0.05];
@@ -323,7 +324,16 @@ mod tests {
             smallest_pivot: 1.0,
         };
         let load = (0..n).map(|i| 3.0 * number(100 + i)).collect();
-        let limits = Limits::new(jumps, &of, &GAPS, &[], 0.0);
+        let limits = Limits::new(
+            jumps,
+            Conditions {
+                of: &of,
+                gaps: &GAPS,
+                areas: &[1.0; GAPS.len()],
+                friction: &[],
+                scale: 0.0,
+            },
+        );
         ContactPair::new(Rc::new(condensed), limits, load, None)
     }
 

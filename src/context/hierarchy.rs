@@ -4,7 +4,7 @@ use contact_dd_partition::id::{GroupId, OnTreeNodes, TreeNodeId};
 
 use crate::bytes::Reals;
 use crate::contact::jumps::{Jumps, NoUnknown};
-use crate::contact::limits::Limits;
+use crate::contact::limits::{Conditions, Limits};
 use crate::context::Context;
 use crate::error::Failure;
 use crate::fem::contact_group::ContactGroup;
@@ -57,9 +57,14 @@ pub fn resting_limits(
     group: &ContactGroup,
 ) -> Result<Limits, Failure> {
     let jumps = jumps(context, g, group)?;
-    let (friction, gaps) = (group.friction(), vec![0.0; jumps.of.len()]);
-    let count = jumps.pivots.len();
-    Ok(Limits::new(count, &jumps.of, &gaps, &friction, 0.0))
+    let conditions = Conditions {
+        of: &jumps.of,
+        gaps: &vec![0.0; jumps.of.len()],
+        areas: &group.areas(),
+        friction: &group.friction(),
+        scale: 0.0,
+    };
+    Ok(Limits::new(jumps.pivots.len(), conditions))
 }
 
 /// The jumps of contact group g of this rank.

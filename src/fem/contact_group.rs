@@ -134,6 +134,12 @@ impl ContactGroup {
         self.points[condition.point].row_along(condition.direction)
     }
 
+    /// The area of the point of every constraint (m, in space m²).
+    pub fn areas(&self) -> Vec<f64> {
+        let area = |condition: Condition| self.points[condition.point].area;
+        self.conditions().map(area).collect()
+    }
+
     /// The tangential constraints, each with the normal one of its point.
     pub fn friction(&self) -> Vec<TangentialCondition> {
         let of_condition = |(number, condition): (usize, Condition)| {
