@@ -121,9 +121,10 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
     let Whole {
         deck, mut warnings, ..
     } = Whole::read(&source)?;
-    let mut places = Places::new(&source, deck);
+    let mut places = Places::new(&source, deck)?;
     let mut content = Content::default();
     content.read_amplitudes(&source)?;
+    content.read_orientations(&mut places)?;
     content.read_couplings(&mut places)?;
     for block in &source.blocks {
         content.read(&mut places, block)?;

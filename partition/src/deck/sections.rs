@@ -47,11 +47,13 @@ impl Section {
         })
     }
 
-    /// The section restricted to `elements`, with another orientation.
+    /// The section restricted to `elements`, ascending, with another orientation.
     pub(super) fn turned(&self, elements: &[u32], orientation: &str) -> Self {
         let own = self.elements.iter().copied();
         Self {
-            elements: own.filter(|element| elements.contains(element)).collect(),
+            elements: own
+                .filter(|element| elements.binary_search(element).is_ok())
+                .collect(),
             orientation: Some(orientation.to_owned()),
             ..self.clone()
         }
