@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::amplitude::Amplitude;
+use super::attachment;
 use super::axes::{Axes, System};
 use super::conditions::{self, Condition};
 use super::contacts::Contacts;
@@ -214,8 +215,14 @@ impl Content {
         material.take(source, block)
     }
 
-    /// Determines the constraints between displacements, after the last block.
-    pub(super) fn find_conditions(&mut self, places: &Places) -> Result<(), InputError> {
+    /// Determines the constraints between displacements, after the last block, with `warnings` for supports of nodes that
+    /// belong to nothing.
+    pub(super) fn find_conditions(
+        &mut self,
+        places: &Places,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        attachment::check(places, &self.equations.all, &self.steps.loads, warnings)?;
         self.conditions = conditions::all(places, &self.equations.all, &mut self.steps)?;
         Ok(())
     }

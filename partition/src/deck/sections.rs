@@ -33,6 +33,7 @@ impl Section {
         }
         let set = source.required(block, "ELSET")?.to_owned();
         let elements = places.members(block.place, Of::Elements, &set)?;
+        check_solid(places, block, &set, &elements)?;
         let thickness = match block.data.first() {
             Some(data) => source.real(data.place, item(source, data, 0), "the thickness")?,
             None => 0.0,
@@ -47,6 +48,14 @@ impl Section {
         })
     }
 
+    /// True for a section of another block with other properties.
+    fn contradicts(&self, other: &Self) -> bool {
+        let differs = self.material != other.material
+            || self.orientation != other.orientation
+            || self.thickness != other.thickness;
+        differs && self.place != other.place
+    }
+
     /// The section restricted to `elements`, ascending, with another orientation.
     pub(super) fn turned(&self, elements: &[u32], orientation: &str) -> Self {
         let own = self.elements.iter().copied();
@@ -58,6 +67,45 @@ impl Section {
             ..self.clone()
         }
     }
+}
+
+/// Refuses a section of elements without stiffness, which would be lost.
+///
+/// # Errors
+/// A line or a shell, which can only be a side, or a type that is left out.
+fn check_solid(
+    places: &Places,
+    block: &Block,
+    set: &str,
+    elements: &[u32],
+) -> Result<(), InputError> {
+    let deck = &places.deck;
+    let side = elements.iter().find(|&&e| deck.is_side[e as usize]);
+    let what = match side {
+        Some(&side) => format!(
+            "element {}, a {}",
+            deck.element_tags[side as usize],
+            deck.elements.kind(side as usize).name()
+        ),
+        None if !elements.is_empty() || !places.is_placed() => return Ok(()),
+        None => {
+            let mut blocks = places.source.blocks.iter();
+            let is_own = |other: &&Block| {
+                let own = other.parameter("ELSET").unwrap_or_default();
+                other.keyword == "ELEMENT" && own.eq_ignore_ascii_case(set)
+            };
+            let kind = blocks.find(is_own).and_then(|own| own.parameter("TYPE"));
+            match kind {
+                Some(kind) => format!("elements of type {}", name::shown(kind)),
+                None => return Ok(()),
+            }
+        }
+    };
+    let message = format!(
+        "*SOLID SECTION of {what}: the stiffness of trusses, beams and shells isn't computed; expected solids, or *SPRING for \
+         a truss"
+    );
+    Err(places.source.error(block.place, message))
 }
 
 /// A body of the scene.
@@ -195,7 +243,7 @@ pub(super) fn bodies(
 /// The section of every element that is a cell, by its number.
 ///
 /// # Errors
-/// A cell without a section.
+/// A cell without a section, or with two that differ.
 fn sections_of_elements(
     places: &Places,
     sections: &[Section],
@@ -208,7 +256,16 @@ fn sections_of_elements(
             .iter()
             .filter(|&&element| places.is_cell(element, dim))
         {
-            section_of[element as usize] = Some(number);
+            let before = section_of[element as usize].replace(number);
+            let before = before.map(|before| &sections[before as usize]);
+            if let Some(other) = before.filter(|before| section.contradicts(before)) {
+                let message = format!(
+                    "element {} has another *SOLID SECTION in {}; expected one for each element",
+                    places.deck.element_tags[element as usize],
+                    places.source.place(other.place)
+                );
+                return Err(places.source.error(section.place, message));
+            }
         }
     }
     let mut elements = 0..section_of.len() as u32;

@@ -1,5 +1,6 @@
 //! `*BOUNDARY`, and concentrated forces, `*CLOAD`, which have the same syntax.
 
+use super::attachment::NodeLine;
 use super::loads::{Loads, item};
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
@@ -81,6 +82,13 @@ impl Loads {
                     None => {}
                 }
             }
+            self.lines.push(NodeLine {
+                place: data.place,
+                nodes,
+                axes,
+                value,
+                is_force: false,
+            });
         }
         Ok(())
     }
@@ -197,6 +205,13 @@ impl Loads {
                     }
                 }
             }
+            self.lines.push(NodeLine {
+                place: data.place,
+                nodes,
+                axes: vec![axis],
+                value: force,
+                is_force: true,
+            });
         }
         Ok(())
     }
