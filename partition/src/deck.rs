@@ -37,6 +37,7 @@ mod reference;
 mod scene;
 mod scene_tables;
 mod sections;
+mod solids;
 mod springs;
 mod steps;
 mod supports;
@@ -127,6 +128,7 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
         deck, mut warnings, ..
     } = Whole::read(&source)?;
     let mut places = Places::new(&source, deck)?;
+    solids::check(&places)?;
     let mut content = Content::default();
     content.read_amplitudes(&source)?;
     content.read_orientations(&mut places)?;
