@@ -7,18 +7,6 @@ use super::loads::Loads;
 use super::place::Places;
 use super::reference::NodeAxis;
 use crate::error::InputError;
-use crate::mesh::abaqus::LinePlace;
-
-/// A line of `*CLOAD` or `*BOUNDARY`.
-pub(super) struct NodeLine {
-    pub(super) place: LinePlace,
-    pub(super) nodes: Vec<u32>,
-    /// The degrees of freedom, from 0.
-    pub(super) axes: Vec<usize>,
-    /// Force or displacement.
-    pub(super) value: f64,
-    pub(super) is_force: bool,
-}
 
 /// Refuses forces and supports of nodes that belong to nothing. Zero supports of a set of which other nodes are attached
 /// are left out with a warning: sets of planes often have nodes that no element has.

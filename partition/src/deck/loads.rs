@@ -2,13 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::attachment::NodeLine;
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
 use super::table::{Origin, Table};
 use crate::element::geometry::{cross, difference, length, unit};
 use crate::error::InputError;
-use crate::mesh::abaqus::{Data, Of, Source};
+use crate::mesh::abaqus::{Data, LinePlace, Of, Source};
 use crate::name;
 
 /// Difference of unit vectors, and relative one of points, that is round-off: CalculiX' bound.
@@ -34,6 +33,17 @@ pub(super) enum BodyKind {
     Gravity([f64; 3]),
     /// Per mass, away from an axis through a point in a direction.
     Centrifugal([f64; 3], [f64; 3]),
+}
+
+/// A line of `*CLOAD` or `*BOUNDARY`.
+pub(super) struct NodeLine {
+    pub(super) place: LinePlace,
+    pub(super) nodes: Vec<u32>,
+    /// The degrees of freedom, from 0.
+    pub(super) axes: Vec<usize>,
+    /// Force or displacement.
+    pub(super) value: f64,
+    pub(super) is_force: bool,
 }
 
 /// All loads and supports.

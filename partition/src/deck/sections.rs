@@ -7,6 +7,7 @@ use super::initial::Initial;
 use super::loads::{Loads, item};
 use super::model_change::Changes;
 use super::place::Places;
+use super::solids;
 use super::steps::LoadStep;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
@@ -33,7 +34,7 @@ impl Section {
         }
         let set = source.required(block, "ELSET")?.to_owned();
         let elements = places.members(block.place, Of::Elements, &set)?;
-        check_solid(places, block, &set, &elements)?;
+        solids::check_section(places, block, &set, &elements)?;
         let thickness = match block.data.first() {
             Some(data) => source.real(data.place, item(source, data, 0), "the thickness")?,
             None => 0.0,
@@ -67,45 +68,6 @@ impl Section {
             ..self.clone()
         }
     }
-}
-
-/// Refuses a section of elements without stiffness, which would be lost.
-///
-/// # Errors
-/// A line or a shell, which can only be a side, or a type that is left out.
-fn check_solid(
-    places: &Places,
-    block: &Block,
-    set: &str,
-    elements: &[u32],
-) -> Result<(), InputError> {
-    let deck = &places.deck;
-    let side = elements.iter().find(|&&e| deck.is_side[e as usize]);
-    let what = match side {
-        Some(&side) => format!(
-            "element {}, a {}",
-            deck.element_tags[side as usize],
-            deck.elements.kind(side as usize).name()
-        ),
-        None if !elements.is_empty() || !places.is_placed() => return Ok(()),
-        None => {
-            let mut blocks = places.source.blocks.iter();
-            let is_own = |other: &&Block| {
-                let own = other.parameter("ELSET").unwrap_or_default();
-                other.keyword == "ELEMENT" && own.eq_ignore_ascii_case(set)
-            };
-            let kind = blocks.find(is_own).and_then(|own| own.parameter("TYPE"));
-            match kind {
-                Some(kind) => format!("elements of type {}", name::shown(kind)),
-                None => return Ok(()),
-            }
-        }
-    };
-    let message = format!(
-        "*SOLID SECTION of {what}: the stiffness of trusses, beams and shells isn't computed; expected solids, or *SPRING for \
-         a truss"
-    );
-    Err(places.source.error(block.place, message))
 }
 
 /// A body of the scene.

@@ -1,45 +1,78 @@
-//! Solids of a deck: elements with a volume, or all of them in the plane.
+//! Solids of a deck: elements that have a stiffness here.
 
 use std::collections::BTreeSet;
 
 use super::place::Places;
 use crate::error::InputError;
+use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
 /// Beginnings of the types of solids.
 const SOLIDS: [&str; 4] = ["C3D", "CPE", "CPS", "CAX"];
 
-/// Refuses decks without solids, and those with plane elements beside solids in space, of which one would be lost.
+/// Refuses decks without solids.
 ///
 /// # Errors
-/// The types of elements that a deck has instead, or the line of the plane elements.
+/// The types of elements that a deck has instead.
 pub(super) fn check(places: &Places) -> Result<(), InputError> {
-    let dim = places.dim();
-    if dim == 0 {
+    if places.dim() == 0 {
         return Err(InputError::new(format!(
             "the deck has no solid elements: {}; expected elements of types such as C3D8, C3D20, C3D4, C3D10, CPE4, CPS4 or \
              CAX4",
             instead(places)
         )));
     }
+    Ok(())
+}
+
+/// Refuses a section of elements without stiffness here, which would be lost without a word.
+///
+/// # Errors
+/// A truss, a shell or a plane element in space, which can only be a side, or a type that is left out.
+pub(super) fn check_section(
+    places: &Places,
+    block: &Block,
+    set: &str,
+    elements: &[u32],
+) -> Result<(), InputError> {
     let deck = &places.deck;
-    let is_flat = |&e: &usize| !deck.is_side[e] && deck.elements.kind(e).dim() < dim;
-    let Some(flat) = (0..deck.elements.len()).find(is_flat) else {
-        return Ok(());
+    let dim = places.dim();
+    let other = elements.iter().find(|&&e| !places.is_cell(e, dim));
+    let what = match other.map(|&other| other as usize) {
+        Some(plane) if !deck.is_side[plane] => {
+            let message = format!(
+                "the plane element {} stands beside solids in space; expected a deck for each",
+                deck.element_tags[plane]
+            );
+            return Err(places.source.error(block.place, message));
+        }
+        Some(side) => format!(
+            "element {}, a {}",
+            deck.element_tags[side],
+            deck.elements.kind(side).name()
+        ),
+        None if !elements.is_empty() || !places.is_placed() => return Ok(()),
+        None => match type_of(places, set) {
+            Some(kind) => format!("elements of type {}", name::shown(kind)),
+            None => return Ok(()),
+        },
     };
     let message = format!(
-        "the plane element {} stands beside solids in space; expected a deck for each",
-        deck.element_tags[flat]
+        "*SOLID SECTION of {what}: the stiffness of trusses, beams and shells isn't computed; expected solids, or *SPRING for \
+         a truss"
     );
-    let mut blocks = places.source.blocks.iter();
-    let plane = blocks.find(|block| {
-        let kind = block.parameter("TYPE").unwrap_or_default().to_uppercase();
-        block.keyword == "ELEMENT" && SOLIDS[1..].iter().any(|solid| kind.starts_with(solid))
+    Err(places.source.error(block.place, message))
+}
+
+/// The type of the elements of a set, by the block that lists them.
+fn type_of<'a>(places: &Places<'a>, set: &str) -> Option<&'a str> {
+    let source: &'a Source = places.source;
+    let mut blocks = source.blocks.iter();
+    let own = blocks.find(|block| {
+        let own = block.parameter("ELSET").unwrap_or_default();
+        block.keyword == "ELEMENT" && own.eq_ignore_ascii_case(set)
     });
-    Err(match plane {
-        Some(block) => places.source.error(block.place, message),
-        None => InputError::new(message),
-    })
+    own.and_then(|own| own.parameter("TYPE"))
 }
 
 /// What a deck has instead of solids.

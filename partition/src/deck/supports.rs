@@ -1,7 +1,6 @@
 //! `*BOUNDARY`, and concentrated forces, `*CLOAD`, which have the same syntax.
 
-use super::attachment::NodeLine;
-use super::loads::{Loads, item};
+use super::loads::{Loads, NodeLine, item};
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
 use super::table::Origin;
