@@ -5,12 +5,27 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, Source};
 use crate::name;
 
+/// The keywords whose entries are counted here.
+const COUNTED: [&str; 10] = [
+    "BOUNDARY",
+    "CLOAD",
+    "DLOAD",
+    "DSLOAD",
+    "TEMPERATURE",
+    "INITIAL CONDITIONS",
+    "DENSITY",
+    "FRICTION",
+    "CONTACT PAIR",
+    "TIE",
+];
+
 /// Refuses entries beyond those that a keyword takes; zeros may follow.
 ///
 /// # Errors
 /// The first entry too many, with its line.
 pub(super) fn check(source: &Source) -> Result<(), InputError> {
-    for block in &source.blocks {
+    let blocks = source.blocks.iter();
+    for block in blocks.filter(|block| COUNTED.contains(&block.keyword.as_str())) {
         for data in &block.data {
             let Some((count, what)) = taken(source, block, data) else {
                 continue;
@@ -51,7 +66,6 @@ fn taken(source: &Source, block: &Block, data: &Data) -> Option<(usize, &'static
             "a coefficient, a slope or rate, a pressure and a temperature",
         ),
         ("CONTACT PAIR" | "TIE", _) => (2, "two surfaces"),
-        ("TRANSFORM", _) => (6, "the coordinates of two points"),
         _ => return None,
     };
     Some(taken)

@@ -83,6 +83,14 @@ impl Loads {
         let target = item(source, data, 0);
         let label = item(source, data, 1).to_uppercase();
         let elements = places.members(data.place, Of::Elements, target)?;
+        let dim = places.dim();
+        if !elements.iter().any(|&element| places.is_cell(element, dim)) {
+            let message = format!(
+                "the set {} has no solid elements, so its load acts on nothing; expected one of solids",
+                name::shown(target)
+            );
+            return Err(source.error(data.place, message));
+        }
         let value = source.real(data.place, item(source, data, 2), "the magnitude of a load")?;
         let origin = Origin {
             place: data.place,

@@ -17,6 +17,7 @@ enum Scope {
 pub(super) struct Places<'a> {
     pub(super) source: &'a Source,
     pub(super) deck: Deck,
+    dim: usize,
     scope: Scope,
     /// Instances by their part's name in capitals.
     instances: BTreeMap<String, Vec<String>>,
@@ -25,6 +26,8 @@ pub(super) struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
+    /// The whole deck, outside of parts and instances.
+    ///
     /// # Errors
     /// An invalid position of an instance.
     pub(super) fn new(source: &'a Source, deck: Deck) -> Result<Self, InputError> {
@@ -40,8 +43,11 @@ impl<'a> Places<'a> {
             positions.insert(name.clone(), Position::read(source, block)?);
             instances.entry(part).or_default().push(name);
         }
+        let cells = (0..deck.elements.len()).filter(|&element| !deck.is_side[element]);
+        let dim = cells.map(|cell| deck.elements.kind(cell).dim()).max();
         Ok(Self {
             source,
+            dim: dim.unwrap_or_default(),
             deck,
             scope: Scope::Whole,
             instances,
@@ -158,12 +164,7 @@ impl<'a> Places<'a> {
 
     /// The dimension of the cells; 0 without cells.
     pub(super) fn dim(&self) -> usize {
-        let elements = 0..self.deck.elements.len();
-        let cells = elements.filter(|&element| !self.deck.is_side[element]);
-        cells
-            .map(|cell| self.deck.elements.kind(cell).dim())
-            .max()
-            .unwrap_or_default()
+        self.dim
     }
 
     /// For every node whether it belongs to a cell.

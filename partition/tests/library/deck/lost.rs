@@ -98,6 +98,10 @@ fn trusses_with_a_section_are_refused_and_others_are_sides() {
         &format!("{CUBES}{MODEL}{beam}{section}{}", step(LOAD)),
         "line 51: *SOLID SECTION of elements of type B31: the stiffness of trusses",
     );
+    refused(
+        &format!("{CUBES}{MODEL}{truss}{}", step("*DLOAD\nRod, BX, 1.")),
+        "line 54: the set Rod has no solid elements, so its load acts on nothing; expected",
+    );
     let plane = "*ELEMENT, TYPE=CPE4, ELSET=Rod\n31, 15, 16, 17, 18\n";
     refused(
         &format!("{CUBES}{MODEL}{plane}{section}{}", step(LOAD)),
