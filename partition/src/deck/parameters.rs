@@ -119,7 +119,7 @@ const PARAMETERS: [(&str, &[&str]); 50] = [
 /// Parameters of these keywords without effect here, as they steer what other programs do on the way to the answer; those
 /// that docs/decks.md lists.
 const HARMLESS: [(&str, &[&str]); 11] = [
-    ("NSET", &["UNSORTED"]),
+    ("NSET", &["UNSORTED", "FREQUENCY"]),
     ("SURFACE", &["TRIM"]),
     ("MATERIAL", &["RTOL"]),
     ("SOLID SECTION", &["CONTROLS"]),

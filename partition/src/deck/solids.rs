@@ -10,6 +10,9 @@ use crate::name;
 /// Beginnings of the types of solids.
 const SOLIDS: [&str; 4] = ["C3D", "CPE", "CPS", "CAX"];
 
+/// Beginnings of the types of beams.
+const BEAMS: [&str; 4] = ["B2", "B3", "PIPE", "FRAME"];
+
 /// Refuses decks without solids.
 ///
 /// # Errors
@@ -28,7 +31,7 @@ pub(super) fn check(places: &Places) -> Result<(), InputError> {
 /// Refuses a section of elements without stiffness here, which would be lost without a word.
 ///
 /// # Errors
-/// A truss, a shell or a plane element in space, which can only be a side, or a type that is left out.
+/// A truss, a shell or a plane element in space, which can only be a side, or a beam, which is left out.
 pub(super) fn check_section(
     places: &Places,
     block: &Block,
@@ -52,7 +55,7 @@ pub(super) fn check_section(
             deck.elements.kind(side).name()
         ),
         None if !elements.is_empty() || !places.is_placed() => return Ok(()),
-        None => match type_of(places, set) {
+        None => match type_of(places, set).filter(|kind| is_beam(kind)) {
             Some(kind) => format!("elements of type {}", name::shown(kind)),
             None => return Ok(()),
         },
@@ -73,6 +76,12 @@ fn type_of<'a>(places: &Places<'a>, set: &str) -> Option<&'a str> {
         block.keyword == "ELEMENT" && own.eq_ignore_ascii_case(set)
     });
     own.and_then(|own| own.parameter("TYPE"))
+}
+
+/// True for the type of a beam. CalculiX wants sections of other elements, too, such as `DCOUP3D`.
+fn is_beam(kind: &str) -> bool {
+    let kind = kind.to_uppercase();
+    BEAMS.iter().any(|beam| kind.starts_with(beam))
 }
 
 /// What a deck has instead of solids.
