@@ -5,6 +5,7 @@
 
 mod activation;
 mod amplitude;
+mod attachment;
 mod axes;
 mod behavior;
 mod conditions;
@@ -12,9 +13,12 @@ mod contacts;
 mod content;
 mod couplings;
 mod cyclic;
+mod definitions;
 mod document;
 mod elastic;
+mod entries;
 mod equations;
+mod friction;
 mod group_load;
 mod groups;
 mod initial;
@@ -33,6 +37,7 @@ mod reference;
 mod scene;
 mod scene_tables;
 mod sections;
+mod solids;
 mod springs;
 mod steps;
 mod supports;
@@ -118,19 +123,23 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
             not_needed.insert(format!("*{}", block.keyword));
         }
     }
+    entries::check(&source)?;
     let Whole {
         deck, mut warnings, ..
     } = Whole::read(&source)?;
-    let mut places = Places::new(&source, deck);
+    let mut places = Places::new(&source, deck)?;
+    solids::check(&places)?;
     let mut content = Content::default();
     content.read_amplitudes(&source)?;
+    content.read_orientations(&mut places)?;
     content.read_couplings(&mut places)?;
     for block in &source.blocks {
         content.read(&mut places, block)?;
     }
+    definitions::check(&source)?;
     content.steps.end(&places)?;
     content.check_path(&places)?;
-    content.find_conditions(&places)?;
+    content.find_conditions(&places, &mut warnings)?;
     if content.steps.done.is_empty() {
         return Err(InputError::new(
             "the deck has no step; expected *STEP with *STATIC, or a scene in TOML whose key 'mesh' names the deck",

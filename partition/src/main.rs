@@ -209,10 +209,12 @@ fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure>
     for file in &translation.files {
         keep(file, &output)?;
     }
-    let scene = Scene::parse(&translation.scene).map_err(|error| {
+    let mut scene = Scene::parse(&translation.scene).map_err(|error| {
         let message = format!("as a scene, which --write-scene writes: {error}");
         InputError::new(message).in_file(path)
     })?;
+    // Errors of the mesh name the file that the user has.
+    scene.mesh = path.to_path_buf();
     Ok(Some(Source {
         scene,
         mesh: translation.mesh.along_curve(),

@@ -2,7 +2,7 @@
 
 use crate::element::geometry::{cross, difference, dot, length};
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, Data, Source};
+use crate::mesh::abaqus::{Block, Data, Position, Source};
 use crate::name;
 
 type Vector = [f64; 3];
@@ -104,6 +104,14 @@ impl System {
                 block.keyword,
                 name::shown(system)
             )),
+        }
+    }
+
+    /// The system of a part, as an instance has it.
+    pub(super) fn placed(&self, position: &Position) -> Self {
+        match *self {
+            Self::Rectangular(axes) => Self::Rectangular(axes.map(|axis| position.direction(axis))),
+            Self::Cylindrical(a, b) => Self::Cylindrical(position.of(a), position.of(b)),
         }
     }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::behavior::{linear, soft};
 use super::document::Document;
+use super::friction::Friction;
 use super::loads::item;
 use super::place::Places;
 use crate::error::InputError;
@@ -99,16 +100,6 @@ pub(super) struct Contacts {
     general: Option<General>,
 }
 
-/// Parameters of `*FRICTION` that change Coulomb's law.
-const FRICTION: [&str; 6] = [
-    "ROUGH",
-    "TAUMAX",
-    "EXPONENTIAL DECAY",
-    "USER",
-    "LAGRANGE",
-    "ANISOTROPIC",
-];
-
 impl Contacts {
     /// True if there is no contact.
     pub(super) fn is_empty(&self) -> bool {
@@ -179,25 +170,12 @@ impl Contacts {
         Ok(())
     }
 
-    /// `*FRICTION`: a coefficient, and CalculiX's stick slope.
+    /// `*FRICTION`.
     fn friction(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
-        let source = places.source;
-        let refused = FRICTION.iter().find(|key| block.parameter(key).is_some());
-        if let Some(key) = refused {
-            let message =
-                format!("*FRICTION with {key} isn't read; expected a coefficient of Coulomb's law");
-            return Err(source.error(block.place, message));
-        }
-        let mut numbers = [0.0; 2];
-        let what = ["a coefficient of friction", "a stick slope"];
-        for (place, number) in numbers.iter_mut().enumerate() {
-            if let Some(data) = block.data.first() {
-                *number = source.real(data.place, item(source, data, place), what[place])?;
-            }
-        }
+        let friction = Friction::read(places.source, block)?;
         let law = &mut self.interaction(places, block)?.law;
-        law.friction = numbers[0];
-        law.stick_slope = Some(numbers[1]).filter(|&slope| slope > 0.0);
+        law.friction = friction.coefficient;
+        law.stick_slope = friction.stick_slope;
         Ok(())
     }
 

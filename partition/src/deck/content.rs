@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::amplitude::Amplitude;
+use super::attachment;
 use super::axes::{Axes, System};
 use super::conditions::{self, Condition};
 use super::contacts::Contacts;
@@ -65,13 +66,25 @@ impl Content {
         Ok(())
     }
 
+    /// Reads all orientations first, before sections and couplings refer to them.
+    pub(super) fn read_orientations(&mut self, places: &mut Places) -> Result<(), InputError> {
+        for block in &places.source.blocks {
+            match block.keyword.as_str() {
+                "PART" | "INSTANCE" | "END PART" | "END INSTANCE" => places.enter(block),
+                "ORIENTATION" | "DISTRIBUTION" => self.orientations.read(places, block)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// Reads all couplings and pretensions first, before loads and supports of their reference nodes.
     pub(super) fn read_couplings(&mut self, places: &mut Places) -> Result<(), InputError> {
         for block in &places.source.blocks {
             match block.keyword.as_str() {
                 "PART" | "INSTANCE" | "END PART" | "END INSTANCE" => places.enter(block),
                 "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" => {
-                    self.couplings.read(places, block)?;
+                    self.couplings.read(places, &self.orientations, block)?;
                 }
                 "PRE-TENSION SECTION" => self.pretensions.read(places, block)?,
                 _ => {}
@@ -95,18 +108,19 @@ impl Content {
                 self.open = Some(key);
             }
             "ELASTIC" | "EXPANSION" | "DENSITY" => self.law(source, block)?,
-            "ORIENTATION" | "DISTRIBUTION" => self.orientations.read(places, block)?,
             "TRANSFORM" => {
                 let system = System::of_nodes(source, block)?;
                 let set = source.required(block, "NSET")?;
-                let nodes = places.members(block.place, Of::Nodes, set)?;
-                nodes
-                    .into_iter()
-                    .for_each(|node| _ = self.steps.systems.insert(node, system));
+                for (position, nodes) in places.in_instances(block.place, Of::Nodes, set)? {
+                    let system = position.map_or(system, |position| system.placed(&position));
+                    nodes
+                        .into_iter()
+                        .for_each(|node| _ = self.steps.systems.insert(node, system));
+                }
             }
             "SOLID SECTION" => {
                 let section = Section::read(places, block)?;
-                let parts = self.orientations.parts(&section);
+                let parts = self.orientations.parts(places, &section);
                 self.sections.extend([section].into_iter().chain(parts));
             }
             "INITIAL CONDITIONS" => self.initial.read(places, block)?,
@@ -123,7 +137,13 @@ impl Content {
                 self.steps.read(places, block)?
             }
             // They have been read first.
-            "COUPLING" | "KINEMATIC" | "DISTRIBUTING" | "RIGID BODY" | "PRE-TENSION SECTION" => {}
+            "ORIENTATION"
+            | "DISTRIBUTION"
+            | "COUPLING"
+            | "KINEMATIC"
+            | "DISTRIBUTING"
+            | "RIGID BODY"
+            | "PRE-TENSION SECTION" => {}
             "ELEMENT" => {
                 self.springs.elements(places, block)?;
                 self.equations.elements(places, block)?;
@@ -195,8 +215,14 @@ impl Content {
         material.take(source, block)
     }
 
-    /// Determines the constraints between displacements, after the last block.
-    pub(super) fn find_conditions(&mut self, places: &Places) -> Result<(), InputError> {
+    /// Determines the constraints between displacements, after the last block, with `warnings` for supports of nodes that
+    /// belong to nothing.
+    pub(super) fn find_conditions(
+        &mut self,
+        places: &Places,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), InputError> {
+        attachment::check(places, &self.equations.all, &self.steps.loads, warnings)?;
         self.conditions = conditions::all(places, &self.equations.all, &mut self.steps)?;
         Ok(())
     }

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 pub(super) use self::scene_coupling::SceneCoupling;
 use super::loads::item;
+use super::orientations::Orientations;
 use super::place::Places;
 use super::reference::{FREEDOMS, Reference};
 use crate::error::InputError;
@@ -56,9 +57,14 @@ pub(super) struct Couplings {
 
 impl Couplings {
     /// Reads a block.
-    pub(super) fn read(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
+    pub(super) fn read(
+        &mut self,
+        places: &mut Places,
+        orientations: &Orientations,
+        block: &Block,
+    ) -> Result<(), InputError> {
         match block.keyword.as_str() {
-            "COUPLING" => self.coupling(places, block),
+            "COUPLING" => self.coupling(places, orientations, block),
             "RIGID BODY" => self.rigid_body(places, block),
             "KINEMATIC" => self.follow(places, block, Kind::Rigid),
             _ => self.follow(places, block, Kind::Distributing),
@@ -87,14 +93,20 @@ impl Couplings {
         self.all.iter().map(|coupling| coupling.node).collect()
     }
 
-    fn coupling(&mut self, places: &mut Places, block: &Block) -> Result<(), InputError> {
+    fn coupling(
+        &mut self,
+        places: &mut Places,
+        orientations: &Orientations,
+        block: &Block,
+    ) -> Result<(), InputError> {
         let source = places.source;
         let surface = source.required(block, "SURFACE")?.to_uppercase();
         places.check_surface(block.place, &surface)?;
         let name = block.parameter("CONSTRAINT NAME").unwrap_or("coupling");
         self.push(places, block, (name, Coupled::Surface(surface)), None)?;
         if let Some(open) = self.all.last_mut() {
-            open.orientation = block.parameter("ORIENTATION").map(str::to_uppercase);
+            let name = block.parameter("ORIENTATION");
+            open.orientation = name.map(|name| orientations.listed(places, name));
         }
         Ok(())
     }

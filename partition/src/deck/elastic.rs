@@ -136,6 +136,16 @@ impl Elastic {
 /// The law of 2, 9 or 21 numbers; nine are engineering constants or, for an orthotropic `kind`, stiffnesses.
 fn law(kind: &str, numbers: &[f64]) -> Result<Elastic, String> {
     let stiffness = match *numbers {
+        [young, _] if young <= 0.0 => {
+            return Err(format!(
+                "*ELASTIC: Young's modulus is {young}; expected more than 0"
+            ));
+        }
+        [_, poisson] if poisson <= -1.0 || poisson >= 0.5 => {
+            return Err(format!(
+                "*ELASTIC: Poisson's ratio is {poisson}; expected more than -1 and less than 0.5"
+            ));
+        }
         [young, poisson] => return Ok(Elastic::Isotropic(young, poisson)),
         [a, b, c, d, e, f, g, h, i] if kind.starts_with("ORTHO") => {
             let mut all = vec![a, b, c, d, e, f];

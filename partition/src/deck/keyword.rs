@@ -67,7 +67,7 @@ const READ: [&str; 54] = [
 ];
 
 /// Keywords without effect on the solution.
-const NOT_NEEDED: [&str; 37] = [
+const NOT_NEEDED: [&str; 36] = [
     "CONDUCTIVITY",
     "ELECTRICAL CONDUCTIVITY",
     "SPECIFIC HEAT",
@@ -102,7 +102,6 @@ const NOT_NEEDED: [&str; 37] = [
     "DIAGNOSTICS",
     "VISUALIZATION",
     "NO ANALYSIS",
-    "PARAMETER",
     "SURFACE SMOOTHING",
     "DISTRIBUTION TABLE",
 ];
@@ -112,7 +111,7 @@ const NOT_STATIC: &str = "loads are static here: expected *STATIC";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the solution: the message, and the advice.
-const REFUSED: [(&[&str], &str, &str); 19] = [
+const REFUSED: [(&[&str], &str, &str); 20] = [
     (
         &[
             "PLASTIC",
@@ -226,11 +225,7 @@ const REFUSED: [(&[&str], &str, &str); 19] = [
         "give a negative *CLEARANCE",
     ),
     (
-        &[
-            "CONTACT EXCLUSIONS",
-            "CONTACT DAMPING",
-            "CONTACT STABILIZATION",
-        ],
+        &["CONTACT EXCLUSIONS"],
         NOT_YET,
         "name the sides by *CONTACT PAIR",
     ),
@@ -247,6 +242,8 @@ const REFUSED: [(&[&str], &str, &str); 19] = [
     (
         &[
             "DASHPOT",
+            "CONTACT DAMPING",
+            "CONTACT STABILIZATION",
             "SURFACE INTERACTION DAMPING",
             "VALUES AT INFINITY",
         ],
@@ -269,6 +266,11 @@ const REFUSED: [(&[&str], &str, &str); 19] = [
         &["REFINE MESH", "USE REFINED MESH"],
         "isn't read",
         "give the mesh as fine as it is to be",
+    ),
+    (
+        &["PARAMETER"],
+        "isn't read: other lines take its values by <name>",
+        "write the values there",
     ),
     (
         &["FIELD", "INITIAL STRAIN INCREASE"],

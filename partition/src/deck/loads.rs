@@ -5,16 +5,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
 use super::table::{Origin, Table};
-use crate::element::geometry::unit;
+use crate::element::geometry::{cross, difference, length, unit};
 use crate::error::InputError;
-use crate::mesh::abaqus::{Data, Of, Source};
+use crate::mesh::abaqus::{Data, LinePlace, Of, Source};
 use crate::name;
+
+/// Difference of unit vectors, and relative one of points, that is round-off: CalculiX' bound.
+const SAME: f64 = 1e-10;
 
 /// A load of magnitude 1 on the volume of elements.
 #[derive(Clone, PartialEq)]
 pub(super) struct BodyLoad {
-    /// Names of the elements and of the kind in the deck, in capitals: a load with the same names replaces it in a
-    /// later step.
+    /// Names of the elements and of the kind in the deck, in capitals: a load with the same names, direction and axis
+    /// replaces it in a later step, any other is added.
     target: String,
     pub(super) label: String,
     pub(super) elements: Vec<u32>,
@@ -30,6 +33,17 @@ pub(super) enum BodyKind {
     Gravity([f64; 3]),
     /// Per mass, away from an axis through a point in a direction.
     Centrifugal([f64; 3], [f64; 3]),
+}
+
+/// A line of `*CLOAD` or `*BOUNDARY`.
+pub(super) struct NodeLine {
+    pub(super) place: LinePlace,
+    pub(super) nodes: Vec<u32>,
+    /// The degrees of freedom, from 0.
+    pub(super) axes: Vec<usize>,
+    /// Force or displacement.
+    pub(super) value: f64,
+    pub(super) is_force: bool,
 }
 
 /// All loads and supports.
@@ -51,6 +65,8 @@ pub(super) struct Loads {
     pub(super) references: BTreeMap<u32, Reference>,
     /// Displacements fixed at their current value, of pretensions their shortening.
     pub(super) fixed: BTreeSet<NodeAxis>,
+    /// The lines of `*CLOAD` and `*BOUNDARY`.
+    pub(super) lines: Vec<NodeLine>,
     /// Descriptions of irrelevant parts of the input.
     pub(super) notes: BTreeSet<String>,
 }
@@ -67,6 +83,14 @@ impl Loads {
         let target = item(source, data, 0);
         let label = item(source, data, 1).to_uppercase();
         let elements = places.members(data.place, Of::Elements, target)?;
+        let dim = places.dim();
+        if !elements.iter().any(|&element| places.is_cell(element, dim)) {
+            let message = format!(
+                "the set {} has no solid elements, so its load acts on nothing; expected one of solids",
+                name::shown(target)
+            );
+            return Err(source.error(data.place, message));
+        }
         let value = source.real(data.place, item(source, data, 2), "the magnitude of a load")?;
         let origin = Origin {
             place: data.place,
@@ -98,7 +122,7 @@ impl Loads {
         };
         let replaces = |number: &usize| {
             let other = &self.of_bodies[*number];
-            other.target == load.target && other.label == load.label
+            other.target == load.target && other.kind.is_along(&load.kind)
         };
         self.bodies.forget(origin.step, replaces);
         let number = (self.of_bodies.iter()).position(|known| *known == load);
@@ -199,6 +223,21 @@ impl BodyKind {
                 format!("{label} has no direction; expected one that isn't zero"),
             )
         })
+    }
+
+    /// True for a field along the same direction, or around the same axis, in whichever of its points it is given.
+    fn is_along(&self, other: &Self) -> bool {
+        let differs = |one, other| length(difference(one, other)) > SAME;
+        match (self, other) {
+            (Self::Along(one), Self::Along(other)) => one == other,
+            (Self::Gravity(one), Self::Gravity(other)) => !differs(*one, *other),
+            (Self::Centrifugal(one, axis), Self::Centrifugal(other, other_axis)) => {
+                let apart = length(cross(difference(*one, *other), *axis));
+                let is_one = apart <= SAME * length(*one).max(length(*other));
+                is_one && length(cross(*axis, *other_axis)) <= SAME
+            }
+            _ => false,
+        }
     }
 
     /// The load with unit vectors as directions; `None` if one has length zero.

@@ -20,7 +20,7 @@ struct Distribution {
 /// All orientations of a deck.
 #[derive(Default)]
 pub(super) struct Orientations {
-    /// Systems by name in capitals.
+    /// Systems by name in capitals; those of parts by `instance.name`, as an instance has them.
     pub(super) all: BTreeMap<String, System>,
     /// Distributions by name in capitals.
     distributions: BTreeMap<String, Distribution>,
@@ -40,10 +40,23 @@ impl Orientations {
         }
         let first = block.data.first().map(|data| item(source, data, 0));
         let first = first.unwrap_or_default().to_uppercase();
+        let instances = places.instances();
         let Some(of) = self.distributions.get(&first) else {
-            self.all.insert(name, System::of_material(source, block)?);
+            let system = System::of_material(source, block)?;
+            for (instance, position) in &instances {
+                let own = format!("{instance}.{name}");
+                self.all.insert(own, system.placed(position));
+            }
+            if instances.is_empty() {
+                self.all.insert(name, system);
+            }
             return Ok(());
         };
+        if instances.iter().any(|(_, position)| position.is_turned()) {
+            let message = "*ORIENTATION of a *DISTRIBUTION in a part whose instances are turned isn't read; expected the \
+                           elements of the instances, outside of the part";
+            return Err(source.error(block.place, message));
+        }
         if let Some(data) = block.data.get(1) {
             let message = "*ORIENTATION turns the axes of a *DISTRIBUTION, which isn't read; expected its name alone";
             return Err(source.error(data.place, message));
@@ -61,11 +74,50 @@ impl Orientations {
     }
 
     /// The parts of a section whose orientation differs from that of its other elements.
-    pub(super) fn parts(&self, section: &Section) -> Vec<Section> {
+    pub(super) fn parts(&self, places: &Places, section: &Section) -> Vec<Section> {
         let name = section.orientation.as_deref().unwrap_or_default();
-        let parts = self.parts.get(name).into_iter().flatten();
-        let turned = parts.map(|(elements, name)| section.turned(elements, name));
+        let mut parts = self.of_instances(places, name);
+        if parts.is_empty() {
+            parts = self.parts.get(name).cloned().unwrap_or_default();
+        }
+        let turned = parts
+            .iter()
+            .map(|(elements, name)| section.turned(elements, name));
         turned.collect()
+    }
+
+    /// The elements of the instances of the part being read, each with the name of their system; instances with equal
+    /// axes share one, so that they share a body.
+    fn of_instances(&self, places: &Places, name: &str) -> Vec<(Vec<u32>, String)> {
+        let mut found: Vec<(Vec<u32>, String)> = Vec::new();
+        for (instance, _) in places.instances() {
+            let own = format!("{instance}.{name}");
+            let Some(system) = self.all.get(&own) else {
+                continue;
+            };
+            let elements = places.deck.element_sets.get(&instance);
+            let elements = elements.map_or_else(Vec::new, |set| set.members.list().to_vec());
+            let alike = |other: &String| self.all.get(other) == Some(system);
+            match found.iter().position(|(_, other)| alike(other)) {
+                Some(at) => found[at].0.extend(elements),
+                None => found.push((elements, own)),
+            }
+        }
+        for (elements, _) in &mut found {
+            elements.sort_unstable();
+        }
+        found
+    }
+
+    /// The name by which an orientation is listed that a block refers to, in a part that of an instance.
+    pub(super) fn listed(&self, places: &Places, name: &str) -> String {
+        let name = name.to_uppercase();
+        let instances = places.instances();
+        let found = instances
+            .iter()
+            .map(|(instance, _)| format!("{instance}.{name}"))
+            .find(|own| self.all.contains_key(own));
+        found.unwrap_or(name)
     }
 }
 

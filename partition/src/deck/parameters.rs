@@ -4,26 +4,36 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
-/// Parameters that are read, refused by the reader of the block, or without effect.
-const PARAMETERS: [(&str, &[&str]); 39] = [
+/// Parameters that are read, or refused by the reader of the block.
+const PARAMETERS: [(&str, &[&str]); 50] = [
+    ("NODE", &["NSET", "INPUT", "SYSTEM"]),
+    ("ELEMENT", &["TYPE", "ELSET", "INPUT"]),
+    (
+        "NSET",
+        &["NSET", "ELSET", "GENERATE", "INSTANCE", "INTERNAL", "INPUT"],
+    ),
+    (
+        "ELSET",
+        &["ELSET", "GENERATE", "INSTANCE", "INTERNAL", "INPUT"],
+    ),
+    ("SURFACE", &["NAME", "TYPE", "COMBINE", "INTERNAL"]),
+    ("PART", &["NAME"]),
+    ("END PART", &[]),
+    ("ASSEMBLY", &["NAME"]),
+    ("END ASSEMBLY", &[]),
+    ("INSTANCE", &["NAME", "PART"]),
+    ("END INSTANCE", &[]),
     ("MODEL CHANGE", &["TYPE", "ADD", "REMOVE"]),
     ("CHANGE FRICTION", &["INTERACTION"]),
     ("CHANGE SURFACE BEHAVIOR", &["INTERACTION"]),
     ("DISTRIBUTING COUPLING", &["ELSET"]),
-    ("MATERIAL", &["NAME", "RTOL"]),
+    ("MATERIAL", &["NAME"]),
     ("ELASTIC", &["TYPE", "MODULI"]),
     ("EXPANSION", &["TYPE", "ZERO"]),
     ("DENSITY", &[]),
     (
         "SOLID SECTION",
-        &[
-            "ELSET",
-            "MATERIAL",
-            "ORIENTATION",
-            "CONTROLS",
-            "COMPOSITE",
-            "OFFSET",
-        ],
+        &["ELSET", "MATERIAL", "ORIENTATION", "COMPOSITE"],
     ),
     ("ORIENTATION", &["NAME", "SYSTEM", "DEFINITION"]),
     ("DISTRIBUTION", &["NAME", "LOCATION", "TABLE"]),
@@ -48,24 +58,15 @@ const PARAMETERS: [(&str, &[&str]); 39] = [
             "REGION TYPE",
         ],
     ),
-    ("CLOAD", &["OP", "AMPLITUDE", "REGION TYPE"]),
+    ("CLOAD", &["OP", "AMPLITUDE"]),
     ("DLOAD", &["OP", "AMPLITUDE"]),
     ("DSLOAD", &["OP", "AMPLITUDE"]),
     ("TEMPERATURE", &["OP", "AMPLITUDE"]),
     ("SURFACE INTERACTION", &["NAME"]),
-    (
-        "SURFACE BEHAVIOR",
-        &[
-            "PRESSURE-OVERCLOSURE",
-            "PENALTY",
-            "DIRECT",
-            "AUGMENTED LAGRANGE",
-        ],
-    ),
+    ("SURFACE BEHAVIOR", &["PRESSURE-OVERCLOSURE"]),
     (
         "FRICTION",
         &[
-            "SLIP TOLERANCE",
             "ROUGH",
             "TAUMAX",
             "EXPONENTIAL DECAY",
@@ -74,35 +75,13 @@ const PARAMETERS: [(&str, &[&str]); 39] = [
             "ANISOTROPIC",
         ],
     ),
-    (
-        "CONTACT PAIR",
-        &[
-            "INTERACTION",
-            "TYPE",
-            "SMALL SLIDING",
-            "ADJUST",
-            "TIED",
-            "EXTENSION ZONE",
-            "HCRIT",
-            "NO THICKNESS",
-            "SMOOTH",
-            "SUPPLEMENTARY CONSTRAINTS",
-            "CPSET",
-            "GEOMETRIC CORRECTION",
-            "TRACKING",
-            "SLIDING TRANSITION",
-            "MECHANICAL CONSTRAINT",
-        ],
-    ),
+    ("CONTACT PAIR", &["INTERACTION", "TYPE", "ADJUST", "TIED"]),
     (
         "TIE",
         &[
             "NAME",
             "POSITION TOLERANCE",
             "ADJUST",
-            "TYPE",
-            "NO ROTATION",
-            "NO THICKNESS",
             "CYCLIC SYMMETRY",
             "MULTISTAGE",
             "FLUID PERIODIC",
@@ -133,15 +112,46 @@ const PARAMETERS: [(&str, &[&str]); 39] = [
     ("CONTACT", &["OP"]),
     ("CONTACT INCLUSIONS", &["ALL EXTERIOR"]),
     ("CONTACT PROPERTY ASSIGNMENT", &[]),
+    ("STEP", &["NAME", "NLGEOM", "PERTURBATION"]),
+    ("STATIC", &["RIKS"]),
+];
+
+/// Parameters of these keywords without effect here, as they steer what other programs do on the way to the answer; those
+/// that docs/decks.md lists.
+const HARMLESS: [(&str, &[&str]); 11] = [
+    ("NSET", &["UNSORTED", "FREQUENCY"]),
+    ("SURFACE", &["TRIM"]),
+    ("MATERIAL", &["RTOL"]),
+    ("SOLID SECTION", &["CONTROLS"]),
+    ("CLOAD", &["REGION TYPE"]),
+    (
+        "SURFACE BEHAVIOR",
+        &["PENALTY", "DIRECT", "AUGMENTED LAGRANGE"],
+    ),
+    ("FRICTION", &["SLIP TOLERANCE"]),
+    (
+        "CONTACT PAIR",
+        &[
+            "SMALL SLIDING",
+            "EXTENSION ZONE",
+            "HCRIT",
+            "NO THICKNESS",
+            "SMOOTH",
+            "SUPPLEMENTARY CONSTRAINTS",
+            "CPSET",
+            "GEOMETRIC CORRECTION",
+            "TRACKING",
+            "SLIDING TRANSITION",
+            "MECHANICAL CONSTRAINT",
+        ],
+    ),
+    ("TIE", &["TYPE", "NO ROTATION", "NO THICKNESS"]),
     (
         "STEP",
         &[
-            "NAME",
-            "NLGEOM",
             "INC",
             "INCR",
             "INCF",
-            "PERTURBATION",
             "AMPLITUDE",
             "EXTRAPOLATION",
             "UNSYMM",
@@ -153,7 +163,6 @@ const PARAMETERS: [(&str, &[&str]); 39] = [
         &[
             "DIRECT",
             "SOLVER",
-            "RIKS",
             "STABILIZE",
             "ALLSDTOL",
             "CONTINUE",
@@ -162,11 +171,34 @@ const PARAMETERS: [(&str, &[&str]); 39] = [
     ),
 ];
 
-/// Replaces parameters by their spelling in this table: blanks are insignificant.
+/// Types of `*CONTACT PAIR`: ways in which other programs discretize contact.
+const PAIRS: [&str; 5] = [
+    "NODE TO SURFACE",
+    "SURFACE TO SURFACE",
+    "MORTAR",
+    "LINMORTAR",
+    "PGLINMORTAR",
+];
+
+/// The parameters of a keyword that are known; `None` where parameters don't matter, as of output.
+fn known(keyword: &str) -> Option<Vec<&'static str>> {
+    let of = |table: &[(&str, &'static [&'static str])]| {
+        let found = table.iter().find(|(name, _)| *name == keyword);
+        found.map(|(_, names)| names.to_vec())
+    };
+    let mut names = of(&PARAMETERS)?;
+    names.extend(of(&HARMLESS).unwrap_or_default());
+    Some(names)
+}
+
+/// A word without blanks, which are insignificant.
+fn letters(word: &str) -> String {
+    word.replace(' ', "").to_uppercase()
+}
+
+/// Replaces parameters by their spelling in these tables.
 pub(super) fn spell(block: &mut Block) {
-    let letters = |word: &str| word.replace(' ', "");
-    let known = PARAMETERS.iter().find(|(name, _)| *name == block.keyword);
-    let Some((_, known)) = known else {
+    let Some(known) = known(&block.keyword) else {
         return;
     };
     block.spell_parameters(|name| {
@@ -175,21 +207,23 @@ pub(super) fn spell(block: &mut Block) {
     });
 }
 
-/// Refuses unknown parameters of a keyword.
+/// Refuses unknown parameters of a keyword, and unknown types of contact pairs.
 ///
 /// # Errors
-/// An unknown parameter, with its line.
+/// An unknown parameter or type, with its line.
 pub(super) fn check(source: &Source, block: &Block) -> Result<(), InputError> {
     let keyword = block.keyword.as_str();
-    let known = PARAMETERS.iter().find(|(name, _)| *name == keyword);
     let mut names = block.parameter_names();
-    let unknown = known.and_then(|(_, known)| names.find(|name| !known.contains(name)));
-    match unknown {
-        None => Ok(()),
-        Some(name) => {
-            let name = name::shown(name);
-            let message = format!("*{keyword} with {name} isn't read, and may change the answer");
-            Err(source.error(block.place, message))
-        }
-    }
+    let unknown = known(keyword).and_then(|known| names.find(|name| !known.contains(name)));
+    let kind = block.parameter("TYPE").filter(|kind| {
+        let is_known = PAIRS.iter().any(|pair| letters(pair) == letters(kind));
+        keyword == "CONTACT PAIR" && !is_known
+    });
+    let name = match (unknown, kind) {
+        (None, None) => return Ok(()),
+        (Some(name), _) => name::shown(name),
+        (None, Some(kind)) => format!("TYPE={}", name::shown(kind)),
+    };
+    let message = format!("*{keyword} with {name} isn't read, and may change the answer");
+    Err(source.error(block.place, message))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, Deck, LinePlace, Of, Source};
+use crate::mesh::abaqus::{Block, Deck, LinePlace, Of, Position, Source};
 use crate::name;
 
 /// The part or instance of a block, by its name in capitals.
@@ -17,14 +17,22 @@ enum Scope {
 pub(super) struct Places<'a> {
     pub(super) source: &'a Source,
     pub(super) deck: Deck,
+    dim: usize,
     scope: Scope,
     /// Instances by their part's name in capitals.
     instances: BTreeMap<String, Vec<String>>,
+    /// Positions by the instance's name in capitals.
+    positions: BTreeMap<String, Position>,
 }
 
 impl<'a> Places<'a> {
-    pub(super) fn new(source: &'a Source, deck: Deck) -> Self {
+    /// The whole deck, outside of parts and instances.
+    ///
+    /// # Errors
+    /// An invalid position of an instance.
+    pub(super) fn new(source: &'a Source, deck: Deck) -> Result<Self, InputError> {
         let mut instances: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut positions = BTreeMap::new();
         for block in source
             .blocks
             .iter()
@@ -32,14 +40,19 @@ impl<'a> Places<'a> {
         {
             let [name, part] =
                 ["NAME", "PART"].map(|key| block.parameter(key).unwrap_or_default().to_uppercase());
+            positions.insert(name.clone(), Position::read(source, block)?);
             instances.entry(part).or_default().push(name);
         }
-        Self {
+        let cells = (0..deck.elements.len()).filter(|&element| !deck.is_side[element]);
+        let dim = cells.map(|cell| deck.elements.kind(cell).dim()).max();
+        Ok(Self {
             source,
+            dim: dim.unwrap_or_default(),
             deck,
             scope: Scope::Whole,
             instances,
-        }
+            positions,
+        })
     }
 
     /// Enters or leaves a part or an instance.
@@ -53,6 +66,48 @@ impl<'a> Places<'a> {
         }
     }
 
+    /// The instances of the part or the instance being read, by name in capitals; none outside of both.
+    pub(super) fn instances(&self) -> Vec<(String, Position)> {
+        let names = match &self.scope {
+            Scope::Whole => Vec::new(),
+            Scope::Instance(name) => vec![name.clone()],
+            Scope::Part(part) => self.instances.get(part).cloned().unwrap_or_default(),
+        };
+        names
+            .into_iter()
+            .filter_map(|name| {
+                let position = *self.positions.get(&name)?;
+                Some((name, position))
+            })
+            .collect()
+    }
+
+    /// True if the deck's mesh has what is being read: a part without instances isn't there.
+    pub(super) fn is_placed(&self) -> bool {
+        !matches!(self.scope, Scope::Part(_)) || !self.instances().is_empty()
+    }
+
+    /// The nodes or elements of an item in each instance of the part being read, with the instance's position; outside of
+    /// parts and instances in the whole deck, with none.
+    pub(super) fn in_instances(
+        &mut self,
+        at: LinePlace,
+        of: Of,
+        item: &str,
+    ) -> Result<Vec<(Option<Position>, Vec<u32>)>, InputError> {
+        let instances: Vec<Option<(String, Position)>> = match self.scope {
+            Scope::Whole => vec![None],
+            _ => self.instances().into_iter().map(Some).collect(),
+        };
+        let mut found = Vec::new();
+        for instance in instances {
+            let name = instance.as_ref().map(|(name, _)| name.as_str());
+            let own = self.deck.members(self.source, at, of, (name, item), item)?;
+            found.push((instance.map(|(_, position)| position), own));
+        }
+        Ok(found)
+    }
+
     /// The nodes or elements of an item, without repetition.
     ///
     /// # Errors
@@ -63,24 +118,8 @@ impl<'a> Places<'a> {
         of: Of,
         item: &str,
     ) -> Result<Vec<u32>, InputError> {
-        let instances: Vec<Option<String>> = match &self.scope {
-            Scope::Whole => vec![None],
-            Scope::Instance(name) => vec![Some(name.clone())],
-            Scope::Part(name) => {
-                let instances = self.instances.get(name);
-                instances.into_iter().flatten().cloned().map(Some).collect()
-            }
-        };
-        let mut found = Vec::new();
-        for instance in instances {
-            found.extend(self.deck.members(
-                self.source,
-                at,
-                of,
-                (instance.as_deref(), item),
-                item,
-            )?);
-        }
+        let found = self.in_instances(at, of, item)?;
+        let mut found: Vec<u32> = found.into_iter().flat_map(|(_, own)| own).collect();
         if found.is_empty() && item.parse::<i64>().is_ok() {
             let what = match of {
                 Of::Nodes => "node",
@@ -125,12 +164,7 @@ impl<'a> Places<'a> {
 
     /// The dimension of the cells; 0 without cells.
     pub(super) fn dim(&self) -> usize {
-        let elements = 0..self.deck.elements.len();
-        let cells = elements.filter(|&element| !self.deck.is_side[element]);
-        cells
-            .map(|cell| self.deck.elements.kind(cell).dim())
-            .max()
-            .unwrap_or_default()
+        self.dim
     }
 
     /// For every node whether it belongs to a cell.

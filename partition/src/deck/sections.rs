@@ -7,6 +7,7 @@ use super::initial::Initial;
 use super::loads::{Loads, item};
 use super::model_change::Changes;
 use super::place::Places;
+use super::solids;
 use super::steps::LoadStep;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace, Of};
@@ -33,6 +34,7 @@ impl Section {
         }
         let set = source.required(block, "ELSET")?.to_owned();
         let elements = places.members(block.place, Of::Elements, &set)?;
+        solids::check_section(places, block, &set, &elements)?;
         let thickness = match block.data.first() {
             Some(data) => source.real(data.place, item(source, data, 0), "the thickness")?,
             None => 0.0,
@@ -47,11 +49,21 @@ impl Section {
         })
     }
 
-    /// The section restricted to `elements`, with another orientation.
+    /// True for a section of another block with other properties.
+    fn contradicts(&self, other: &Self) -> bool {
+        let differs = self.material != other.material
+            || self.orientation != other.orientation
+            || self.thickness != other.thickness;
+        differs && self.place != other.place
+    }
+
+    /// The section restricted to `elements`, ascending, with another orientation.
     pub(super) fn turned(&self, elements: &[u32], orientation: &str) -> Self {
         let own = self.elements.iter().copied();
         Self {
-            elements: own.filter(|element| elements.contains(element)).collect(),
+            elements: own
+                .filter(|element| elements.binary_search(element).is_ok())
+                .collect(),
             orientation: Some(orientation.to_owned()),
             ..self.clone()
         }
@@ -193,7 +205,7 @@ pub(super) fn bodies(
 /// The section of every element that is a cell, by its number.
 ///
 /// # Errors
-/// A cell without a section.
+/// A cell without a section, or with two that differ.
 fn sections_of_elements(
     places: &Places,
     sections: &[Section],
@@ -206,7 +218,16 @@ fn sections_of_elements(
             .iter()
             .filter(|&&element| places.is_cell(element, dim))
         {
-            section_of[element as usize] = Some(number);
+            let before = section_of[element as usize].replace(number);
+            let before = before.map(|before| &sections[before as usize]);
+            if let Some(other) = before.filter(|before| section.contradicts(before)) {
+                let message = format!(
+                    "element {} has another *SOLID SECTION in {}; expected one for each element",
+                    places.deck.element_tags[element as usize],
+                    places.source.place(other.place)
+                );
+                return Err(places.source.error(section.place, message));
+            }
         }
     }
     let mut elements = 0..section_of.len() as u32;

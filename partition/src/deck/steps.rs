@@ -44,6 +44,8 @@ pub(super) struct Steps {
     pub(super) systems: BTreeMap<u32, System>,
     /// The first load that isn't proportional to the time of its step.
     pub(super) bend: Option<LinePlace>,
+    /// The step with PERTURBATION.
+    perturbation: Option<LinePlace>,
     open: Option<Open>,
     total_time: f64,
 }
@@ -81,10 +83,19 @@ impl Steps {
                 "*STEP within a step; expected *END STEP before it",
             ));
         }
-        if block.parameter("PERTURBATION").is_some() && has_contact {
+        let is_perturbation = block.parameter("PERTURBATION").is_some();
+        if is_perturbation && has_contact {
             let message = "a step with PERTURBATION keeps the contacts as they are, which isn't read; expected *STEP";
             return Err(source.error(block.place, message));
         }
+        // The loads and results of a perturbation are changes of the state before it; alone it is any linear step.
+        let beside = Some(block.place).filter(|_| is_perturbation && !self.done.is_empty());
+        if let Some(place) = self.perturbation.or(beside) {
+            let message = "*STEP with PERTURBATION beside other steps isn't read, as its loads and results are changes of \
+                           their state; expected it in a deck of its own, or *STEP with all loads that act";
+            return Err(source.error(place, message));
+        }
+        self.perturbation = is_perturbation.then_some(block.place);
         self.open = Some(Open {
             name: block
                 .parameter("NAME")
@@ -116,6 +127,11 @@ impl Steps {
                 "*STATIC stands in no step; expected *STEP before it",
             ));
         };
+        let period = row.get(1).copied().unwrap_or_default();
+        if period < 0.0 {
+            let message = format!("the time of the step is {period}; expected more than 0");
+            return Err(source.error(block.place, message));
+        }
         open.is_static = true;
         open.period = row
             .get(1)

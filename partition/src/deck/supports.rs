@@ -1,6 +1,6 @@
 //! `*BOUNDARY`, and concentrated forces, `*CLOAD`, which have the same syntax.
 
-use super::loads::{Loads, item};
+use super::loads::{Loads, NodeLine, item};
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
 use super::table::Origin;
@@ -81,6 +81,13 @@ impl Loads {
                     None => {}
                 }
             }
+            self.lines.push(NodeLine {
+                place: data.place,
+                nodes,
+                axes,
+                value,
+                is_force: false,
+            });
         }
         Ok(())
     }
@@ -197,6 +204,13 @@ impl Loads {
                     }
                 }
             }
+            self.lines.push(NodeLine {
+                place: data.place,
+                nodes,
+                axes: vec![axis],
+                value: force,
+                is_force: true,
+            });
         }
         Ok(())
     }

@@ -28,6 +28,7 @@ pub(crate) use self::blocks::{Block, Data, LinePlace, Source};
 pub(crate) use self::deck::{Deck, Face};
 pub(crate) use self::import::mesh;
 pub(crate) use self::members::Of;
+pub(crate) use self::position::Position;
 
 /// A deck and its included files; only the deck if it can't be read, as the error is left to its reader.
 pub fn files(path: &Path) -> Vec<PathBuf> {

@@ -18,6 +18,8 @@ const PAIRINGS: usize = 4;
 const ROUNDS: usize = 50;
 /// Distance of a node, relative to the size of facets, that is round-off.
 const NOTHING: f64 = 1e-14;
+/// Distance, relative to the size of facets, below which no one asks for where nodes are: the round-off of a mesh file.
+const UNNOTICED: f64 = 1e-9;
 
 /// Moves the nodes of ties for which the scene requests it.
 ///
@@ -35,9 +37,11 @@ pub(super) fn adjust(
             continue;
         };
         let before = bodies.mesh.points.clone();
+        let mut size = 0.0;
         for _ in 0..PAIRINGS {
             let sides = Contacts::new(&bodies.mesh, topology, HeldNodes::default(), scene);
             let tied = sides.tied(&keys, (names, tie.reach), &what)?;
+            size = tied.size;
             if !close(&mut bodies.mesh.points, &tied.points, NOTHING * tied.size) {
                 break;
             }
@@ -49,7 +53,7 @@ pub(super) fn adjust(
             .fold((0, 0.0), |(n, most), distance| {
                 (n + 1, f64::max(most, distance))
             });
-        if moved > 0 {
+        if farthest > UNNOTICED * size {
             warnings.push(format!(
                 "{what}: {moved} nodes are moved by up to {} {} onto the other side",
                 short(farthest),

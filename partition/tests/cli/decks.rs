@@ -108,7 +108,11 @@ fn a_deck_that_isnt_computed_ends_with_2_and_its_line() {
             "*CLOAT",
             "part.inp: line 33: the keyword *CLOAT isn't known",
         ),
-        ("210e3, 0.3", "210e3, 0.7", "part.inp: as a scene"),
+        (
+            "210e3, 0.3",
+            "210e3, 0.7",
+            "part.inp: line 20: *ELASTIC: Poisson's ratio is 0.7; expected",
+        ),
     ] {
         fs::write(&path, DECK.replacen(from, to, 1)).unwrap();
         let output = program(&["part.inp"], dir.path());

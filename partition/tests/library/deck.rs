@@ -3,6 +3,8 @@
 mod couplings;
 mod cyclic;
 mod laws;
+mod lost;
+mod parts;
 mod pretensions;
 mod prints;
 mod refused;

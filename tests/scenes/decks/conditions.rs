@@ -86,8 +86,8 @@ fn a_distribution_turns_the_axes_of_some_elements() {
          *SOLID SECTION, ELSET=Bar, MATERIAL=M, ORIENTATION=O\n{held}"
     );
     let sections = format!(
-        "{mesh}{law}*ELSET, ELSET=Second\n2\n*ORIENTATION, NAME=P\n1., 0., 0., 0., 1., 0.\n*ORIENTATION, NAME=O\n{turned}\n\
-         *SOLID SECTION, ELSET=Bar, MATERIAL=M, ORIENTATION=P\n\
+        "{mesh}{law}*ELSET, ELSET=First\n1\n*ELSET, ELSET=Second\n2\n*ORIENTATION, NAME=P\n1., 0., 0., 0., 1., 0.\n*ORIENTATION, NAME=O\n{turned}\n\
+         *SOLID SECTION, ELSET=First, MATERIAL=M, ORIENTATION=P\n\
          *SOLID SECTION, ELSET=Second, MATERIAL=M, ORIENTATION=O\n{held}"
     );
     let load = step("*CLOAD\nTop, 3, 3.\n15, 1, 1.\n");

@@ -27,7 +27,7 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 const WITH_INPUT: [&str; 4] = ["NODE", "ELEMENT", "NSET", "ELSET"];
 
 /// A line of a file.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct LinePlace {
     file: usize,
     line: usize,

@@ -11,8 +11,8 @@ use crate::element::geometry::{advance, difference};
 use crate::error::InputError;
 use crate::name;
 
-/// The types of elements that are springs.
-const SPRINGS: [&str; 3] = ["SPRING1", "SPRING2", "SPRINGA"];
+/// The types of elements that are read with a keyword: springs and distributing couplings.
+const BY_KEYWORD: [&str; 4] = ["SPRING1", "SPRING2", "SPRINGA", "DCOUP3D"];
 
 /// A part of a surface.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -238,8 +238,7 @@ impl Deck {
                 self.left_out.insert(offset + tag);
             }
         }
-        // Springs are read with their keyword.
-        if !SPRINGS.contains(&&name.to_uppercase()[..]) {
+        if !BY_KEYWORD.contains(&&name.to_uppercase()[..]) {
             self.notes.add(
                 "elements that are no cells of a body are left out",
                 name.to_uppercase(),

@@ -6,8 +6,12 @@ use crate::error::InputError;
 
 pub(super) type Point = [f64; 3];
 
+/// Length of a component of a turned direction that is round-off, as of the cosine of a right angle.
+const ROUND_OFF: f64 = 1e-15;
+
 /// A translation, and a rotation about the axis through two points.
-pub(super) struct Position {
+#[derive(Clone, Copy)]
+pub(crate) struct Position {
     shift: Point,
     /// Two points on the axis and the angle (rad).
     turn: Option<(Point, Point, f64)>,
@@ -15,7 +19,7 @@ pub(super) struct Position {
 
 impl Position {
     /// The position of an `*INSTANCE`, whose angle is in degrees.
-    pub(super) fn read(source: &Source, block: &Block) -> Result<Self, InputError> {
+    pub(crate) fn read(source: &Source, block: &Block) -> Result<Self, InputError> {
         let mut rows = Vec::new();
         for data in &block.data {
             let items = source.items(data);
@@ -46,10 +50,30 @@ impl Position {
     }
 
     /// Position of a point of the part.
-    pub(super) fn of(&self, point: Point) -> Point {
+    pub(crate) fn of(&self, point: [f64; 3]) -> [f64; 3] {
         let shifted = [0, 1, 2].map(|k| point[k] + self.shift[k]);
         self.turn
             .map_or(shifted, |(a, b, angle)| turned(shifted, a, b, angle))
+    }
+
+    /// A unit vector of the part, as the instance has it.
+    pub(crate) fn direction(&self, along: [f64; 3]) -> [f64; 3] {
+        let Some((a, b, angle)) = self.turn else {
+            return along;
+        };
+        let along = turned(along, [0.0; 3], difference(b, a), angle);
+        along.map(|component| {
+            if component.abs() > ROUND_OFF {
+                component
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// True if the instance is turned.
+    pub(crate) fn is_turned(&self) -> bool {
+        self.turn.is_some_and(|(.., angle)| angle != 0.0)
     }
 }
 

@@ -74,12 +74,14 @@ fn temperatures_count_from_those_at_the_beginning() {
 }
 
 #[test]
-fn loads_of_several_directions_add_up_and_those_of_a_later_step_replace_them() {
+fn loads_of_several_directions_add_up_and_in_a_later_step_the_same_direction_is_replaced() {
     let steps = [
         step(
             "*DLOAD\nUpper, BX, 1.\nUpper, GRAV, 1e9, 0., 0., -1.\nUpper, GRAV, 1e9, 0., 1., 0.\n*DSLOAD\nHigh, TRVEC, 2., 1., 0., 0.",
         ),
-        step("*DLOAD\nUpper, GRAV, 2e9, 1., 0., 0.\n*DSLOAD\nHigh, TRVEC, 3., 0., 1., 0."),
+        step(
+            "*DLOAD\nUpper, GRAV, 2e9, 1., 0., 0.\nUpper, GRAV, 3e9, 0., 2., 0.\n*DSLOAD\nHigh, TRVEC, 3., 0., 1., 0.",
+        ),
     ];
     let scene = scene(&steps.concat());
     let weight = 1e9 * 7.8e-9;
@@ -88,7 +90,10 @@ fn loads_of_several_directions_add_up_and_those_of_a_later_step_replace_them() {
         .collect();
     assert_eq!(
         forces,
-        [[1.0, weight, -weight], [1.0 + 2.0 * weight, 0.0, 0.0]]
+        [
+            [1.0, weight, -weight],
+            [1.0 + 2.0 * weight, 3e9 * 7.8e-9, -weight]
+        ]
     );
     let tractions = scene.step.iter().map(|step| {
         let list = step.traction.as_ref().unwrap();
