@@ -1,5 +1,6 @@
 //! Warnings of probable mistakes in an otherwise valid scene.
 
+mod hinges;
 mod strains;
 mod undeclared;
 
@@ -61,12 +62,20 @@ impl<'a> Diagnostics<'a> {
         let mut warnings = self.strains()?;
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
+        warnings.extend(self.hinges());
         Ok(warnings)
     }
 
     /// The largest extent of the bodies (m).
     fn extent(&self) -> f64 {
         BoundingBox::around(&self.bodies.mesh.points).extent()
+    }
+
+    /// A point of the mesh as text, with its unit.
+    fn place(&self, at: [f64; 3]) -> String {
+        let at = at[..self.bodies.mesh.dim].iter();
+        let at: Vec<String> = at.map(|&c| short(c)).collect();
+        format!("({}) {}", at.join(", "), self.scene.units.length())
     }
 
     /// Warnings of contacts whose gap exceeds the size of the bodies.
