@@ -33,6 +33,12 @@ pub fn short(number: f64) -> String {
     }
 }
 
+/// A point with `dim` coordinates of at most four digits: `(1, -0.5)`.
+pub fn short_point(at: [f64; 3], dim: usize) -> String {
+    let coordinates: Vec<String> = at.iter().take(dim).map(|&c| short(c)).collect();
+    format!("({})", coordinates.join(", "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,5 +65,6 @@ mod tests {
         ] {
             assert_eq!(short(number), expected);
         }
+        assert_eq!(short_point([1.0, -0.123456, 0.0], 2), "(1, -0.1235)");
     }
 }

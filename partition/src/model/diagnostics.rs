@@ -12,7 +12,7 @@ use super::steps::Loads;
 use super::touching::Declared;
 use super::{Contact, Material, activation, groups};
 use crate::error::InputError;
-use crate::magnitude::short;
+use crate::magnitude::{short, short_point};
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
@@ -73,9 +73,8 @@ impl<'a> Diagnostics<'a> {
 
     /// A point of the mesh as text, with its unit.
     fn place(&self, at: [f64; 3]) -> String {
-        let at = at[..self.bodies.mesh.dim].iter();
-        let at: Vec<String> = at.map(|&c| short(c)).collect();
-        format!("({}) {}", at.join(", "), self.scene.units.length())
+        let at = short_point(at, self.bodies.mesh.dim);
+        format!("{at} {}", self.scene.units.length())
     }
 
     /// Warnings of contacts whose gap exceeds the size of the bodies.

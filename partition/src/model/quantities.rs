@@ -1,21 +1,18 @@
 //! Quantities of a scene, resolved on its mesh.
 
+mod places;
+
 use super::bodies::Bodies;
 use super::initial_stress::{InitialStress, mean_weights};
 use super::{Contact, Material, PlaneState};
 use crate::contact_point::ContactPoint;
 use crate::crack_tip::CrackTip;
-use crate::element::geometry::{difference, length};
 use crate::error::InputError;
-use crate::mesh::bounding_box::BoundingBox;
 use crate::quantity::{NodeWeight, Quantity, QuantityKind};
 use crate::scene::Scene;
 use crate::scene::number::ConstantVector;
-use crate::scene::quantity::{self, Place, Target};
+use crate::scene::quantity::{self, Target};
 use crate::scene::suggest::hint_and_known;
-
-/// Distance of coincident nodes, relative to the extent of the mesh.
-const SAME: f64 = 1e-9;
 
 /// Scene and mesh on which quantities are resolved.
 #[derive(Clone, Copy)]
@@ -172,52 +169,6 @@ impl Known<'_> {
             ),
             false => Ok(along.value),
         }
-    }
-
-    /// The node of the mesh at a position.
-    fn node(&self, place: &Place) -> Result<u32, String> {
-        let mesh = &self.bodies.mesh;
-        let point = match place {
-            Place::Node(tag) => {
-                let place = mesh.node_tags.iter().position(|of| of == tag);
-                return (place.map(|node| node as u32))
-                    .ok_or_else(|| format!("no body has a node {tag}"));
-            }
-            Place::Point(point) => point.value,
-        };
-        let away = |x: &[f64; 3]| length(difference(*x, point));
-        let least = mesh.points.iter().map(away).fold(f64::INFINITY, f64::min);
-        let slack = SAME * BoundingBox::around(&mesh.points).extent();
-        let near = mesh.points.iter().zip(&mesh.node_tags).enumerate();
-        let near: Vec<(usize, i64)> = near
-            .filter(|(_, (x, _))| away(x) <= least + slack)
-            .map(|(node, (_, tag))| (node, *tag))
-            .collect();
-        match near[..] {
-            [(node, _)] => Ok(node as u32),
-            [(_, first), (_, second), ..] => Err(format!(
-                "the nodes {first} and {second} are both the nearest to 'at'; expected 'node', the tag of one"
-            )),
-            [] => Err("the mesh has no nodes".into()),
-        }
-    }
-
-    /// The point of a contact at a position.
-    fn point<'p>(
-        &self,
-        points: &'p [ContactPoint<u32>],
-        place: &Place,
-    ) -> Result<&'p ContactPoint<u32>, String> {
-        let found = match place {
-            Place::Node(tag) => points
-                .iter()
-                .find(|point| point.tag_a == *tag || point.tag_b == *tag),
-            Place::Point(at) => points.iter().min_by(|a, b| {
-                let away = |p: &ContactPoint<u32>| length(difference(p.position, at.value));
-                away(a).total_cmp(&away(b))
-            }),
-        };
-        found.ok_or_else(|| "the contact has no condition at that node".into())
     }
 
     /// The number and the points of a contact, or, if allowed, of a tie.
