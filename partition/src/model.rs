@@ -168,7 +168,7 @@ impl Model {
                 .chain([coupled, bolts.contacts])
                 .flatten()
                 .collect(),
-            tips: constraints.tips,
+            tips: constraints.tips.tips,
             goals,
             found: constraints.found,
             reference_nodes,

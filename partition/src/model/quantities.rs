@@ -3,10 +3,10 @@
 mod places;
 
 use super::bodies::Bodies;
+use super::crack_tips::CrackTips;
 use super::initial_stress::{InitialStress, mean_weights};
 use super::{Contact, Material, PlaneState};
 use crate::contact_point::ContactPoint;
-use crate::crack_tip::CrackTip;
 use crate::error::InputError;
 use crate::quantity::{NodeWeight, Quantity, QuantityKind};
 use crate::scene::Scene;
@@ -21,8 +21,8 @@ pub(super) struct Known<'a> {
     pub bodies: &'a Bodies,
     pub materials: &'a [Material],
     pub contacts: &'a [Contact],
-    /// The crack tips, each with a cell that contains it.
-    pub tips: &'a [(u32, CrackTip)],
+    /// The crack tips.
+    pub tips: &'a CrackTips,
     /// The names of supports, followed by those of springs.
     pub supports: &'a [String],
     /// The initial stress in every load step.
@@ -142,12 +142,19 @@ impl Known<'_> {
 
     /// The number and the node of a crack tip.
     fn tip(&self, name: &str) -> Result<(u32, i64), String> {
-        let mut tips = (0..).zip(self.tips);
-        if let Some((number, (_, tip))) = tips.find(|(_, (_, tip))| tip.name == name) {
+        let CrackTips { tips, coarse } = self.tips;
+        let mut numbered = (0..).zip(tips);
+        if let Some((number, (_, tip))) = numbered.find(|(_, (_, tip))| tip.name == name) {
             return Ok((number, tip.tag));
         }
-        let known = self.tips.iter().map(|(_, tip)| tip.name.as_str());
-        Err(match self.tips.is_empty() {
+        if coarse.iter().any(|(of, _)| of == name) {
+            return Err(format!(
+                "the crack tip '{name}' is one without stress intensity factors: fewer than three facets of its faces lie \
+                 between it and the next kink, end, boundary or other material; expected smaller cells there"
+            ));
+        }
+        let known = tips.iter().map(|(_, tip)| tip.name.as_str());
+        Err(match tips.is_empty() {
             true => format!(
                 "there is no crack tip '{name}'; the scene has none with stress intensity factors, which are of straight \
                  cracks in the plane, three facets of whose faces or more lie between the tip and the next kink, end, boundary \
