@@ -21,6 +21,7 @@ mod held_nodes;
 mod initial_stress;
 mod loaded_bodies;
 mod loads;
+mod locking;
 mod mortar;
 mod node_pairs;
 mod obstacle;
