@@ -6,9 +6,11 @@ import pytest
 from matplotlib.collections import PathCollection
 
 from contact_dd import Model
-from contact_dd.drawing import symbols
+from contact_dd.drawing import obstacle, symbols
 from contact_dd.drawing.conditions import conditions_of
+from contact_dd.drawing.contact import pressed_sides
 from contact_dd.drawing.integrals import NODES, integrals, rule_of
+from contact_dd.drawing.obstacle import draw_obstacles
 from contact_dd.drawing.overview import overview
 from contact_dd.drawing.plane import Plane
 from contact_dd.drawing.space import Solid
@@ -120,6 +122,49 @@ def test_pictures_have_few_symbols_and_none_without_the_problem(scene, tmp_path)
         path.write_bytes(b"no problem")
     figure = overview(Plane(result), 1.0)
     assert not [one for one in figure.axes[0].collections if isinstance(one, PathCollection)]
+    plt.close("all")
+
+
+def test_arrows_of_a_uniform_load_have_one_length(scene, tmp_path):
+    result = Model.from_scene(scene("patch", "--element", "triangle6")).run(folder=tmp_path, progress=False)
+    plane, conditions = Plane(result), of_plane(result)
+    # Two sides of 2 m.
+    assert np.isclose(plane.lengths(conditions.nodes).sum(), 4)
+    axes = plt.figure().add_subplot()
+    paper = symbols.Paper(plane.points, plane.normals(), np.eye(2), plane.size, plane.lengths)
+    symbols.draw_loads(axes, paper, conditions.nodes, conditions.forces)
+    [arrows] = axes.collections
+    lengths = [np.ptp(path.vertices, axis=0).max() for path in arrows.get_paths()]
+    assert len(lengths) > 8
+    # At the corner both loads have one arrow.
+    assert np.isclose(lengths, symbols.LONGEST).sum() >= len(lengths) - 1
+    plt.close("all")
+
+
+def test_both_sides_of_a_cut_have_arrows():
+    places = np.array([[x, y] for y in (0.0, 1e-3) for x in (0.0, 0.01)])
+    forces = np.array([[0.0, -1.0], [0.0, -1.0], [0.0, 1.0], [0.0, 1.0]])
+    axes = plt.figure().add_subplot()
+    symbols.draw_loads(axes, symbols.Paper(places, np.zeros((4, 2)), np.eye(2), 1.0), np.arange(4), forces)
+    [arrows] = axes.collections
+    assert len(arrows.get_offsets()) == 2
+    plt.close("all")
+
+
+def test_an_obstacle_is_drawn_where_a_side_faces_no_body(scene, tmp_path):
+    for name, has_obstacle in (("wall", True), ("patch", False)):
+        result = Model.from_scene(scene(name)).run(folder=tmp_path, progress=False)
+        plane = Plane(result)
+        sides = pressed_sides(plane, plane.deformed(200.0))
+        assert sum(side.is_on_obstacle for side in sides) == has_obstacle
+        figure, axes = plt.subplots()
+        draw_obstacles(axes, sides, 200.0, 1.0)
+        assert bool(obstacle.entries(sides)) == has_obstacle
+        if has_obstacle:
+            # The ground sank by 4e-4 exp(−((x − 0.625)/0.25)²), which is enlarged like displacements.
+            x, y = np.concatenate(axes.collections[1].get_segments()).T
+            inside = (x > 0) & (x < 1.25)
+            assert np.allclose(y[inside], -0.08 * np.exp(-(((x[inside] - 0.625) / 0.25) ** 2)), atol=2e-3)
     plt.close("all")
 
 

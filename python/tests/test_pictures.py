@@ -11,6 +11,7 @@ from contact_dd import Model
 from contact_dd.drawing import page as pages
 from contact_dd.drawing import space
 from contact_dd.drawing.chart import Chart, chart_of
+from contact_dd.drawing.pressure_map import triangulation
 from contact_dd.drawing.raster import Camera, Raster, edges_of
 from contact_dd.drawing.surface import HEXAHEDRON
 from contact_dd.drawing.units import units_of
@@ -104,6 +105,9 @@ def test_what_doesnt_press_hides_nothing_and_axes_have_names(scene, tmp_path):
     # Every contact has its map.
     assert [label for label in labels if label] == ["angle from x about z [°]", "angle from −x about z [°]"]
     assert "z [mm]" in [axes.get_ylabel() for figure in overview.subfigs for axes in figure.axes]
+    # Both lie within the bodies, where glass shows them by their names.
+    [glass] = [axes for axes in overview.subfigs[0].axes if axes.get_title().startswith("Contacts within")]
+    assert {text.get_text() for text in glass.texts} == {"fork", "hole"}
     plt.close("all")
 
 
@@ -113,6 +117,8 @@ def test_a_circle_is_drawn_on_pressures_in_space_alone(scene, tmp_path):
     [circle] = overview.findobj(Circle)
     assert circle.get_radius() == 0.8149
     assert circle.get_label() == "a = 0.8149 m"
+    # What presses is a small part of the ball, which isn't looked through.
+    assert not [axes for axes in overview.subfigs[0].axes if axes.get_title().startswith("Contacts within")]
     plt.close("all")
     with pytest.raises(InputError, match="in the plane"):
         Model.from_scene(scene("patch")).run(folder=tmp_path, progress=False).plot(circle=1.0)
@@ -210,9 +216,20 @@ def test_a_hole_in_a_side_stays_open_in_its_map():
 
     cells = [(i, j) for i in (0, 2, 4) for j in (0, 2, 4)]
     rim = [face(i, j) for i, j in cells if (i, j) != (2, 2)]
-    assert area(space.triangulation(chart, rim)) == pytest.approx(32)
+    assert area(triangulation(chart, rim)) == pytest.approx(32)
     # Of faces that reach over a hole, what lies between nodes with constraints is shown.
     over = [node if node != 25 else None for node in face(2, 2)]
-    assert area(space.triangulation(chart, [*rim, over])) == pytest.approx(34)
+    assert area(triangulation(chart, [*rim, over])) == pytest.approx(34)
+    # The node in the middle of a face is joined to those around it; where an edge is missing half of the face is left.
+    middle = [*face(2, 2), 24]
+    assert len(triangulation(chart, [*rim, middle]).triangles) == 8 * 6 + 8
+    tip = [None if node in (32, 31, 30) else node for node in middle]
+    assert area(triangulation(chart, [*rim, tip])) == pytest.approx(34)
+    # Of four nodes on edges the two opposite ones are joined that differ less.
+    left, below = np.where(np.arange(49) == 21, 1.0, 0.0), np.where(np.arange(49) == 15, 1.0, 0.0)
+    for values, joined, apart in ((left, {15, 29}, {21, 23}), (below, {21, 23}, {15, 29})):
+        mesh = triangulation(chart, [face(0, 2), *rim], values)
+        assert any(joined <= set(triangle) for triangle in mesh.triangles.tolist())
+        assert not any(apart <= set(triangle) for triangle in mesh.triangles.tolist())
     # Where no faces are known, neighbours are joined.
-    assert area(space.triangulation(chart, [])) == pytest.approx(36)
+    assert area(triangulation(chart, [])) == pytest.approx(36)

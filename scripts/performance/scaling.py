@@ -16,7 +16,7 @@ import options
 import runs
 from runs import PHASES
 
-COLORS = dict(zip(PHASES, ["#9aa5b1", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]))
+COLORS = dict(zip(PHASES, ["#b8c2cc", "#5b8ff9", "#1f5fa8", "#d62728", "#ff9d4d", "#3a9d5d", "#6b7785"]))
 
 
 def ranks_up_to(most):
@@ -168,35 +168,37 @@ def draw(rows, path):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "scaling", "font.size": 9})
+    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "scaling", "font.size": 11})
     kinds = [kind for kind in ("strong", "weak") if any(row["kind"] == kind for row in rows)]
     figure, panels = plt.subplots(
-        1, len(kinds), figsize=(4.9 * len(kinds), 4.4), layout="constrained", squeeze=False
+        1, len(kinds), figsize=(4.4 * len(kinds), 4.2), layout="constrained", squeeze=False
     )
     for kind, axes in zip(kinds, panels[0]):
         own = [row for row in rows if row["kind"] == kind]
-        ranks = [row["ranks"] for row in own]
+        first, places = own[0], np.arange(len(own))
+        below = np.zeros(len(own))
         for phase in PHASES:
-            values = [max(row[phase], 1e-6) for row in own]
-            axes.plot(ranks, values, "o-", ms=2.5, lw=0.9, color=COLORS[phase], label=phase)
-        axes.plot(ranks, [row["total"] for row in own], "ko-", ms=4, lw=1.8, label="total")
-        first = own[0]
+            values = np.array([row[phase] for row in own])
+            axes.bar(places, values, 0.6, below, color=COLORS[phase], label=phase)
+            below += values
         power = 1 if kind == "strong" else 0
-        ideal = [first["total"] * (first["ranks"] / count) ** power for count in ranks]
-        axes.plot(ranks, ideal, "k--", lw=1, label="ideal")
-        size = first["dofs"]
+        ideal = [first["total"] * (first["ranks"] / row["ranks"]) ** power for row in own]
+        axes.hlines(ideal, places - 0.4, places + 0.4, "k", "--", lw=1.2, label="ideal, of the total")
+        # The total isn't the sum: each phase is that of its slowest rank, and something lies between them.
+        for place, row in zip(places, own):
+            axes.annotate(f"total {row['total']:.3g} s", (place, max(below[place], ideal[place])), xytext=(0, 3),
+                          textcoords="offset points", ha="center", va="bottom")
         share = "in all" if kind == "strong" else f"on {first['ranks']} rank" + "s" * (first["ranks"] > 1)
-        axes.set_title(f"{kind.capitalize()} scaling, {runs.name_of(size)} dofs {share}")
-        axes.set_xscale("log", base=2)
-        axes.set_yscale("log")
-        axes.set_xticks(ranks, [str(count) for count in ranks])
-        axes.minorticks_off()
+        axes.set_title(f"{kind.capitalize()} scaling, {runs.name_of(first['dofs'])} dofs {share}", fontsize=11)
+        axes.set_xticks(places, [str(row["ranks"]) for row in own])
+        axes.margins(y=0.12)
         axes.set_xlabel("ranks")
         axes.set_ylabel("time of the slowest rank [s]")
-        axes.grid(alpha=0.25, lw=0.5)
+        axes.grid(axis="y", alpha=0.25, lw=0.5)
+        axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
     handles, labels = panels[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncol=5, frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncol=4, frameon=False)
     figure.savefig(path, metadata={"Date": None})
     print(path)
 

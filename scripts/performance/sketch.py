@@ -75,10 +75,13 @@ class Sketch:
             for one, length in zip(forces[some], size[some], strict=True)
         ]
         self.put(paths, places[some], symbols.GIVEN, symbols.GIVEN, 0.3)
-        self.name(words, "$\\rightarrow$", symbols.GIVEN, symbols.GIVEN)
+        self.name(words, symbols.in_legend(), symbols.GIVEN, symbols.GIVEN, 18)
 
-    def name(self, words, marker, face, edge):
-        handle = plt.Line2D([], [], ls="", marker=marker, ms=7, mfc=face, mec=edge)
+    def nodes(self, points):
+        (self.named["node"],) = self.axes.plot(*np.transpose(points), ".", color="k", ms=3, zorder=5)
+
+    def name(self, words, marker, face, edge, size=7):
+        handle = plt.Line2D([], [], ls="", marker=marker, ms=size, mfc=face, mec=edge)
         self.named[words] = handle
 
     def axis(self, points):
@@ -126,7 +129,7 @@ def of_scene(name):
     sketch.axes.autoscale_view()
     panel = window([plane.points], 0.02)
     # A sketch has half of the size of a picture, and symbols of the same size: they stand twice as far apart.
-    paper = symbols.Paper(plane.points, plane.normals(), np.eye(2), 2 * max(panel[1] - panel[0]))
+    paper = symbols.Paper(plane.points, plane.normals(), np.eye(2), 2 * max(panel[1] - panel[0]), plane.lengths)
     symbols.draw(sketch.axes, paper, seen_in(conditions, plane.points, [panel]))
     tables = carried(result.contacts_there)
     for side, of in sides_of(result).items():

@@ -33,8 +33,7 @@ def uneven():
     sketch.loaded(upper[[3, 2]], DOWN @ turn, "p = 1 MPa")
     sketch.contact(lower[[3, 2]], "contact, 3 cells on 7")
     for count, offset in ((3, -0.05), (7, 0.05)):
-        nodes = np.linspace(lower[3], lower[2], count + 1) + offset * UP @ turn
-        sketch.axes.plot(*nodes.T, ".", color="k", ms=3, zorder=5)
+        sketch.nodes(np.linspace(lower[3], lower[2], count + 1) + offset * UP @ turn)
     return sketch
 
 
@@ -62,8 +61,8 @@ def two_half_planes(nodes=False):
     sketch.contact(above, words)
     if nodes:
         for count, line in ((8, below), (12, above)):
-            at = np.interp(np.linspace(0, 2, count + 1), line[:, 0], line[:, 1])
-            sketch.axes.plot(np.linspace(0, 2, count + 1), at, ".k", ms=3, zorder=5)
+            x = np.linspace(0, 2, count + 1)
+            sketch.nodes(np.stack([x, np.interp(x, *line.T)], axis=1))
     return sketch
 
 
@@ -175,7 +174,7 @@ def cantilever():
     sketch = Sketch()
     sketch.body([(0, -1), (8, -1), (8, 1), (0, 1)])
     sketch.held([(0, 1), (0, -1)], LEFT, "prescribed displacement", 4)
-    sketch.loaded([(8, -1), (8, 1)], lambda at: DOWN * (1 - at[1] ** 2), "shear force P = 1", 7, pushes=False)
+    sketch.loaded([(8, -1), (8, 1)], lambda at: DOWN * (1 - at[1] ** 2), "shear force P = 1", 3, pushes=False)
     sketch.text((4, 0), "L = 8, D = 2")
     return sketch
 

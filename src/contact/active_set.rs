@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::active_equalities::ActiveEqualities;
 use super::dependent::DependentConstraints;
-use super::interior_point::InGaps;
+use super::interior_point::ConvexProblem;
 use super::open_factor::{OpenFactor, scale_of};
 
 /// Negative force, relative to its scale, at which a contact opens.
@@ -150,29 +150,19 @@ impl ContactProblem<'_> {
 
     /// Open conditions and normal jumps of the interior-point method, and the linear systems that it solved.
     fn interior_point(&self) -> (Vec<bool>, Vec<f64>, usize) {
-        let m = self.c.len();
-        let mut q = self.c.to_vec();
-        for (column, &g) in self.h.col_iter().zip(self.bounds) {
-            for (q, h) in q.iter_mut().zip(column.iter()) {
-                *q -= h * g;
-            }
-        }
-        let scale: Vec<f64> = (0..m)
+        let scale: Vec<f64> = (0..self.c.len())
             .map(|j| scale_of(self.h[(j, j)], self.diagonal[j]))
             .collect();
-        let e: Vec<f64> = (0..self.rows.len())
-            .map(|j| self.bounds[m + j] - self.rows.value(j, self.bounds))
-            .collect();
-        let (open, gaps, steps) = InGaps {
+        let near = ConvexProblem {
             h: self.h,
-            q: &q,
+            c: self.c,
             scale: &scale,
             rows: self.rows,
-            e: &e,
+            bounds: self.bounds,
+            points: &[],
         }
-        .open_conditions();
-        let jumps = self.bounds.iter().zip(&gaps).map(|(g, s)| g - s);
-        (open, jumps.collect(), steps)
+        .solve();
+        (near.open, near.jumps, near.steps)
     }
 
     /// Flips all wrong signs until none is left or their number no longer falls.

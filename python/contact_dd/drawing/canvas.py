@@ -5,6 +5,7 @@ import io
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.transforms import ScaledTranslation
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from PIL import Image
 
@@ -65,6 +66,17 @@ def scale_bar(axes, width, units):
         bbox_transform=axes.transAxes,
     )
     axes.add_artist(bar)
+
+
+def directions(axes, names):
+    """Arrows along both coordinates, with their names, below the axes on the right."""
+    inches = axes.figure.dpi_scale_trans + ScaledTranslation(1, 0, axes.transAxes)
+    corner = np.array([-0.42, -0.5])
+    for along, name in zip(np.eye(2), names, strict=True):
+        arrow = {"arrowstyle": "-|>", "lw": 0.9, "fc": "k", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
+        axes.annotate("", corner + 0.24 * along, corner, inches, inches, arrowprops=arrow, annotation_clip=False)
+        axes.annotate(name, corner + 0.32 * along, xycoords=inches, ha="center", va="center", fontsize=9,
+                      annotation_clip=False)
 
 
 def round_below(value):

@@ -5,6 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact_dd.drawing.carried import carried
+from contact_dd.drawing.gaps import opposite
+
+# Conditions of a contact that are looked at: of more, every so many.
+MOST_LOOKED_AT = 20
 
 
 @dataclass
@@ -17,6 +21,9 @@ class PressedSide:
     segments: np.ndarray
     status: np.ndarray
     has_friction: bool
+    gap: np.ndarray
+    is_on_obstacle: bool
+    """Whether it faces no body."""
 
     def tips(self, length):
         """Where ordinates along the normals end that are as long as the pressure times `length`."""
@@ -37,6 +44,7 @@ def pressed_sides(result, moved):
         ]
     )
     edges = result.tags[edges]
+    lines = result.points[result.outline[:, [0, 2]]]
     sides = []
     for table in carried(result.contacts).values():
         tags = table["node_a"]
@@ -53,9 +61,18 @@ def pressed_sides(result, moved):
                 along(edges, tags),
                 table["status"],
                 "slip" in table.dtype.names,
+                table["gap"],
+                not faces_a_body(table, lines, result.size),
             )
         )
     return sides
+
+
+def faces_a_body(table, lines, size):
+    """Whether another side lies before one of the conditions: an obstacle is none."""
+    rows = range(0, len(table), 1 + len(table) // MOST_LOOKED_AT)
+    places, normals = table["position"][:, :2], table["normal"][:, :2]
+    return any(opposite(lines, places[k], normals[k], size) is not None for k in rows)
 
 
 def along(edges, tags):

@@ -2,23 +2,22 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import LineCollection
+from matplotlib.colors import PowerNorm
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, PathPatch, Rectangle
-from matplotlib.path import Path
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
 from contact_dd.drawing import symbols
-from contact_dd.drawing.canvas import deformation_of, lines, scale_bar
+from contact_dd.drawing.canvas import deformation_of, directions, lines, scale_bar
 from contact_dd.drawing.conditions import conditions_of
 from contact_dd.drawing.contact import pressed_sides
+from contact_dd.drawing.obstacle import draw_obstacles
+from contact_dd.drawing.obstacle import entries as of_obstacles
+from contact_dd.drawing.ordinates import BAND, FRICTION, labels, pressures, stick_and_slip
 from contact_dd.drawing.plane import von_mises
 from contact_dd.drawing.units import in_units
 
-RED = "#d6202c"
-# Where a contact with friction is closed, by its status.
-FRICTION = {1: ("#1746a2", "sticks"), 2: ("#ff9f1c", "slips")}
 DASHES = (0, (5, 3))
 
 # Where contacts press within so small a part of the size, a second panel shows that part.
@@ -38,16 +37,20 @@ LONGEST = 0.09
 WIDTHS = (6.4, 7.6, 9.6)
 
 # Around panels (inches); below them the scale, and a line for every few entries of the legend.
-LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.35, 0.3, 0.85, 0.5, 0.62
-IN_LINE, OF_LINE = 3, 0.19
+LEFT, BETWEEN, RIGHT, BELOW, ABOVE = 0.35, 0.3, 0.85, 0.64, 0.82
+OF_LINE = 0.19
+# A figure in which title and legend have room, and one from which on three entries of the legend have it beside each
+# other (inches).
+NARROWEST, WIDE = 5.6, 6.6
 
-# What presses is hatched on white: a coating of red would turn the stress under it brown.
-BAND = {"fc": (1, 1, 1, 0.5), "ec": RED, "hatch": "//////", "lw": 0}
+# Where all but a hundredth of the first panel has less than this part of the largest colour, colours go with the
+# square root of the stress: it would be a plain area.
+DULL = 0.1
+# The axis that bodies are turned around.
+AXIS = {"color": "k", "lw": 0.8, "ls": (0, (9, 2, 1, 2))}
+
 # Room for a label behind the longest ordinate, over the size of a panel.
 OF_LABEL = 0.05
-
-# Most contacts whose largest pressure is written beside it, one by one.
-MOST_LABELS = 6
 
 
 def overview(result, scale):
@@ -60,41 +63,65 @@ def overview(result, scale):
 
     mesh = Triangulation(*result.at_points(moved).T, result.triangles)
     values = von_mises(result.at_points(result.stress))
-    highest = bound(mesh, values, panels[-1])
-    (shown,), unit = in_units(np.array([highest]), result.units.stress)
-    values = values * (shown / highest)
+    colours, unit, values = colouring(mesh, values, panels, result.units.stress)
 
     has_moved = np.abs(moved - result.points).max() > 0.004 * result.size
+    is_turned = result.result.plane == "axisymmetric"
     largest = max((side.pressure.max() for side in sides), default=0.0)
     seen, normals = seen_in(conditions, moved, panels), result.normals()
-    key = entries(sides, largest, has_moved, result.units.stress) + symbols.entries(seen, 2)
-    figure, all_axes, of_colours = layout(panels, BELOW + OF_LINE * -(-len(key) // IN_LINE))
+    key = entries(sides, largest, has_moved, is_turned, result.units.stress) + symbols.entries(seen, 2)
+    figure, all_axes, of_colours = layout(panels, len(key))
     for axes, (low, high) in zip(all_axes, panels):
-        colours = axes.tripcolor(mesh, values, shading="gouraud", cmap="viridis", vmin=0, vmax=shown)
+        axes.tripcolor(mesh, values, shading="gouraud", cmap=colours.cmap, norm=colours.norm)
+        size = max(high - low)
+        draw_obstacles(axes, sides, scale, size)
+        if is_turned:
+            axes.axvline(0, **AXIS)
         if has_moved:
             lines(axes, result.points, result.outline, colors="0.45", linewidths=0.6, linestyles=DASHES)
         lines(axes, moved, result.outline, colors="k", linewidths=0.9)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         scale_bar(axes, high[0] - low[0], result.units)
-        paper = symbols.Paper(moved, normals, np.eye(2), max(high - low))
+        paper = symbols.Paper(moved, normals, np.eye(2), size, result.lengths)
         symbols.draw(axes, paper, seen_in(conditions, moved, [(low, high)]))
+    directions(all_axes[0], "rz" if is_turned else "xy")
     for axes, (low, high) in zip(all_axes, panels[1:]):
         axes.add_patch(Rectangle(low, *(high - low), fill=False, ec="k", lw=1.0))
     if largest > 0:
         pressures(all_axes[-1], sides, longest / largest)
         stick_and_slip(all_axes[-1], sides)
         labels(all_axes[-1], sides, longest / largest, result.units.stress)
-    exceeded = "max" if values.max() > 1.001 * shown else "neither"
-    of_largest = f", at most {values.max():.4g}" if exceeded == "max" else ""
-    figure.colorbar(colours, cax=of_colours, extend=exceeded, label=f"von Mises stress [{unit}]{of_largest}")
+    of_largest = f", at most {values.max():.4g}" if colours.extend == "max" else ""
+    figure.colorbar(colours, cax=of_colours, extend=colours.extend, label=f"von Mises stress [{unit}]{of_largest}")
+    headings(figure, result, sides, scale)
+    figure.legend(handles=key, loc="lower center", ncol=columns_of(figure.get_figwidth()), frameon=False, fontsize=9,
+                  columnspacing=1.4)
+    return figure
+
+
+def colouring(mesh, values, panels, unit):
+    """Colours of values, in units with a prefix, and the values in these."""
+    highest = bound(mesh, values, panels[-1])
+    (shown,), prefixed = in_units(np.array([highest]), unit)
+    values = values * (shown / highest)
+    is_dull = bound(mesh, values, panels[0]) < DULL * shown
+    norm = PowerNorm(0.5, 0, shown) if is_dull else plt.Normalize(0, shown)
+    colours = plt.cm.ScalarMappable(norm, "viridis")
+    colours.extend = "max" if values.max() > 1.001 * shown else "neither"
+    return colours, prefixed, values
+
+
+def headings(figure, result, sides, scale):
+    """The scene's title, and below it what is drawn."""
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
     step = f"Step {result.step} of {result.steps}: " if result.steps > 1 else ""
     words = what[0].lower() + what[1:] if step else what
-    title = f"{step}{words}, {deformation_of(result, scale)}"
-    figure.suptitle(title, y=1 - 0.12 / figure.get_figheight(), va="top", fontsize=12)
-    figure.legend(handles=key, loc="lower center", ncol=IN_LINE, frameon=False, fontsize=9, columnspacing=1.4)
-    return figure
+    title, tall = result.result.title, figure.get_figheight()
+    figure.suptitle(title, y=1 - 0.1 / tall, va="top", fontsize=12, parse_math=False)
+    below = 0.34 if title else 0.14
+    figure.text(0.5, 1 - below / tall, f"{step}{words}, {deformation_of(result, scale)}", ha="center", va="top",
+                fontsize=10)
 
 
 def within(places, panel):
@@ -172,19 +199,22 @@ def bound(mesh, values, panel):
     return max(2 * found if np.ptp(value) < 1e-3 * found else found, 1e-300)
 
 
-def layout(panels, below):
-    """Axes side by side, as wide as the shapes of the panels ask for, and those of the colours."""
+def layout(panels, entries):
+    """Axes side by side, as wide as the shapes of the panels ask for, and those of the colours, above so many entries
+    of a legend."""
     ratios = [(high - low)[0] / (high - low)[1] for low, high in panels]
     height = float(np.clip(WIDTHS[len(panels) - 1] / sum(ratios), 2.4, 5.2))
     widths = [height * ratio for ratio in ratios]
-    total = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
+    needed = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
+    total = max(needed, NARROWEST)
+    below = BELOW + OF_LINE * -(-entries // columns_of(total))
     tall = below + height + ABOVE
     figure = plt.figure(figsize=(total, tall))
 
     def place(x, width):
         return figure.add_axes((x / total, below / tall, width / total, height / tall))
 
-    axes, x = [], LEFT
+    axes, x = [], LEFT + (total - needed) / 2
     for k, width in enumerate(widths):
         axes.append(place(x, width))
         axes[k].set_xticks([])
@@ -194,76 +224,16 @@ def layout(panels, below):
     return figure, axes, place(x, 0.16)
 
 
-def pressures(axes, sides, length):
-    """Bands along closed contacts, as wide as the pressure times `length`, and open contacts in white."""
-    for side in sides:
-        tip = side.tips(length)
-        a, b = side.segments.T
-        closed = (side.pressure[a] > 0) | (side.pressure[b] > 0)
-        a, b = a[closed], b[closed]
-        shape = band(side.foot[a], tip[a], tip[b], side.foot[b])
-        axes.add_patch(PathPatch(shape, **BAND))
-        for ends in ([tip[a], tip[b]], [side.foot[a], side.foot[b]]):
-            strokes(axes, ends, colors=RED, linewidths=1.1)
-        a, b = side.segments[~closed].T
-        for color, width in (("k", 2.4), ("w", 1.2)):
-            strokes(axes, [side.foot[a], side.foot[b]], colors=color, linewidths=width)
+def columns_of(width):
+    """Entries of a legend beside each other in a figure of this width."""
+    return 3 if width > WIDE else 2
 
 
-def stick_and_slip(axes, sides):
-    """Lines along what sticks and what slips, up to the middle between neighbours."""
-    for side in sides:
-        if not side.has_friction:
-            continue
-        ends = np.concatenate([side.segments, side.segments[:, ::-1]])
-        own, middle = side.foot[ends[:, 0]], side.foot[ends].mean(axis=1)
-        closed = side.status[ends[:, 0]] > 0
-        strokes(axes, [own[closed], middle[closed]], colors="k", linewidths=4.2)
-        for status, (color, _) in FRICTION.items():
-            of_status = side.status[ends[:, 0]] == status
-            strokes(axes, [own[of_status], middle[of_status]], colors=color, linewidths=2.8, zorder=3)
-
-
-def strokes(axes, ends, **style):
-    axes.add_collection(LineCollection(np.stack(ends, axis=1), capstyle="round", **style))
-
-
-def labels(axes, sides, length, unit):
-    """The largest pressure of each contact, or of all where there are many."""
-    labelled = [side for side in sides if side.pressure.max() > 0]
-    if len(labelled) > MOST_LABELS:
-        labelled = [max(labelled, key=lambda side: side.pressure.max())]
-    for side in labelled:
-        k = middle_of_largest(side)
-        (shown,), prefixed = in_units(side.pressure[k : k + 1], unit)
-        axes.annotate(
-            f"{shown:.3g} {prefixed}", side.tips(length)[k], xytext=8 * side.normal[k],
-            textcoords="offset points", ha="center", va="center", fontsize=8, color=RED,
-            bbox={"fc": "w", "ec": "none", "alpha": 0.85, "pad": 0.8}, zorder=8,
-        )
-
-
-def middle_of_largest(side):
-    """Of the places where the pressure is largest, all but rounding, the one in their middle."""
-    largest = np.flatnonzero(side.pressure > 0.999 * side.pressure.max())
-    away = side.foot[largest] - side.foot[largest].mean(axis=0)
-    return largest[np.linalg.norm(away, axis=1).argmin()]
-
-
-def band(*corners):
-    """One path of quadrilaterals that run the same way round, so that none is filled twice."""
-    quads = np.stack(corners, axis=1)
-    diagonals = quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]
-    clockwise = diagonals[0][:, 0] * diagonals[1][:, 1] < diagonals[0][:, 1] * diagonals[1][:, 0]
-    quads[clockwise] = quads[clockwise, ::-1]
-    closed = np.concatenate([quads, quads[:, :1]], axis=1)
-    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
-    return Path(closed.reshape(-1, 2), np.tile(codes, len(quads)))
-
-
-def entries(sides, largest, has_moved, unit):
-    """Legend of pressures, friction and deformation."""
-    found = []
+def entries(sides, largest, has_moved, is_turned, unit):
+    """Legend of pressures, friction, deformation, and what isn't body."""
+    found = of_obstacles(sides)
+    if is_turned:
+        found.append(Line2D([], [], **AXIS, label="axis of rotation"))
     if has_moved:
         found.append(Line2D([], [], color="0.45", lw=0.8, ls=DASHES, label="undeformed"))
     if largest > 0:

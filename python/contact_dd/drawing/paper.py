@@ -11,8 +11,10 @@ from contact_dd.drawing.units import in_units
 
 # The steps between levels, times a power of ten.
 ROUND = [1, 2, 5, 10]
+# The longest arm of a cross over the distance of crosses.
+ARM = 0.6
 # Crosses along the larger side.
-ACROSS = 24
+ACROSS = 18
 
 
 def levels(values):
@@ -103,7 +105,7 @@ def principal(result):
     lines(axes, result.points, result.outline, colors="k", linewidths=1.0)
     axes.autoscale()
     for value, turn in ((mean + radius, angle), (mean - radius, angle + np.pi / 2)):
-        length = 0.6 * step * np.clip(np.abs(value) / largest, 0, 1)
+        length = ARM * step * np.clip(np.abs(value) / largest, 0, 1)
         along = np.stack([np.cos(turn), np.sin(turn)], axis=1)
         for sign, pivot, color in ((1, "tail", "tab:red"), (-1, "tip", "tab:blue")):
             drawn = (sign * value > 0) & (np.abs(value) > 0.03 * largest)
@@ -113,7 +115,7 @@ def principal(result):
                 axes.quiver(
                     *foot[drawn].T, *(sign * side * length[:, None] * along)[drawn].T, color=color,
                     pivot=pivot, angles="xy", scale_units="xy", scale=1, units="xy",
-                    width=0.035 * step, headwidth=3.6, headlength=4, headaxislength=3.6, minlength=0.1,
+                    width=0.045 * step, headwidth=3.6, headlength=4, headaxislength=3.6, minlength=0.1,
                 )
     (shown,), unit = in_units(np.array([largest]), result.units.stress)
     arm = round_below(shown)
@@ -121,8 +123,8 @@ def principal(result):
     axes.plot([], [], color="tab:blue", label="compression →←")
     # Beside the axes on the top, where nothing is.
     axes.add_artist(AnchoredSizeBar(
-        axes.transData, 0.6 * step * arm / shown, f"{arm:g} {unit}", loc="lower right", bbox_to_anchor=(1, 1),
-        bbox_transform=axes.transAxes, frameon=False, pad=0.1, sep=4,
+        axes.transData, ARM * step * arm / shown, f"{arm:g} {unit}", loc="lower right", bbox_to_anchor=(1, 1),
+        bbox_transform=axes.transAxes, frameon=False, pad=0.1, sep=6, size_vertical=0.04 * step,
     ))
     legend(axes, 2)
     return figure

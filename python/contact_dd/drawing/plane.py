@@ -97,6 +97,21 @@ class Plane:
             np.add.at(count, one[nodes[nodes >= 0]], 1)
         return normals / np.maximum(count, 1)[:, None]
 
+    def lengths(self, nodes):
+        """The length of the surface that belongs to each of these nodes: of facets between them; around an axis times
+        the radius."""
+        share = np.zeros(len(self.points))
+        one = np.searchsorted(self.tags, self.tags)
+        is_meant = np.isin(np.arange(len(one)), nodes)
+        for ends, weights in (([0, 2], [1 / 2, 1 / 2]), ([0, 1, 2], [1 / 6, 2 / 3, 1 / 6])):
+            facets = one[self.outline[(self.outline[:, 1] < 0) == (len(ends) == 2)][:, ends]]
+            facets = facets[is_meant[facets].all(axis=1)]
+            length = np.linalg.norm(self.points[facets[:, -1]] - self.points[facets[:, 0]], axis=1)
+            if self.result.plane == "axisymmetric":
+                length = length * self.points[facets, 0].mean(axis=1)
+            np.add.at(share, facets, length[:, None] * weights)
+        return share[nodes]
+
     def deformed(self, scale):
         return self.points + scale * self.deformation
 

@@ -171,6 +171,18 @@ class Raster:
                 here[axis] = part
                 self.lines[tuple(here)] = np.maximum(self.lines[tuple(here)], strength * is_step)
 
+    def cover(self):
+        """The share of every pixel of the picture that faces cover."""
+        return self._coarse(np.isfinite(self.value)[..., None])
+
+    def strength(self):
+        """The strength of lines at every pixel of the picture."""
+        return self._coarse(self.lines[..., None])
+
+    def _coarse(self, picture):
+        rows, columns = (side // OVERSAMPLED for side in self.shape)
+        return picture.reshape(rows, OVERSAMPLED, columns, OVERSAMPLED, -1).mean(axis=(1, 3))
+
     def image(self, colours, alpha=1.0):
         """The picture in red, green, blue on white."""
         is_there = np.isfinite(self.value)
@@ -178,8 +190,7 @@ class Raster:
         shaded = colours.to_rgba(self.value[is_there])[:, :3] * self.light[is_there][:, None]
         picture[is_there] = 1 - alpha * (1 - shaded)
         picture *= (1 - self.lines)[..., None]
-        rows, columns = (side // OVERSAMPLED for side in self.shape)
-        return picture.reshape(rows, OVERSAMPLED, columns, OVERSAMPLED, 3).mean(axis=(1, 3))
+        return self._coarse(picture)
 
 
 def rounded_up(counts):

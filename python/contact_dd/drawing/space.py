@@ -2,25 +2,23 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.patches import Circle
-from matplotlib.ticker import MultipleLocator
-from matplotlib.tri import Triangulation
 
 from contact_dd.drawing import symbols
 from contact_dd.drawing.canvas import deformation_of, round_below
 from contact_dd.drawing.carried import carried, pressing
-from contact_dd.drawing.chart import chart_of
 from contact_dd.drawing.conditions import conditions_of
+from contact_dd.drawing.glass import draw_glass, is_seen_through
 from contact_dd.drawing.plane import von_mises
+from contact_dd.drawing.pressure_map import COLOURS, PressureMap, legend
 from contact_dd.drawing.raster import Camera, Raster, edges_of
-from contact_dd.drawing.surface import mean_normals, on_surface, surface, unit_normal
+from contact_dd.drawing.surface import corners_of, mean_normals, on_surface, surface, unit_normal
 from contact_dd.drawing.units import in_units, units_of
 from contact_dd.errors import InputError
 
 # The largest displacement over the size, as `auto` draws it.
 VISIBLE = 0.03
 # Where the eye is: above, to the left.
-VIEW = {"elev": 20, "azim": -125}
+VIEW = {"elev": 28, "azim": -125}
 # Cosine of the angle to the normal of a contact below which a face isn't one of its side a.
 SAME_WAY = 0.7
 # More faces are drawn without the edges of their cells.
@@ -31,17 +29,15 @@ SEEN = 0.01
 WIDTH = 640
 # Strengths of lines: edges of bodies and outlines, of cells, of bodies behind pressures.
 OF_BODIES, OF_CELLS, BEHIND = 0.85, 0.16, 0.6
-# Height of what shows pressures, least and largest width of a map in it, and what stands beside a map, and above and
-# below it (inches).
-HEIGHT, NARROWEST, WIDEST, BESIDE, ABOVE = 4.7, 1.2, 4.2, 1.4, 0.75
+# Height of a figure, of what is seen in it of bodies and of maps, and what glass adds to both (inches).
+TALL, HEIGHT, OF_GLASS = 5.0, 4.7, 3.2
 # Most that bodies take (inches).
 WIDEST_BODIES = 6.0
 # Most contacts whose pressures are shown beside each other.
 MOST_MAPS = 4
-# Width of a part that presses, relative to what is shown of it.
-AROUND = 1.3
-# Share of the nodes of a map that faces have if the map consists of these.
-MOST_NODES = 0.75
+
+# Of the directions of x, y and z.
+ARROW = {"arrowstyle": "-|>", "lw": 1, "fc": "k", "shrinkA": 0, "shrinkB": 0}
 
 
 class Solid:
@@ -60,8 +56,16 @@ class Solid:
         # Colours are interpolated between the nodes of the surface, and lines are those of the undeformed bodies.
         self.shown = self.points[np.unique(np.concatenate(self.faces))]
         self.edges, self.inner = edges_of(self.faces, result.points)
-        self.normals = mean_normals(result, self.faces)
         self.conditions = conditions_of(result, on_surface(result, self.faces))
+        self.normals = self.outward()
+
+    def outward(self):
+        """The outward normals at nodes: where all directions are held those of the faces that are."""
+        normals = mean_normals(self.result, self.faces)
+        held = [support.node for support in self.conditions.supports if len(support.axes) == 3]
+        is_held = np.isin(np.searchsorted(self.result.nodes, self.result.nodes), held)
+        of_held = mean_normals(self.result, [face for face in self.faces if is_held[face].all()])
+        return np.where(of_held.any(axis=1)[:, None], of_held, normals)
 
     def has_stress(self):
         return len(self.result.stress) > 0
@@ -77,8 +81,9 @@ class Solid:
         axes.imshow(raster.image(colours), extent=raster.extent, origin="lower", interpolation="antialiased")
         axes.set_axis_off()
         bar_and_triad(axes, raster, self.units)
-        bar = axes.figure.colorbar(colours, ax=axes, shrink=0.75, label=label, pad=0.02, extend=colours.extend)
+        bar = axes.figure.colorbar(colours, ax=axes, shrink=0.75, pad=0.02, extend=colours.extend)
         bar.ax.tick_params(labelsize=8)
+        bar.set_label(label, fontsize=9)
 
     def coloured(self, axes, values, label, cmap="viridis", most=None):
         """Draws the surface by values at nodes."""
@@ -134,15 +139,12 @@ class Solid:
         faces = []
         values = np.zeros(len(self.points))
         for table in self.pressed.values():
-            found, _ = self.side(table)
-            faces += found
-            row_of = dict(zip(table["node_a"].tolist(), table["pressure"]))
-            for node in np.unique(np.concatenate(found)) if found else []:
-                values[node] = max(values[node], row_of.get(int(self.result.nodes[node]), 0.0))
+            faces += self.side(table)[0]
+            values = np.maximum(values, self.at_nodes(table))
         most = max(table["pressure"].max() for table in self.pressed.values())
         (values, unit) = in_units(values, self.units.stress)
         ((most,), _) = in_units(np.array([most]), self.units.stress)
-        colours = plt.cm.ScalarMappable(plt.Normalize(0, most), "inferno_r")
+        colours = plt.cm.ScalarMappable(plt.Normalize(0, most), COLOURS)
         colours.extend = "neither"
         raster = self.raster()
         # What doesn't press is left out: it may lie before what does.
@@ -154,6 +156,13 @@ class Solid:
         raster.depth = shown
         self.show(axes, raster, colours, f"contact pressure [{unit}]")
         axes.set_title(f"Contact pressure, at most {most:.4g} {unit}\nbetween the edges of the bodies", fontsize=9)
+
+    def at_nodes(self, table):
+        """The pressures of a contact at nodes, 0 where it has none."""
+        tags, points = np.unique(self.result.nodes, return_inverse=True)
+        pressure = np.zeros(len(tags))
+        np.maximum.at(pressure, np.searchsorted(tags, table["node_a"]), table["pressure"])
+        return pressure[points]
 
     def side(self, table):
         """The faces of side a of a contact, and the mean pressure of each: those all corners of which have constraints
@@ -213,7 +222,7 @@ def bar_and_triad(axes, raster, units):
     for direction, name in zip(raster.frame[:2].T, "xyz"):
         end = corner + 0.1 * min(width, height) * direction
         if np.linalg.norm(direction) > 0.1:
-            axes.annotate("", end, corner, arrowprops={"arrowstyle": "-|>", "lw": 1, "shrinkA": 0, "shrinkB": 0})
+            axes.annotate("", end, corner, arrowprops=ARROW)
         axes.annotate(name, end + 0.035 * min(width, height) * direction, fontsize=8, ha="center", va="center")
     axes.set_xlim(left - 0.01 * width, right + 0.01 * width)
     axes.set_ylim(below - 0.2 * height, above + 0.06 * height)
@@ -261,112 +270,28 @@ def overview(result, scale, circle=None):
     solid = Solid(result, scale)
     pressed = sorted(solid.pressed, key=lambda name: -solid.pressed[name]["pressure"].max())[:MOST_MAPS]
     maps = [PressureMap(name, solid) for name in pressed]
+    glass = OF_GLASS if is_seen_through(solid, pressed) else 0.0
     columns = 1 if len(maps) < 3 else 2
     rows = -(-len(maps) // columns)
-    left, right = width_of(solid, 4.0), columns * max((one.width(rows) for one in maps), default=0.0)
-    figure = plt.figure(figsize=(left + right, 5.0), layout="constrained")
+    height = (HEIGHT + glass) / max(rows, 1)
+    left, right = width_of(solid, 4.0), columns * max((one.width(height) for one in maps), default=0.0)
+    figure = plt.figure(figsize=(left + right, TALL + glass), layout="constrained")
     figure.get_layout_engine().set(w_pad=0.08)
     parts = figure.subfigures(1, 2, width_ratios=[left, right]) if maps else [figure]
-    solid.von_mises(parts[0].add_subplot())
+    below = parts[0].add_gridspec(1 + bool(glass), 1, height_ratios=[TALL, glass] if glass else [TALL])
+    solid.von_mises(parts[0].add_subplot(below[0]))
+    if glass:
+        draw_glass(parts[0].add_subplot(below[1]), solid, pressed)
     for place, one in enumerate(maps, start=1):
         one.draw(parts[1].add_subplot(rows, columns, place, aspect="equal"), circle)
+    if maps:
+        legend(parts[1])
     step = f", step {result.step} of {result.steps}" if result.steps > 1 else ""
     left_out = len(solid.pressed) - len(pressed)
     more = f" ({len(pressed)} of {len(solid.pressed)} contacts)" if left_out else ""
     if result.title or step or more:
         figure.suptitle(f"{result.title}{step}{more}", fontsize=11, parse_math=False)
     return laid_out(figure)
-
-
-class PressureMap:
-    """The pressures of a contact on its side, flat: as much of it as presses, and a bit around."""
-
-    def __init__(self, name, solid):
-        table = solid.pressed[name]
-        self.name, self.units, self.chart = name, solid.units, chart_of(table)
-        (self.pressure, self.unit) = in_units(table["pressure"][self.chart.rows], self.units.stress)
-        tags = table["node_a"][self.chart.rows].tolist()
-        row = {tag: row for row, tag in enumerate(tags)}
-        faces = [[row.get(tag) for tag in solid.result.nodes[face].tolist()] for face, _ in solid.facing(table)]
-        self.mesh = triangulation(self.chart, faces)
-        closed = self.pressure > 0
-        places = self.chart.x, self.chart.y
-        half = AROUND / 2 * max(np.ptp(of[closed]) for of in places)
-        middle = [(of[closed].min() + of[closed].max()) / 2 for of in places]
-        self.limits = [(max(at - half, of.min()), min(at + half, of.max())) for at, of in zip(middle, places)]
-
-    def width(self, rows):
-        """How wide the map is, with its axis and colours, where so many stand above each other (inches)."""
-        wide, tall = (most - least for least, most in self.limits)
-        height = HEIGHT / rows - ABOVE
-        return float(np.clip(height * wide / max(tall, 1e-9 * wide), NARROWEST, WIDEST)) + BESIDE
-
-    def draw(self, axes, circle=None):
-        chart, length = self.chart, self.units.length
-        colours = axes.tripcolor(self.mesh, self.pressure, shading="gouraud", cmap="inferno_r", vmin=0)
-        axes.plot(chart.x, chart.y, ".", color="0.6", ms=1.2)
-        if circle:
-            label = f"a = {circle:.4g} {length}"
-            dashed = Circle((0, 0), circle, fill=False, ec="#1746a2", lw=1.4, ls="--", label=label)
-            axes.add_patch(dashed)
-            axes.legend(handles=[dashed], loc="upper right", fontsize=8)
-        axes.set_xlim(self.limits[0])
-        axes.set_ylim(self.limits[1])
-        axes.tick_params(labelsize=7)
-        if chart.radius:
-            # The arc is drawn to scale, and said as an angle.
-            axes.xaxis.set_major_locator(MultipleLocator(chart.radius * np.radians(self.step_of_angle())))
-            axes.xaxis.set_major_formatter(lambda arc, _: degrees(arc / chart.radius))
-            axes.set_xlabel(f"{chart.labels[0]} [°]", fontsize=8)
-        else:
-            axes.set_xlabel(f"{chart.labels[0]} [{length}]", fontsize=8)
-        axes.set_ylabel(f"{chart.labels[1]} [{length}]", fontsize=8)
-        bar = axes.figure.colorbar(colours, ax=axes, shrink=0.85, pad=0.02)
-        bar.set_label(f"pressure [{self.unit}]", fontsize=8)
-        bar.ax.tick_params(labelsize=7)
-        axes.set_title(f"{self.name}, at most {self.pressure.max():.4g} {self.unit}", fontsize=9, parse_math=False)
-
-    def step_of_angle(self):
-        """Between the numbers at the axis (degrees)."""
-        shown = np.degrees(np.ptp(self.limits[0]) / self.chart.radius)
-        return next((step for step in (1, 2, 5, 10, 15, 30, 45) if shown <= 5 * step), 90)
-
-
-def triangulation(chart, faces):
-    """The triangles between the nodes of a chart: those of these faces, so that holes stay open, each with the nodes
-    around it, `None` for one that isn't there; or between all neighbours where faces are unknown."""
-    triangles = [triangle for face in faces for triangle in triangles_of(face)]
-    whole = Triangulation(chart.x, chart.y)
-    if not triangles or len(np.unique(triangles)) < MOST_NODES * len(np.unique(whole.triangles)):
-        return whole
-    # A face across the cut of a side that is unrolled has ends on both sides of the chart.
-    reaches = np.ptp(chart.x[np.array(triangles)], axis=1) > np.ptp(chart.x) / 2
-    return Triangulation(chart.x, chart.y, triangles, mask=reaches if chart.radius else None)
-
-
-def triangles_of(face):
-    """The triangles of a face between nodes that are there: corners, and nodes on edges unless none of these is."""
-    corners = corners_of(face)
-    middles = face[1::2] if len(face) > len(corners) else []
-    if all(node is None for node in middles):
-        found = fan(corners)
-    else:
-        found = [*zip(middles[-1:] + middles[:-1], corners, middles), *fan(middles)]
-    return [triangle for triangle in found if None not in triangle]
-
-
-def corners_of(face):
-    """The corners among the nodes around a face."""
-    return face if len(face) < 6 else face[::2]
-
-
-def fan(polygon):
-    """The triangles of a polygon."""
-    return [(polygon[0], b, c) for b, c in zip(polygon[1:], polygon[2:])]
-
-
-def degrees(angle):
-    return f"{np.degrees(angle):.0f}".replace("-", "−")
 
 
 PICTURES = {

@@ -14,6 +14,8 @@ EDGES = {
 }
 # The one with nodes in the middle of faces.
 HEXAHEDRON27 = 29
+# Of its cells the node in the middle of each face of HEXAHEDRON.
+CENTRES = [24, 22, 21, 23, 20, 25]
 CELLS = {10: (4, False), 12: (8, False), 24: (4, True), 25: (8, True), 29: (8, True)}
 
 
@@ -69,3 +71,20 @@ def on_surface(result, faces):
             nodes, count = np.unique(result.nodes[cells.nodes[:, 20:26]], return_counts=True)
             found.append(np.searchsorted(result.nodes, nodes[count == 1]))
     return np.unique(np.concatenate(found))
+
+
+def face_centres(result, tags):
+    """Tags of nodes in the middle of faces that are among these, by the tags of the face's corners in their order."""
+    found = {}
+    for cells in result.cells:
+        if cells.kind == HEXAHEDRON27:
+            for face, centre in zip(HEXAHEDRON, CENTRES, strict=True):
+                nodes = result.nodes[cells.nodes[:, [*face, centre]]]
+                meant = nodes[np.isin(nodes[:, 4], tags)]
+                found.update(zip(map(tuple, np.sort(meant[:, :4], axis=1).tolist()), meant[:, 4].tolist()))
+    return found
+
+
+def corners_of(face):
+    """The corners among the nodes around a face."""
+    return face if len(face) < 6 else face[::2]

@@ -1,5 +1,6 @@
 """Symbols of supports and loads: of many nodes those of a few that are spread over them, of one size on paper."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from matplotlib.transforms import Affine2D
 
 # Most symbols of a kind, and the least distance between two of them over the size of what is shown, in the plane and in
 # space, where supports hide stresses.
-MOST, APART, APART_IN_SPACE = 20, 0.045, 0.1
+MOST, APART, APART_IN_SPACE = 20, 0.045, 0.12
 # Colours: of supports, of loads and prescribed motions, and between lines.
 HELD, GIVEN, PAPER = "#222222", "#a3159b", "#ffffff"
 # In legends: of a support that leaves displacements across its axis free.
@@ -20,6 +21,8 @@ ROLLER = "roller, held along its axis"
 TALL, SHORTEST, LONGEST, OF_BODY = 8.0, 13.0, 24.0, 30.0
 # Cosine of the angle to the eye above which a direction is drawn as a ring.
 TO_EYE = 0.97
+# Cosine of the angle to a load down to which another one isn't opposite to it.
+OPPOSITE = -0.5
 # Length of the mean of the normals around a node below which it is at a corner.
 CORNER = 0.95
 
@@ -27,12 +30,14 @@ CORNER = 0.95
 @dataclass
 class Paper:
     """Where nodes are on paper, and the outward normals at those on the surface (0 elsewhere); `frame` takes directions
-    in space to paper, of which a part of this size is shown."""
+    in space to paper, of which a part of this size is shown; `areas` says how much of a surface between given nodes
+    belongs to each of them, where that is known."""
 
     places: np.ndarray
     normals: np.ndarray
     frame: np.ndarray
     size: float
+    areas: Callable[[np.ndarray], np.ndarray] | None = None
 
     def is_in_space(self):
         return self.frame.shape[1] == 3
@@ -89,6 +94,12 @@ def arrow(direction, length, ends_here):
     if not ends_here:
         outline[:, 1] += length
     return turned([outline], -np.asarray(direction), 1.0)
+
+
+def in_legend():
+    """The outline of an arrow to the right around its middle."""
+    outline = arrow((1, 0), 20.0, False)
+    return Path(outline.vertices - (10, 0), outline.codes)
 
 
 def put(axes, paths, places, face, edge, width, zorder):
@@ -155,24 +166,37 @@ def outward_of(paper, node, axis):
 
 
 def draw_loads(axes, paper, nodes, forces):
-    """Arrows at loaded nodes, the longer the more of the load is nearer to them than to others that have some."""
-    chosen = paper.spread(nodes)
-    if len(chosen) == 0:
+    """Arrows at loaded nodes, the longer the larger the load is around them, by area where that is known."""
+    if len(nodes) == 0:
         return
-    row_of = {int(node): k for k, node in enumerate(nodes)}
-    away = np.linalg.norm(paper.places[nodes][:, None] - paper.places[chosen], axis=2)
-    share = np.zeros((len(chosen), forces.shape[1]))
-    np.add.at(share, away.argmin(axis=1), forces)
-    size = np.linalg.norm(share, axis=1)
+    # Opposite loads have arrows of their own: of both sides of a cut neither is left out.
+    is_along = forces @ forces[0] > OPPOSITE * np.linalg.norm(forces, axis=1) * np.linalg.norm(forces[0])
+    areas = paper.areas(nodes) if paper.areas else np.zeros(len(nodes))
+    found = [spread_load(paper, nodes[of], forces[of], areas[of]) for of in (is_along, ~is_along) if of.any()]
+    chosen, force, size = (np.concatenate(part) for part in zip(*found, strict=True))
     paths, places = [], []
-    for node, relative in zip(chosen, np.sqrt(size / max(size.max(), 1e-300)), strict=True):
-        force = forces[row_of[int(node)]]
-        direction = paper.direction(force)
-        pushes = paper.normals[node] @ force <= 0
+    for node, pull, relative in zip(chosen, force, np.sqrt(size / max(size.max(), 1e-300)), strict=True):
+        direction = paper.direction(pull)
+        pushes = paper.normals[node] @ pull <= 0
         length = SHORTEST + (LONGEST - SHORTEST) * relative
         paths.append(RING if direction is None else arrow(direction, length, pushes))
         places.append(paper.places[node])
     put(axes, paths, places, GIVEN, GIVEN, 0.3, 7)
+
+
+def spread_load(paper, nodes, forces, areas):
+    """Of loaded nodes a few that are spread over them, their forces, and how large the load is around each."""
+    chosen = paper.spread(nodes)
+    row_of = {int(node): k for k, node in enumerate(nodes)}
+    away = np.linalg.norm(paper.places[nodes][:, None] - paper.places[chosen], axis=2)
+    nearest = away.argmin(axis=1)
+    share = np.zeros((len(chosen), forces.shape[1]))
+    np.add.at(share, nearest, forces)
+    size = np.linalg.norm(share, axis=1)
+    area = np.bincount(nearest, areas, len(chosen))
+    # Point forces have none.
+    size = size / area if (area > 0).all() else size
+    return chosen, forces[[row_of[int(node)] for node in chosen]], size
 
 
 def ends(paper, conditions, length):
@@ -207,8 +231,8 @@ def entries(conditions, dimension):
     """Legend of the symbols."""
     found = []
 
-    def add(marker, face, edge, words):
-        style = {"ls": "", "marker": marker, "ms": 7, "mfc": face, "mec": edge}
+    def add(marker, face, edge, words, size=7):
+        style = {"ls": "", "marker": marker, "ms": size, "mfc": face, "mec": edge}
         found.append(Line2D([], [], label=words, **style))
 
     ordinary = [support for support in conditions.supports if not support.is_spring]
@@ -221,7 +245,7 @@ def entries(conditions, dimension):
     if any(one.is_spring for one in conditions.supports):
         add("$\\wr$", HELD, HELD, "spring")
     if len(conditions.nodes):
-        add("$\\rightarrow$", GIVEN, GIVEN, "load")
+        add(in_legend(), GIVEN, GIVEN, "load", 18)
     if conditions.bodies:
-        add("$\\Rightarrow$", PAPER, GIVEN, "body force")
+        add(in_legend(), PAPER, GIVEN, "body force", 18)
     return found

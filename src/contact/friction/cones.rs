@@ -26,6 +26,8 @@ const OF_TERMS: f64 = 1e-5;
 struct FrictionCones<'a> {
     contact: ContactProblem<'a>,
     laws: ContactLaws<'a>,
+    /// Square roots of the stiffness of all limits: the two tangents of a point may differ by far.
+    sizes: Vec<f64>,
     /// Energy norm of the forces that act before any motion, with their round-off.
     acting: f64,
 }
@@ -135,6 +137,7 @@ impl<'a> FrictionCones<'a> {
             |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(i, c)| c * c / of_jump(i)).sum() };
         let rows = contact.rows.iter().map(|row| 1.0 / compliance(row));
         let stiffness: Vec<f64> = (0..m).map(of_jump).chain(rows).collect();
+        let sizes = stiffness.iter().map(|r| r.sqrt()).collect();
         let laws = ContactLaws::new(contact.bounds, contact.rows, problem.tangents, stiffness);
         let norm = |forces: &[f64]| laws.squares(forces).sqrt();
         let at_rest = vec![0.0; m];
@@ -143,6 +146,7 @@ impl<'a> FrictionCones<'a> {
             acting: norm(contact.c) + OF_TERMS * norm(&terms),
             contact,
             laws,
+            sizes,
         }
     }
 

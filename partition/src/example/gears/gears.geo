@@ -79,6 +79,8 @@ For k In {0 : teeth_1 - 1}
 EndFor
 root = newc; Circle(root) = {last, axis, first}; outline[] += root;
 bore = newc; Circle(bore) = {0, 0, 0, 0.45 * r_1};
+// Equal cells: among others the torque on the bore would differ from what it is in sum.
+Transfinite Curve {bore} = 33;
 Curve Loop(1) = outline[];
 Curve Loop(2) = {bore};
 Plane Surface(1) = {1, 2};
@@ -119,7 +121,7 @@ before = newp; Point(before) = {r_1 + base_pitch / 2 * Sin(alpha), base_pitch / 
 Field[1] = Distance; Field[1].PointsList = {behind, before};
 Field[2] = Threshold; Field[2].InField = 1;
 Field[2].SizeMin = fine; Field[2].DistMin = 0.25e-3;
-Field[2].SizeMax = inside; Field[2].DistMax = 0.25e-3 + (inside - fine) / 0.3;
+Field[2].SizeMax = inside; Field[2].DistMax = 0.25e-3 + (inside - fine) / 0.15;
 Field[3] = Distance; Field[3].CurvesList = {teeth[]}; Field[3].Sampling = 60;
 Field[4] = Threshold; Field[4].InField = 3;
 Field[4].SizeMin = on_teeth; Field[4].DistMin = 0;

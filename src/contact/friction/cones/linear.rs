@@ -57,7 +57,7 @@ impl FrictionCones<'_> {
         // Round-off mustn't drive balanced motions without resistance.
         let rests = |system: &System, left: &[f64]| {
             system.unknowns.iter().zip(left).all(|(&i, left)| {
-                let scale = self.force_scale(i, &start) / self.laws.stiffness[i].sqrt();
+                let scale = self.force_scale(i, &start) / self.sizes[i];
                 i < m && left.abs() <= FORCE_TOLERANCE * scale
             })
         };
@@ -120,7 +120,7 @@ impl FrictionCones<'_> {
     fn force_is(&self, i: usize) -> Equation {
         Equation {
             forces: vec![(i, 1.0)],
-            scale: self.laws.stiffness[i].sqrt(),
+            scale: self.sizes[i],
             spring: SPRING,
             ..Equation::default()
         }
@@ -129,7 +129,7 @@ impl FrictionCones<'_> {
     fn overshoot_is_zero(&self, i: usize) -> Equation {
         Equation {
             jumps: vec![(i, 1.0)],
-            scale: 1.0 / self.laws.stiffness[i].sqrt(),
+            scale: 1.0 / self.sizes[i],
             spring: -YIELD,
             ..Equation::default()
         }
@@ -141,7 +141,7 @@ impl FrictionCones<'_> {
         let mut equation = self.force_is(n);
         equation.spring = 0.0;
         if let ([Some(first), Some(second)], 1) = (point.tangents, k) {
-            equation.scale = self.laws.stiffness[first].sqrt();
+            equation.scale = self.sizes[first];
             let weight = self.laws.stiffness[first] / (self.laws.stiffness[first] + across);
             let normal = [(first, -weight * e[1]), (second, weight * e[0])];
             equation.forces = normal.to_vec();
@@ -165,8 +165,8 @@ impl FrictionCones<'_> {
         self.fill(&mut a, equations, &unknowns, &column);
         let scale: Vec<f64> = (unknowns.iter())
             .map(|&i| match i < m {
-                true => self.laws.stiffness[i].sqrt(),
-                false => 1.0 / self.laws.stiffness[i].sqrt(),
+                true => self.sizes[i],
+                false => 1.0 / self.sizes[i],
             })
             .collect();
         let of_equation: Vec<f64> = equations.iter().flatten().map(|e| e.scale).collect();

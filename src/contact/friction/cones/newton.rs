@@ -7,7 +7,8 @@ use contact_dd_partition::id::{GroupId, OnGroups};
 use super::{ACCEPTABLE, Found, FrictionCones, Rest};
 use crate::contact::active_set::{ContactProblem, FORCE_TOLERANCE};
 use crate::contact::friction::{FrictionProblem, Status};
-use crate::contact::law::PointStatus;
+use crate::contact::interior_point::{ConvexProblem, GivenFriction, NearSolution};
+use crate::contact::law::{PointLaw, PointStatus};
 use crate::contact::laws::{Iterate, LawResidual, Past, Statuses};
 use crate::contact::newton::{
     ContactOperator, NewtonSettings, NewtonStep, StepAccuracy, TotalResidual, newton,
@@ -58,6 +59,9 @@ impl FrictionCones<'_> {
             return (at_once, false, false);
         }
         let mut steps = at_once.steps;
+        if let Some(found) = self.after_interior_point(&mut steps) {
+            return (Found { steps, ..found }, true, false);
+        }
         if let Some(found) = self.along_lemke_s_path(problem, &mut steps) {
             return (Found { steps, ..found }, true, false);
         }
@@ -84,6 +88,49 @@ impl FrictionCones<'_> {
                 && miss > MISSED_OF_BOUND * bound
                 && miss > MISSED_OF_TERMS * self.force_scale(point.first, place)
         })
+    }
+
+    /// The solution of a convex problem, from that of the interior-point method.
+    pub(super) fn after_interior_point(&self, steps: &mut usize) -> Option<Found> {
+        let points = self.given_friction()?;
+        let near = self.near(&points);
+        *steps += near.steps;
+        let start = self.place(near.jumps, near.of_rows);
+        let mut state = self.laws.residual(&start, None, 0.0).statuses;
+        state.past = vec![Past::Closed; state.points.len()];
+        let found = self.newton(&start, &state, STEPS);
+        *steps += found.steps;
+        found.converged().then_some(found)
+    }
+
+    /// The points, if the bounds of all are given.
+    fn given_friction(&self) -> Option<Vec<GivenFriction>> {
+        let given = |point: &PointLaw| {
+            let bound = point.bound;
+            let is_given =
+                bound.coefficient == 0.0 && (!bound.only_closed || bound.cohesion == 0.0);
+            is_given.then_some(GivenFriction {
+                limits: point.tangents,
+                prescribed: point.prescribed,
+                bound: bound.cohesion,
+            })
+        };
+        self.laws.points.iter().map(given).collect()
+    }
+
+    /// The interior-point method's solution where the bounds of all points are given.
+    fn near(&self, points: &[GivenFriction]) -> NearSolution {
+        let contact = &self.contact;
+        let scale: Vec<f64> = self.sizes.iter().map(|size| size * size).collect();
+        ConvexProblem {
+            h: contact.h,
+            c: contact.c,
+            scale: &scale[..contact.c.len()],
+            rows: contact.rows,
+            bounds: contact.bounds,
+            points,
+        }
+        .solve()
     }
 
     /// The solution at the end of Lemke's path.
@@ -212,6 +259,7 @@ impl FrictionCones<'_> {
                 ..*contact
             },
             laws: self.laws.clone(),
+            sizes: self.sizes.clone(),
             acting: self.acting,
         };
         damped.newton(place, state, DAMPED_STEPS)

@@ -245,3 +245,40 @@ fn what_slides_to_a_wall_does_not_slide_on_and_on() {
     let [stuck, open] = [Status::Closed, Status::Open];
     assert!(!points.solve(&mut [stuck, stuck, stuck, open]).slides);
 }
+
+/// One of two tangents of a point as a jump with a small weight: its stiffness is far above that of the other.
+#[test]
+fn tangents_of_a_point_may_differ_in_stiffness_by_far() {
+    for seed in 0..60 {
+        let count = 2 + seed % 6;
+        let bound = [COULOMB, GIVEN][seed % 2];
+        let mut points = Points::in_space(count, 31 * seed, bound);
+        let (h, m) = (points.h.clone(), points.c.len());
+        let weight = |i: usize| if i == count + 1 { 1e-7 } else { 1.0 };
+        points.set_stiffness(m, |i, j| h[(i, j)] / weight(i) / weight(j));
+        points.bounds[count + 1] *= 1e-7;
+        points.c[count + 1] *= 1e7;
+        points.solved(&format!("seed {seed}"), 1e-7);
+    }
+}
+
+#[test]
+fn newton_s_method_finds_the_solution_of_given_friction_from_the_interior_point() {
+    for seed in 0..60 {
+        let make = [Points::new, Points::in_space][seed % 2];
+        let mut points = make(1 + seed % 9, 37 * seed, GIVEN);
+        for (k, tangent) in points.tangents.iter_mut().enumerate() {
+            tangent.bound.cohesion *= 10.0_f64.powi(-((k / 2 * seed) as i32 % 7));
+        }
+        let (solution, _) = points.solved(&format!("seed {seed}"), 1e-11);
+        points.with(|problem| {
+            let cones = FrictionCones::new(problem);
+            let mut steps = 0;
+            let found = cones.after_interior_point(&mut steps).expect("a solution");
+            let apart = found.place.jumps.iter().zip(&solution.jumps);
+            let apart = apart.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            assert!(apart < 1e-10, "seed {seed}: {apart:e}");
+            assert!(steps < 100, "seed {seed}: {steps} steps");
+        });
+    }
+}
