@@ -33,6 +33,20 @@ pub fn short(number: f64) -> String {
     }
 }
 
+/// A number with all of its digits, and with an exponent where these would begin or end in many zeros.
+pub fn plain(number: f64) -> String {
+    match number.abs() {
+        size if size != 0.0 && !(1e-6..1e15).contains(&size) => format!("{number:e}"),
+        _ => format!("{number}"),
+    }
+}
+
+/// A point with `dim` coordinates of at most four digits: `(1, -0.5)`.
+pub fn short_point(at: [f64; 3], dim: usize) -> String {
+    let coordinates: Vec<String> = at.iter().take(dim).map(|&c| short(c)).collect();
+    format!("({})", coordinates.join(", "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -59,5 +73,8 @@ mod tests {
         ] {
             assert_eq!(short(number), expected);
         }
+        assert_eq!(plain(0.500000001), "0.500000001");
+        assert_eq!(plain(1e-300), "1e-300");
+        assert_eq!(short_point([1.0, -0.123456, 0.0], 2), "(1, -0.1235)");
     }
 }

@@ -21,6 +21,7 @@ mod held_nodes;
 mod initial_stress;
 mod loaded_bodies;
 mod loads;
+mod locking;
 mod mortar;
 mod node_pairs;
 mod obstacle;
@@ -168,7 +169,7 @@ impl Model {
                 .chain([coupled, bolts.contacts])
                 .flatten()
                 .collect(),
-            tips: constraints.tips,
+            tips: constraints.tips.tips,
             goals,
             found: constraints.found,
             reference_nodes,

@@ -141,12 +141,13 @@ def above_zero(text: str, otherwise: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> None:
+    heard: set[str] = set()
     if arguments.source.suffix.lower() != ".inp":
-        print(programs.solve(partitioned(arguments), arguments.ranks, (), True).path)
+        print(programs.solve(partitioned(arguments, heard), arguments.ranks, (), True, heard=heard).path)
         return
     with tempfile.TemporaryDirectory(prefix="contact-dd-") as folder:
         prints = Path(folder) / "prints.json"
-        result = programs.solve(partitioned(arguments, prints), arguments.ranks, (), True)
+        result = programs.solve(partitioned(arguments, heard, prints), arguments.ranks, (), True, heard=heard)
         print(result.path)
         path = result.path.with_suffix(".dat")
         if write_dat(result, json.loads(prints.read_text(encoding="utf-8")), path):
@@ -157,8 +158,9 @@ def study(arguments: argparse.Namespace) -> None:
     vary = dict(map(values_of, arguments.vary))
     if len(vary) < len(arguments.vary):
         raise InputError("--vary: a name occurs twice; expected it once, with all of its values")
-    problem = partitioned(arguments)
-    table = programs.study(problem, cases_of(problem, vary), arguments.ranks, (), True)
+    heard: set[str] = set()
+    problem = partitioned(arguments, heard)
+    table = programs.study(problem, cases_of(problem, vary), arguments.ranks, (), True, heard=heard)
     for path, write in (
         (problem.with_suffix(".study.csv"), table.write_csv), (problem.with_suffix(".study.h5"), table.write_hdf5)
     ):
@@ -171,15 +173,16 @@ def study(arguments: argparse.Namespace) -> None:
     print(picture)
 
 
-def partitioned(arguments: argparse.Namespace, prints: Path | None = None) -> Path:
-    """The problem file of a scene or a deck, in the folder asked for; what a deck prints in a file of its own."""
+def partitioned(arguments: argparse.Namespace, heard: set[str], prints: Path | None = None) -> Path:
+    """The problem file of a scene or a deck, in the folder asked for; what a deck prints in a file of its own. Warnings
+    are added to those `heard`."""
     source, folder = arguments.source, arguments.folder
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: can't be made: {error.strerror}") from error
     problem: Path = folder / (source.stem + ".h5")
-    return programs.partition(source, arguments.subdomains, True, problem=problem, prints=prints)
+    return programs.partition(source, arguments.subdomains, True, problem=problem, prints=prints, heard=heard)
 
 
 def convert(arguments: argparse.Namespace) -> None:

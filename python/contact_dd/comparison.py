@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,8 +81,7 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
         raise InputError(f"meshes with {dofs} degrees of freedom; expected cells {LEAST_RATIO} times smaller in one")
     ratios = [size(coarse) / size(fine) for coarse, fine in zip(found, found[1:], strict=False)]
     numbers = [dict(numbers_of(result)) for result in found]
-    if any(one.keys() != numbers[0].keys() for one in numbers):
-        raise InputError("the results are of several scenes: their contacts or supports differ")
+    check_same_numbers(found, numbers)
     endless = without_limit(found[-2:], ratios[-1])
     scales = dict[str, float]()
     for one in numbers:
@@ -97,11 +96,24 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
             is_force = kind == "force" or kind.startswith(QUANTITY)
             if kind == "work" and error is not None:
                 error = max(error, energy_error(found[-1]))
-            # One that is longer than the number says nothing of a pressure or of work, which are above 0.
-            if name in endless or not is_force and error is not None and error > values[-1]:
+            # One that is longer than the number says nothing of a pressure, of work or of a stress intensity factor.
+            if name in endless or not is_force and error is not None and error > abs(values[-1]):
                 error = None
             compared.append(Compared(name, unit, values, error, order))
     return compared
+
+
+def check_same_numbers(results: Sequence[Result], numbers: Sequence[Mapping[tuple[str, str, str], float]]) -> None:
+    """Raises InputError where one of the results has a number that another lacks, with its name."""
+    every = dict.fromkeys(key for one in numbers for key in one)
+    for result, own in zip(results, numbers, strict=True):
+        missing = [f"'{name}' in {unit}" for _, name, unit in every.keys() - own.keys()]
+        if missing:
+            shown = ", ".join(sorted(missing)[:4]) + (", …" if len(missing) > 4 else "")
+            raise InputError(
+                f"the results are of several scenes: {result.path} has no {shown}; expected the same contacts, supports"
+                " and quantities in all, and meshes fine enough for stress intensity factors of the same crack tips"
+            )
 
 
 def bar(values: Sequence[float], ratios: Sequence[float], round_off: float) -> tuple[float | None, float | None]:

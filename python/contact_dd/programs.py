@@ -12,7 +12,7 @@ import subprocess
 import sysconfig
 import tempfile
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -69,10 +69,10 @@ def launcher(ranks: int) -> list[str]:
 
 def partition(
     scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str, problem: Path | None = None,
-    prints: Path | None = None,
+    prints: Path | None = None, heard: set[str] | None = None,
 ) -> Path:
     """Writes the problem file of a scene or a deck, beside it unless it is named, and what the deck asks to be printed
-    into `prints`. Messages are `worded`."""
+    into `prints`. Messages are `worded`; warnings are added to those `heard`, as the file has them, too."""
     problem = problem or scene.with_suffix(".h5")
     number = [] if subdomains is None else ["-n", str(subdomains)]
     number += [] if prints is None else ["--write-prints", str(prints)]
@@ -81,7 +81,10 @@ def partition(
         word, _, rest = line.partition(" ")
         if word == "warning":
             # The solver's warnings come without the name of their explanation.
-            warnings.warn(worded(NAMED.sub("", rest.strip())), stacklevel=6)
+            message = NAMED.sub("", rest.strip())
+            if heard is not None:
+                heard.add(message)
+            warnings.warn(worded(message), stacklevel=6)
         elif progress is True and word in ("mesh", "contact"):
             print(line, flush=True)
 
@@ -95,14 +98,15 @@ def convert(deck: Path, folder: Path) -> None:
 
 
 def solve(
-    problem: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str
+    problem: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str,
+    heard: Collection[str] = (),
 ) -> Result:
-    """Solves a problem file. Messages are `worded`."""
+    """Solves a problem file. Messages are `worded`; warnings that are `heard` aren't given again."""
     if isinstance(options, str):
         raise errors.InputError(f"options={options!r}; expected a list of them")
     output = problem.with_suffix(".vtkhdf")
     try:
-        hear_solver(problem, output, ranks, options, progress, worded)
+        hear_solver(problem, output, ranks, options, progress, worded, heard)
     except errors.NotConverged as error:
         error.result = Result(output)
         raise
@@ -110,27 +114,29 @@ def solve(
 
 
 def study(
-    problem: Path, cases: dict[str, Any], ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str
+    problem: Path, cases: dict[str, Any], ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str,
+    heard: Collection[str] = (),
 ) -> Study:
-    """Solves the cases of a study. Messages are `worded`."""
+    """Solves the cases of a study. Messages are `worded`; warnings that are `heard` aren't given again."""
     asked, output = problem.with_suffix(".cases.json"), problem.with_suffix(".study.json")
     files.write(asked, json.dumps(cases))
     # Which cases don't converge the table says.
     with contextlib.suppress(errors.NotConverged):
-        hear_solver(problem, output, ranks, ["--study", str(asked), *options], progress, worded)
+        hear_solver(problem, output, ranks, ["--study", str(asked), *options], progress, worded, heard)
     return studies.read(output)
 
 
 def hear_solver(
-    problem: Path, output: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded
+    problem: Path, output: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded,
+    heard: Collection[str],
 ) -> None:
-    """Runs the solver. Messages are `worded`."""
+    """Runs the solver. Messages are `worded`; warnings that are `heard` aren't given again."""
 
     def hear(line: str) -> None:
         event = event_of(line)
         if event is None:
             return
-        if event["event"] == "warning":
+        if event["event"] == "warning" and event["message"] not in heard:
             warnings.warn(worded(event["message"]), stacklevel=6)
         if callable(progress):
             progress(event)

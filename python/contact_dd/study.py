@@ -84,8 +84,23 @@ def cases_of(problem: Path, vary: Mapping[str, Sequence[float]]) -> dict[str, An
     for name in names:
         if names.count(name) > 1:
             raise errors.InputError(f"parameter {name!r} is varied twice")
-    values = [[float(value) for value in of] for of in vary.values()]
+    values = [numbers(name, of) for name, of in vary.items()]
     return {"parameters": names, "cases": [list(case) for case in itertools.product(*values)]}
+
+
+def numbers(name: str, values: Any) -> list[float]:
+    """The values of a parameter: a list of finite numbers."""
+    expected = "expected a list of finite numbers, such as [1.0, 2.0]"
+    if isinstance(values, str):
+        raise errors.InputError(f"parameter {name!r}: the values are {values!r}; {expected}")
+    try:
+        found = [float(value) for value in values]
+    except (TypeError, ValueError):
+        raise errors.InputError(f"parameter {name!r}: the values are {values!r}; {expected}") from None
+    for value in found:
+        if not np.isfinite(value):
+            raise errors.InputError(f"parameter {name!r}: one of the values is {value}; {expected}")
+    return found
 
 
 def parameter(asked: str, known: Mapping[str, int]) -> str:

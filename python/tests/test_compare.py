@@ -1,5 +1,7 @@
 """Error bars by comparison of meshes, against exact answers."""
 
+from types import SimpleNamespace
+
 import edges
 import gmsh
 import numpy as np
@@ -51,6 +53,37 @@ def test_what_grows_or_sways_has_no_order():
     assert error >= 0.2
 
 
+def made_up(monkeypatch, *meshes):
+    """Results of meshes one twice as fine as the other, with these numbers by their kinds and names."""
+    results = [SimpleNamespace(report={"dofs": 100 * 4**k}, is_in_space=False, path=f"{k}.vtkhdf") for k in (0, 1, 2)]
+    of = {result.path: numbers for result, numbers in zip(results, meshes, strict=True)}
+
+    def told(result):
+        return (((kind, name, "m"), value) for (kind, name), value in of[result.path].items())
+
+    monkeypatch.setattr("contact_dd.comparison.numbers_of", told)
+    monkeypatch.setattr("contact_dd.comparison.without_limit", lambda meshes, ratio: set())
+    return results
+
+
+def test_a_negative_stress_intensity_factor_has_the_bar_of_a_positive_one(monkeypatch):
+    key = ("stress intensity", "K_II of crack, tip 1")
+    errors = []
+    for sign in 1, -1:
+        [one] = compare(made_up(monkeypatch, {key: sign * 8.0}, {key: sign * 9.0}, {key: sign * 9.5}))
+        errors.append(one.error)
+    assert errors[0] == errors[1] is not None
+
+
+def test_what_only_one_result_has_is_named(monkeypatch):
+    force, factor = ("force", "force on crack, x"), ("stress intensity", "K_I of crack, tip 2")
+    fine = {force: 1.0, factor: 2.0}
+    with pytest.raises(InputError, match=r"0\.vtkhdf has no 'K_I of crack, tip 2' in m; expected .* crack tips"):
+        compare(made_up(monkeypatch, {force: 1.1}, fine, fine))
+    with pytest.raises(InputError, match=r"2\.vtkhdf has no 'K_I of crack, tip 2'"):
+        compare(made_up(monkeypatch, fine, fine, {force: 1.1}))
+
+
 def test_hertz(scene):
     results = on_meshes(scene, "hertz", "--element", "quad8", meshes=(2, 0, 1))
     peak = found(results, "largest pressure of contact")
@@ -62,7 +95,7 @@ def test_hertz(scene):
     with pytest.raises(InputError, match="expected cells"):
         compare([results[0], results[0]])
     other = on_meshes(scene, "patch", meshes=(0,))
-    with pytest.raises(InputError, match="several scenes"):
+    with pytest.raises(InputError, match="several scenes: .* has no 'force on contact, x' in N/m, "):
         compare([results[0], *other])
 
 

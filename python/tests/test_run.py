@@ -58,6 +58,16 @@ def test_a_result_is_printed_in_five_lines(scene):
     assert without.splitlines()[3:] == ["stresses were left out", "no error estimate"]
 
 
+def test_a_warning_of_the_model_is_given_once(scene):
+    model = Model.from_scene(scene("patch"))
+    model.scene["contact"][0]["friction"] = 31.0
+    with pytest.warns(UserWarning, match="a coefficient of 31") as given:
+        result = model.run(ranks=1, progress=False)
+    said = [str(one.message) for one in given]
+    assert len(said) == len(set(said))
+    assert any("a coefficient of 31" in one for one in result.report["warnings"])
+
+
 def test_load_steps_are_named_where_a_result_is_printed(scene):
     last = Model.from_scene(scene("mindlin")).run(progress=False)
     first = last.at_step(1)

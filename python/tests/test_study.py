@@ -10,7 +10,7 @@ import pytest
 from test_quantities import pressed
 
 from contact_dd import InputError, Model
-from contact_dd.study import Study
+from contact_dd.study import Study, numbers
 
 
 def test_a_study_has_the_bits_of_single_runs():
@@ -70,6 +70,12 @@ def test_the_command_writes_tables(tmp_path):
         done = study("--vary", wrong)
         assert done.returncode == 2
         assert "expected name=first:last:step" in done.stderr
+
+
+@pytest.mark.parametrize("values", [2.0, "2.0", None, ["a"], [[1.0]], [1.0, float("nan")], [float("inf")]])
+def test_values_of_a_study_that_are_no_list_of_numbers_are_refused(values):
+    with pytest.raises(InputError, match="parameter 'pressure': .*; expected a list of finite numbers"):
+        numbers("pressure", values)
 
 
 def test_the_plot_has_a_line_for_every_combination_of_what_else_varies():

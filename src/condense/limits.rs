@@ -107,12 +107,16 @@ fn check_ties(
         }
         let point = &group.points[condition.point];
         let contact = &context.catalog.contacts[point.contact as usize];
+        // The reference point of a coupling is no node of the mesh.
+        let place = match point.tag() {
+            tag if tag < 0 => String::new(),
+            tag => format!("at node {tag} "),
+        };
         return Err(Failure::input(format!(
-            "{} '{}': at node {} displacements that supports and others prescribe contradict it, by {:.3e}; expected \
+            "{} '{}': {place}displacements that supports and others prescribe contradict it, by {:.3e}; expected \
              displacements that leave it as it is",
             contact.kind.word(),
             contact.name,
-            point.tag(),
             bounds[j].abs()
         )));
     }

@@ -5,6 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::vector::axpy;
 
+/// Size of a body over its distance from the axis of a rotation, up to which the motion is described as a translation:
+/// normals of contacts that differ in their last digits turn a body by that little while it slides straight.
+const FAR: f64 = 1e-4;
+
 /// The frame in which a body's rigid motions are expressed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BodyFrame {
@@ -68,11 +72,11 @@ impl BodyFrame {
         moves
     }
 
-    /// Description of a motion.
+    /// Description of a motion: a rotation about an axis far outside of the body moves it as a translation does.
     pub fn describe(&self, dim: usize, z: &[f64]) -> String {
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let (translation, rotation) = z.split_at(dim);
-        if norm(rotation) <= 1e-6 * norm(translation) {
+        if norm(rotation) <= FAR * norm(translation) {
             let length = norm(translation);
             let along: Vec<f64> = translation.iter().map(|t| t / length).collect();
             return format!("translation along ({})", listed(&along, 4));
@@ -187,6 +191,11 @@ mod tests {
         assert_eq!(
             frame.describe(2, &[0.0, -2.0, 0.0]),
             "translation along (0.0000, -1.0000)"
+        );
+        // A block that slides straight, but for the last digits of its contacts.
+        assert_eq!(
+            frame.describe(2, &[2.0, 0.0, 1e-5]),
+            "translation along (1.0000, 0.0000)"
         );
     }
 }

@@ -194,3 +194,52 @@ fn a_mesh_that_is_too_coarse_at_a_tip_is_remarked_on_once() {
     assert!(model.found[0].contains("1 crack tip without stress intensity"));
     assert!(model.warnings.is_empty(), "{:?}", model.warnings);
 }
+
+/// A plate of 3 m × 2 m with a crack from (0, 0) to (1, 0), whose facets `grade` grades.
+fn inner_crack(grade: impl Fn(f64) -> f64 + Copy) -> Mesh {
+    let x = move |column: &str, s: f64| match column {
+        "left" => s - 1.0,
+        "crack" => grade(s),
+        _ => 1.0 + s,
+    };
+    let mut blocks = Blocks::new();
+    for column in ["left", "crack", "right"] {
+        blocks = blocks
+            .mapped(&format!("{column} below"), [8, 4], |[s, t]| {
+                [x(column, s), t - 1.0]
+            })
+            .mapped(&format!("{column} above"), [8, 4], |[s, t]| {
+                [x(column, s), t]
+            });
+    }
+    let blocks = blocks.glued(|x, y| y != 0.0 || !(1e-9..1.0 - 1e-9).contains(&x));
+    let mut mesh = blocks.mesh;
+    let columns =
+        ["left", "crack", "right"].map(|of| [format!("{of} below"), format!("{of} above")]);
+    let pieces: Vec<&str> = columns.iter().flatten().map(String::as_str).collect();
+    gather(&mut mesh, "plate", &pieces);
+    mesh
+}
+
+/// Facets that are small at the right end of the crack only, so that the other tip has no stress intensity factors.
+#[test]
+fn tips_without_factors_are_named_and_count() {
+    let mesh = inner_crack(|s| 1.0 - (1.0 - s).powi(3));
+    let model = loaded(mesh, ISOTROPIC, &pressure(FACES, LOAD));
+    let names: Vec<&str> = model.tips.iter().map(|(_, tip)| &tip.name[..]).collect();
+    assert_eq!(names, ["crack, tip 2"]);
+    let expected = "1 crack tip without stress intensity factors, 'crack, tip 1' at (0, 0): fewer";
+    assert!(model.found[0].starts_with(expected), "{:?}", model.found);
+}
+
+#[test]
+fn tips_above_each_other_arent_numbered_by_round_off() {
+    let mesh = inner_crack(|s| 0.5 - 0.5 * (std::f64::consts::PI * s).cos());
+    for tilt in [-1e-14, 0.0, 1e-14] {
+        let upright = moved(mesh.clone(), |[x, y]| [tilt * x - y, x]);
+        let model = loaded(upright, ISOTROPIC, &pressure(FACES, LOAD));
+        let tips = model.tips.iter().map(|(_, tip)| tip);
+        let heights: Vec<f64> = tips.map(|tip| tip.position[1].round()).collect();
+        assert_eq!(heights, [0.0, 1.0], "{tilt}");
+    }
+}

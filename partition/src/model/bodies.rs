@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::parts::Formulation;
-use super::{Material, PlaneState, groups};
+use super::{Material, PlaneState, groups, locking};
 use crate::element::{ElementKind, Elements};
 use crate::error::InputError;
 use crate::mesh::bounding_box::BoundingBox;
@@ -13,9 +13,6 @@ use crate::scene::condition::{Body, Integration, Names};
 use crate::scene::contact::{Contact, Declaration};
 use crate::scene::material::Elasticity;
 use crate::stiffness::Stiffness;
-
-/// Poisson's ratio above which linear cells lock: too stiff by 7 % in energy at 0.499.
-const LOCKING: f64 = 0.49;
 
 /// Distance from the axis, relative to the bodies' extent, that is round-off.
 const AXIS: f64 = 1e-10;
@@ -58,9 +55,6 @@ impl Bodies {
             scene.materials.keys().filter(before).count() as u32
         };
         let material_of_body: Vec<u32> = scene.bodies.values().map(number).collect();
-        let cell_material: Vec<u32> = (cell_body.iter())
-            .map(|&body| material_of_body[body as usize])
-            .collect();
         // A separate material keeps the recovery of stresses from averaging across bodies: stresses jump where initial
         // stress does.
         let mut own = scene.materials.len() as u32..;
@@ -73,7 +67,7 @@ impl Bodies {
         if scene.plane == Some(PlaneState::Axisymmetric) {
             take_radii(&mut mesh, &cell_body, &names)?;
         }
-        warn_of_locking(scene, &mesh, &cell_material, warnings);
+        warnings.extend(locking::warnings(scene, &mesh, &cell_body));
         let cell_material = cell_body.iter();
         let cell_material = cell_material.map(|&body| material_of_body[body as usize]);
         let mut bodies = Self {
@@ -188,30 +182,6 @@ fn take_radii(mesh: &mut Mesh, cell_body: &[u32], names: &[&str]) -> Result<(), 
     let near = mesh.points.iter_mut().filter(|x| x[0].abs() <= axis);
     near.for_each(|x| x[0] = 0.0);
     Ok(())
-}
-
-/// Warns of linear cells of a nearly incompressible material.
-fn warn_of_locking(scene: &Scene, mesh: &Mesh, cell_material: &[u32], warnings: &mut Vec<String>) {
-    for (index, (name, material)) in (0..).zip(&scene.materials) {
-        let Elasticity::Isotropic { poisson, .. } = material else {
-            continue;
-        };
-        if *poisson < LOCKING {
-            continue;
-        }
-        let cells = mesh.cells.iter().zip(cell_material);
-        let kinds: BTreeSet<_> = cells
-            .filter(|&((kind, _), &of)| of == index && kind.is_linear())
-            .map(|((kind, _), _)| kind.name().replacen(' ', "s ", 1))
-            .collect();
-        if !kinds.is_empty() {
-            let kinds = kinds.into_iter().collect::<Vec<_>>().join(" and ");
-            warnings.push(format!(
-                "material '{name}': {kinds} lock at a Poisson's ratio of {poisson}; \
-                 displacements come out too small; quadratic ones don't lock"
-            ));
-        }
-    }
 }
 
 /// Materials in the order of their names, followed by those of bodies with initial stress, with C for the plane state,

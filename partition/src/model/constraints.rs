@@ -2,14 +2,13 @@
 
 use super::activation;
 use super::contact::Contacts;
-use super::crack_tips;
+use super::crack_tips::CrackTips;
 use super::cyclic;
 use super::equations;
 use super::held_nodes::HeldNodes;
 use super::loaded_bodies::LoadedBodies;
 use super::parts::Contact;
 use super::touching::Declared;
-use crate::crack_tip::CrackTip;
 use crate::error::InputError;
 use crate::scene::Scene;
 use crate::scene::material::PlaneState;
@@ -23,8 +22,8 @@ pub(super) struct Constraints<'a> {
     tables: Vec<&'a str>,
     /// Equations, represented as contacts.
     pub equations: Vec<Contact>,
-    /// Crack tips of a plane mesh, each with a cell that contains it.
-    pub tips: Vec<(u32, CrackTip)>,
+    /// Crack tips of a plane mesh.
+    pub tips: CrackTips,
     /// Descriptions of contacts found automatically and of crack tips left out.
     pub found: Vec<String>,
 }
@@ -48,14 +47,13 @@ impl<'a> Constraints<'a> {
         let mut all = Self::default();
         all.make(&sides, declared, warnings)?;
         activation::check(scene, bodies, &all.contacts)?;
-        let (tips, coarse) = crack_tips::find(
+        all.tips = CrackTips::find(
             (&bodies.mesh, topology),
             plane,
             &bodies.cell_material,
             &all.contacts,
         );
-        all.tips = tips;
-        all.found.extend(crack_tips::remark(coarse));
+        all.found.extend(all.tips.remark());
         all.equations = equations::equations(scene, &bodies.mesh, all.contacts.len())?;
         let count = all.count();
         let of_sectors = cyclic::cyclic(scene, bodies, &mut all.contacts, count)?;

@@ -37,6 +37,8 @@ struct Paired {
     probes: Vec<Probe<u32>>,
     /// Largest distance of straight facets from the curve that they approximate (m).
     off: f64,
+    /// The same of facets in the middle of a curve, where the meshes of the sides don't match; else 0 (m).
+    sagitta: f64,
     warnings: Vec<String>,
 }
 
@@ -110,8 +112,9 @@ impl<'a> Contacts<'a> {
             point.gap = 0.0;
         }
         paired.close(keys.adjust);
-        if let Some(gap) = &keys.gap {
-            warnings.extend(self.give_gap(gap, &mut paired, &side_a, &what)?);
+        match &keys.gap {
+            Some(gap) => warnings.extend(self.give_gap(gap, &mut paired, &side_a, &what)?),
+            None => warnings.extend(self.gaps_of_facets(&paired, &side_a, &what)),
         }
         let Paired {
             mut points,
@@ -235,10 +238,17 @@ impl<'a> Contacts<'a> {
                 probe.gap = (probe.gap + slack).min(0.0);
             }
         }
+        // Opposite nodes lie on the curve, whatever facets are between them.
+        let are_nodes = paired.points.iter().all(|point| point.entries.len() == 2);
+        let sagitta = match are_nodes {
+            true => 0.0,
+            false => side_a.stands_off_curve().max(side_b.stands_off_curve()),
+        };
         Ok(Paired {
             points: paired.points,
             probes,
             off: side_a.stands_off().max(side_b.stands_off()),
+            sagitta,
             warnings: (corner.into_iter().chain(straight))
                 .chain(paired.warning)
                 .collect(),

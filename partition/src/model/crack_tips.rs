@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 use super::{Contact, PlaneState};
 use crate::crack_tip::{CrackTip, FaceFacet};
 use crate::element::geometry::{advance, difference, dot, length};
+use crate::magnitude::short_point;
 use crate::mesh::Mesh;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 
 /// Angle between the faces at a tip up to which they form a crack and not a notch (rad).
@@ -19,6 +21,9 @@ const STRAIGHT: f64 = 0.01;
 const UNDISTURBED: f64 = 0.8;
 /// Least number of facets of a crack face within the disc.
 const FEWEST: f64 = 3.0;
+
+/// Largest number of tips without stress intensity factors that the remark on them names.
+const SHOWN: usize = 6;
 
 /// An edge of the outline, with the body on its left, and its middle node.
 struct Edge {
@@ -43,73 +48,98 @@ struct Ending {
     faces: [Vec<usize>; 2],
 }
 
-/// The crack tips of a plane mesh in the order of their positions, each with a cell that contains it, and the number of
-/// tips with too few facets around them.
-pub(super) fn find(
-    (mesh, topology): (&Mesh, &Topology),
-    plane: Option<PlaneState>,
-    cell_material: &[u32],
-    contacts: &[Contact],
-) -> (Vec<(u32, CrackTip)>, usize) {
-    if !matches!(plane, Some(PlaneState::Strain | PlaneState::Stress)) {
-        return Default::default();
-    }
-    let outline = Outline::new(mesh, topology);
-    let mut endings: Vec<Ending> = (outline.at.keys().copied())
-        .filter_map(|node| outline.ending(node))
-        .collect();
-    if endings.is_empty() {
-        return Default::default();
-    }
-    let at = |ending: &Ending| mesh.points[ending.node as usize];
-    endings.sort_by(|a, b| {
-        let [a, b] = [at(a), at(b)];
-        (a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
-    });
-    let seams = seams(mesh, cell_material);
-    let contact_of = contacts_of_nodes(contacts);
-    let mut counts: HashMap<&str, usize> = HashMap::new();
-    let mut coarse = 0;
-    let mut tips = Vec::new();
-    for ending in &endings {
-        let Some(radius) = outline.radius(ending, &seams) else {
-            coarse += 1;
-            continue;
-        };
-        let first = &outline.edges[ending.faces[0][0]];
-        let contact = first.ends.iter().find_map(|node| contact_of.get(node));
-        let of = contact.map_or("", |&contact| &contacts[contact].name[..]);
-        let count = counts.entry(of).or_default();
-        *count += 1;
-        let name = match of {
-            "" => format!("tip {count}"),
-            name => format!("{name}, tip {count}"),
-        };
-        let tip = CrackTip {
-            name,
-            tag: mesh.node_tags[ending.node as usize],
-            body: 0,
-            material: cell_material[first.cell as usize],
-            position: at(ending),
-            direction: ending.direction,
-            radius,
-            facets: outline.facets(ending, radius),
-        };
-        tips.push((first.cell, tip));
-    }
-    (tips, coarse)
+/// The crack tips of a plane mesh.
+#[derive(Default)]
+pub(super) struct CrackTips {
+    /// Those with enough facets around them, in the order of their positions, each with a cell that contains it.
+    pub tips: Vec<(u32, CrackTip)>,
+    /// The names of the others, each with its position.
+    pub coarse: Vec<(String, [f64; 3])>,
 }
 
-/// The remark on crack tips whose mesh is too coarse for stress intensity factors. A warning would disturb all runs
-/// that don't need these factors.
-pub(super) fn remark(coarse: usize) -> Option<String> {
-    (coarse > 0).then(|| {
-        format!(
-            "{coarse} crack tip{} without stress intensity factors: fewer than three facets of the crack faces lie between \
-             the tip and the next kink, end, boundary or other material",
-            if coarse == 1 { "" } else { "s" }
-        )
-    })
+impl CrackTips {
+    /// Finds them. The tips of a contact are numbered in the order of their positions, those with too few facets
+    /// included, so that a name doesn't depend on the mesh.
+    pub fn find(
+        (mesh, topology): (&Mesh, &Topology),
+        plane: Option<PlaneState>,
+        cell_material: &[u32],
+        contacts: &[Contact],
+    ) -> Self {
+        let mut all = Self::default();
+        if !matches!(plane, Some(PlaneState::Strain | PlaneState::Stress)) {
+            return all;
+        }
+        let outline = Outline::new(mesh, topology);
+        let mut endings: Vec<Ending> = (outline.at.keys().copied())
+            .filter_map(|node| outline.ending(node))
+            .collect();
+        if endings.is_empty() {
+            return all;
+        }
+        let at = |ending: &Ending| mesh.points[ending.node as usize];
+        let grid = grid(mesh);
+        endings.sort_by_cached_key(|ending| {
+            let place = at(ending).map(|c| (c / grid).round() as i64);
+            (place, ending.node)
+        });
+        let seams = seams(mesh, cell_material);
+        let contact_of = contacts_of_nodes(contacts);
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        for ending in &endings {
+            let first = &outline.edges[ending.faces[0][0]];
+            let contact = first.ends.iter().find_map(|node| contact_of.get(node));
+            let of = contact.map_or("", |&contact| &contacts[contact].name[..]);
+            let count = counts.entry(of).or_default();
+            *count += 1;
+            let name = match of {
+                "" => format!("tip {count}"),
+                name => format!("{name}, tip {count}"),
+            };
+            let Some(radius) = outline.radius(ending, &seams) else {
+                all.coarse.push((name, at(ending)));
+                continue;
+            };
+            let tip = CrackTip {
+                name,
+                tag: mesh.node_tags[ending.node as usize],
+                body: 0,
+                material: cell_material[first.cell as usize],
+                position: at(ending),
+                direction: ending.direction,
+                radius,
+                facets: outline.facets(ending, radius),
+            };
+            all.tips.push((first.cell, tip));
+        }
+        all
+    }
+
+    /// The remark on crack tips whose mesh is too coarse for stress intensity factors. A warning would disturb all runs
+    /// that don't need these factors.
+    pub fn remark(&self) -> Option<String> {
+        let shown = self.coarse.iter().take(SHOWN);
+        let shown: Vec<String> = shown
+            .map(|(name, at)| format!("'{name}' at {}", short_point(*at, 2)))
+            .collect();
+        let (count, are_all) = (self.coarse.len(), self.coarse.len() <= SHOWN);
+        (count > 0).then(|| {
+            format!(
+                "{count} crack tip{} without stress intensity factors, {}{}: fewer than three facets of the crack faces lie \
+                 between the tip and the next kink, end, boundary or other material",
+                if count == 1 { "" } else { "s" },
+                shown.join(", "),
+                if are_all { "" } else { ", …" }
+            )
+        })
+    }
+}
+
+/// The step to which coordinates are rounded before tips are sorted by them, so that tips above each other aren't
+/// sorted by round-off: a power of two, of which decimal fractions aren't half a multiple.
+fn grid(mesh: &Mesh) -> f64 {
+    let extent = BoundingBox::around(&mesh.points).extent();
+    (extent.log2().ceil() - 30.0).exp2()
 }
 
 /// The nodes at which cells of several materials meet.

@@ -1,5 +1,6 @@
 //! Warnings of probable mistakes in an otherwise valid scene.
 
+mod hinges;
 mod strains;
 mod undeclared;
 
@@ -11,7 +12,7 @@ use super::steps::Loads;
 use super::touching::Declared;
 use super::{Contact, Material, activation, groups};
 use crate::error::InputError;
-use crate::magnitude::short;
+use crate::magnitude::{short, short_point};
 use crate::mesh::bounding_box::BoundingBox;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
@@ -61,12 +62,19 @@ impl<'a> Diagnostics<'a> {
         let mut warnings = self.strains()?;
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
+        warnings.extend(self.hinges());
         Ok(warnings)
     }
 
     /// The largest extent of the bodies (m).
     fn extent(&self) -> f64 {
         BoundingBox::around(&self.bodies.mesh.points).extent()
+    }
+
+    /// A point of the mesh as text, with its unit.
+    fn place(&self, at: [f64; 3]) -> String {
+        let at = short_point(at, self.bodies.mesh.dim);
+        format!("{at} {}", self.scene.units.length())
     }
 
     /// Warnings of contacts whose gap exceeds the size of the bodies.

@@ -1,21 +1,18 @@
 //! Quantities of a scene, resolved on its mesh.
 
+mod places;
+
 use super::bodies::Bodies;
+use super::crack_tips::CrackTips;
 use super::initial_stress::{InitialStress, mean_weights};
 use super::{Contact, Material, PlaneState};
 use crate::contact_point::ContactPoint;
-use crate::crack_tip::CrackTip;
-use crate::element::geometry::{difference, length};
 use crate::error::InputError;
-use crate::mesh::bounding_box::BoundingBox;
 use crate::quantity::{NodeWeight, Quantity, QuantityKind};
 use crate::scene::Scene;
 use crate::scene::number::ConstantVector;
-use crate::scene::quantity::{self, Place, Target};
+use crate::scene::quantity::{self, Target};
 use crate::scene::suggest::hint_and_known;
-
-/// Distance of coincident nodes, relative to the extent of the mesh.
-const SAME: f64 = 1e-9;
 
 /// Scene and mesh on which quantities are resolved.
 #[derive(Clone, Copy)]
@@ -24,8 +21,8 @@ pub(super) struct Known<'a> {
     pub bodies: &'a Bodies,
     pub materials: &'a [Material],
     pub contacts: &'a [Contact],
-    /// The crack tips, each with a cell that contains it.
-    pub tips: &'a [(u32, CrackTip)],
+    /// The crack tips.
+    pub tips: &'a CrackTips,
     /// The names of supports, followed by those of springs.
     pub supports: &'a [String],
     /// The initial stress in every load step.
@@ -145,12 +142,19 @@ impl Known<'_> {
 
     /// The number and the node of a crack tip.
     fn tip(&self, name: &str) -> Result<(u32, i64), String> {
-        let mut tips = (0..).zip(self.tips);
-        if let Some((number, (_, tip))) = tips.find(|(_, (_, tip))| tip.name == name) {
+        let CrackTips { tips, coarse } = self.tips;
+        let mut numbered = (0..).zip(tips);
+        if let Some((number, (_, tip))) = numbered.find(|(_, (_, tip))| tip.name == name) {
             return Ok((number, tip.tag));
         }
-        let known = self.tips.iter().map(|(_, tip)| tip.name.as_str());
-        Err(match self.tips.is_empty() {
+        if coarse.iter().any(|(of, _)| of == name) {
+            return Err(format!(
+                "the crack tip '{name}' is one without stress intensity factors: fewer than three facets of its faces lie \
+                 between it and the next kink, end, boundary or other material; expected smaller cells there"
+            ));
+        }
+        let known = tips.iter().map(|(_, tip)| tip.name.as_str());
+        Err(match tips.is_empty() {
             true => format!(
                 "there is no crack tip '{name}'; the scene has none with stress intensity factors, which are of straight \
                  cracks in the plane, three facets of whose faces or more lie between the tip and the next kink, end, boundary \
@@ -172,52 +176,6 @@ impl Known<'_> {
             ),
             false => Ok(along.value),
         }
-    }
-
-    /// The node of the mesh at a position.
-    fn node(&self, place: &Place) -> Result<u32, String> {
-        let mesh = &self.bodies.mesh;
-        let point = match place {
-            Place::Node(tag) => {
-                let place = mesh.node_tags.iter().position(|of| of == tag);
-                return (place.map(|node| node as u32))
-                    .ok_or_else(|| format!("no body has a node {tag}"));
-            }
-            Place::Point(point) => point.value,
-        };
-        let away = |x: &[f64; 3]| length(difference(*x, point));
-        let least = mesh.points.iter().map(away).fold(f64::INFINITY, f64::min);
-        let slack = SAME * BoundingBox::around(&mesh.points).extent();
-        let near = mesh.points.iter().zip(&mesh.node_tags).enumerate();
-        let near: Vec<(usize, i64)> = near
-            .filter(|(_, (x, _))| away(x) <= least + slack)
-            .map(|(node, (_, tag))| (node, *tag))
-            .collect();
-        match near[..] {
-            [(node, _)] => Ok(node as u32),
-            [(_, first), (_, second), ..] => Err(format!(
-                "the nodes {first} and {second} are both the nearest to 'at'; expected 'node', the tag of one"
-            )),
-            [] => Err("the mesh has no nodes".into()),
-        }
-    }
-
-    /// The point of a contact at a position.
-    fn point<'p>(
-        &self,
-        points: &'p [ContactPoint<u32>],
-        place: &Place,
-    ) -> Result<&'p ContactPoint<u32>, String> {
-        let found = match place {
-            Place::Node(tag) => points
-                .iter()
-                .find(|point| point.tag_a == *tag || point.tag_b == *tag),
-            Place::Point(at) => points.iter().min_by(|a, b| {
-                let away = |p: &ContactPoint<u32>| length(difference(p.position, at.value));
-                away(a).total_cmp(&away(b))
-            }),
-        };
-        found.ok_or_else(|| "the contact has no condition at that node".into())
     }
 
     /// The number and the points of a contact, or, if allowed, of a tie.

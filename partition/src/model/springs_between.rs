@@ -8,8 +8,13 @@ use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::{advance, difference};
 use crate::error::InputError;
 use crate::mesh::Mesh;
+use crate::mesh::bounding_box::BoundingBox;
 use crate::scene::Scene;
 use crate::scene::spring::SpringBetween;
+
+/// Distance of ends that coincide up to round-off, relative to the extent of the mesh: the middles of two sides are sums,
+/// and the direction between them would be that of their last digits.
+const SAME: f64 = 1e-9;
 
 /// The springs between points of a scene, numbered from `first` on.
 ///
@@ -50,7 +55,8 @@ fn points(
         let sum = |sum, &node: &u32| advance(sum, part, mesh.points[node as usize]);
         nodes.iter().fold([0.0; 3], sum)
     });
-    let along = spring.along(difference(middles[0], middles[1]));
+    let round_off = SAME * BoundingBox::around(&mesh.points).extent();
+    let along = spring.along(difference(middles[0], middles[1]), round_off);
     let along = along.map_err(InputError::about(what))?;
     let point = |(place, (axis, stiffness)): (usize, ([f64; 3], f64))| {
         let mut entries = Vec::new();

@@ -131,7 +131,8 @@ impl Constant {
         match holds(value) {
             true => Ok(value),
             false => Err(D::Error::custom(format!(
-                "{what} is {value}; expected {expected}"
+                "{what} is {}; expected {expected}",
+                magnitude::plain(value)
             ))),
         }
     }

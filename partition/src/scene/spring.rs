@@ -123,13 +123,13 @@ impl TryFrom<SpringKeys> for AnySpring {
 
 impl SpringBetween {
     /// The stiffness along unit vectors, for an axial one along the line from the second to the first of its ends,
-    /// whose difference is `apart`.
+    /// whose difference is `apart`; up to `round_off` they coincide (m).
     ///
     /// # Errors
     /// A stiffness that is negative or not a number there, zero stiffness, or coincident ends.
-    pub fn along(&self, apart: [f64; 3]) -> Result<Vec<([f64; 3], f64)>, String> {
+    pub fn along(&self, apart: [f64; 3], round_off: f64) -> Result<Vec<([f64; 3], f64)>, String> {
         let all = match &self.stiffness {
-            BetweenStiffness::Axial(_) if length(apart) == 0.0 => {
+            BetweenStiffness::Axial(_) if length(apart) <= round_off => {
                 return Err(
                     "its ends lie at one place; expected 'stiffness' along the axes".into(),
                 );

@@ -171,6 +171,16 @@ fn what_is_no_quantity_is_refused_with_what_there_is() {
             "node = 123456",
             "no body has a node 123456",
         ),
+        (
+            "at = [1.0, 2.0]",
+            "at = [100.0, 2.0]",
+            "m away from the bodies, the nearest node",
+        ),
+        (
+            "at = [0.4, 1.0]",
+            "at = [0.4, -50.0]",
+            "51 m away from the contact, the nearest point at (0.4, 1)",
+        ),
         ("component = 'yy'", "component = 'yz'", "no such shear"),
         ("direction = [1, -2]", "direction = 'down'", "a direction"),
         ("direction = 'x'", "direction = [0, 0]", "zero vector"),

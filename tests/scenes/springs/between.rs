@@ -280,3 +280,27 @@ fn a_spring_between_nothing_is_refused() {
         assert!(error.contains(expected), "{error}");
     }
 }
+
+#[test]
+fn an_axial_spring_between_ends_at_one_place_up_to_round_off_is_refused() {
+    let square = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 1.0], [1, 1]);
+    let ends: [(&str, &[[f64; 3]]); 2] = [
+        ("one diagonal", &[[0.0; 3], [1.0, 1.0, 0.0]]),
+        ("the other", &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
+    ];
+    let text = "mesh = 'm'\nplane = 'strain'\nmaterials.rock = {young = 1.0, poisson = 0.0}\n\
+        bodies.block.material = 'rock'\n[[spring]]\nbetween = ['one diagonal', 'the other']\naxial = 1.0\n";
+    let scene = Scene::parse(text).unwrap();
+    for (off, is_refused) in [(0.0, true), (1e-13, true), (1e-3, false)] {
+        let mut mesh = with_points(square.mesh.clone(), &ends);
+        let corner = mesh.points.iter().position(|x| *x == [1.0, 1.0, 0.0]);
+        mesh.points[corner.unwrap()][1] += off;
+        let made = Model::new(&scene, mesh);
+        let is_named = |error: &str| error.contains("its ends lie at one place");
+        assert_eq!(
+            made.is_err_and(|error| is_named(&error.to_string())),
+            is_refused,
+            "{off}"
+        );
+    }
+}

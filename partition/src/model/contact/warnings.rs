@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use super::super::held_nodes::ROUNDING;
 use super::super::surface::{CORNER, Surface, Turn};
-use super::Contacts;
+use super::{Contacts, Paired};
 use crate::contact_point::ContactPoint;
 use crate::element::geometry::dot;
 use crate::magnitude::short;
 
-/// Overlap, relative to the side's extent, above which a warning is given: quadratic edges that approximate an arc have
+/// Gap or overlap, relative to the side's extent, above which a warning is given: quadratic edges that approximate an arc have
 /// a smaller one.
 const SEEN: f64 = 1e-8;
 
@@ -30,7 +30,7 @@ impl Contacts<'_> {
     ) -> Option<String> {
         let unit = self.units.length();
         let deepest = points.iter().map(|p| p.gap).fold(0.0, f64::min);
-        let seen = (ROUNDING * self.size).max(SEEN * side_a.extent());
+        let seen = self.seen(side_a);
         if deepest >= -seen {
             return None;
         }
@@ -47,6 +47,37 @@ impl Contacts<'_> {
             points.len(),
             short(-deepest)
         ))
+    }
+
+    /// The warning of measured gaps that straight facets alone may make: they stand off the curve by as much, so that
+    /// sides which touch are held apart. Overlaps have a warning of their own.
+    pub(super) fn gaps_of_facets(
+        &self,
+        paired: &Paired,
+        side_a: &Surface,
+        what: &str,
+    ) -> Option<String> {
+        let unit = self.units.length();
+        let gaps = || paired.points.iter().map(|point| point.gap);
+        let (least, most) = (
+            gaps().fold(f64::INFINITY, f64::min),
+            gaps().fold(0.0, f64::max),
+        );
+        let seen = self.seen(side_a);
+        (least >= -seen && most > seen && most <= paired.sagitta).then(|| {
+            format!(
+                "{what}: its gaps of up to {} {unit} are no larger than straight facets stand off the curve, by up to {} {unit}: \
+                 where the sides touch, facets that don't match hold them apart; expected gap = 0.0 there, the same mesh on both \
+                 sides, or curved quadratic cells",
+                short(most),
+                short(paired.sagitta)
+            )
+        })
+    }
+
+    /// The gap or overlap above which a warning is given (m).
+    fn seen(&self, side_a: &Surface) -> f64 {
+        (ROUNDING * self.size).max(SEEN * side_a.extent())
     }
 
     /// The warning of a point at a corner of side a, where the averaged normal is that of neither facet.

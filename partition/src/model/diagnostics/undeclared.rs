@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, HashSet};
 
 use super::Diagnostics;
-use crate::magnitude::short;
 use crate::mesh::topology::CellFacet;
 use crate::model::groups;
 use crate::model::pretension::other_side;
@@ -29,12 +28,9 @@ impl Diagnostics<'_> {
                 true => format!("body '{}' touches itself", name(a)?),
                 false => format!("bodies '{}' and '{}' touch", name(a)?, name(b)?),
             };
-            let place = place[..self.bodies.mesh.dim].iter();
-            let place: Vec<String> = place.map(|&c| short(c)).collect();
             Some(format!(
-                "{who} without a contact, as at ({}) {}: nothing keeps them from passing through each other",
-                place.join(", "),
-                self.scene.units.length()
+                "{who} without a contact, as at {}: nothing keeps them from passing through each other",
+                self.place(place)
             ))
         });
         warnings.collect()

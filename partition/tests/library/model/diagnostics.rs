@@ -39,28 +39,92 @@ fn bodies_that_touch_without_a_contact_are_named() {
     assert_eq!(warned(&stack(1e-3), HELD), "");
 }
 
+/// The nodes at (x, y), in the order of their blocks.
+fn nodes_at(blocks: &Blocks, x: f64, y: f64) -> Vec<u32> {
+    let points = (0..).zip(&blocks.mesh.points);
+    let there = points.filter(|(_, p)| p[0] == x && p[1] == y);
+    there.map(|(node, _)| node).collect()
+}
+
+/// The blocks, with the node `kept` in place of another one.
+fn glued(mut blocks: Blocks, kept: u32, gone: u32) -> Blocks {
+    let mesh = &mut blocks.mesh;
+    for elements in [&mut mesh.cells, &mut mesh.facets] {
+        for e in 0..elements.len() {
+            let nodes = elements.nodes_of_mut(e).iter_mut();
+            nodes
+                .filter(|node| **node == gone)
+                .for_each(|node| *node = kept);
+        }
+    }
+    blocks
+}
+
+/// Two blocks that are one body with a crack, as they share their nodes at these places between them.
+fn cracked(shared: &[f64]) -> Blocks {
+    let mut blocks = stack(0.0);
+    for &x in shared {
+        let twins = nodes_at(&blocks, x, 1.0);
+        blocks = glued(blocks, twins[0], twins[1]);
+    }
+    blocks
+}
+
 #[test]
 fn a_crack_without_a_contact_is_named() {
-    // Glued at their right ends, the two blocks are one body with a crack.
-    let mut cracked = stack(0.0);
-    let below = cracked.node(2.0, 1.0);
-    let twin = (cracked.mesh.points.iter())
-        .rposition(|p| p[0] == 2.0 && p[1] == 1.0)
-        .unwrap() as u32;
-    for e in 0..cracked.mesh.cells.len() {
-        let nodes = cracked.mesh.cells.nodes_of_mut(e).iter_mut();
-        nodes
-            .filter(|node| **node == twin)
-            .for_each(|node| *node = below);
+    let said = warned(&cracked(&[2.0]), HELD);
+    assert!(said.contains("touch without a contact"), "{said}");
+    let said = warned(&cracked(&[2.0]), &format!("{HELD}{CONTACT}"));
+    assert!(!said.contains("touch without a contact"), "{said}");
+}
+
+#[test]
+fn a_crack_that_its_mouth_holds_together_is_named() {
+    let said = warned(&cracked(&[2.0]), &format!("{HELD}{CONTACT}"));
+    says(
+        &said,
+        "contact 'c': its sides share node … at (2, 1) m, although the outer boundary begins there … \
+         OpenBoundaryPhysicalGroup",
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let both = warned(&cracked(&[0.0, 2.0]), &format!("{HELD}{CONTACT}"));
+    says(&both, "at (0, 1) m, one of 2 such places");
+    // A tie holds its sides together anyway.
+    let tie = "[[tie]]\nname = 't'\nsides = ['lower top', 'upper bottom']\n";
+    let said = warned(&cracked(&[2.0]), &format!("{HELD}{tie}"));
+    assert!(!said.contains("its sides share node"), "{said}");
+}
+
+#[test]
+fn a_tip_inside_a_body_is_no_mouth() {
+    let mut blocks = cracked(&[1.5, 2.0]);
+    for (name, of_twins) in [("below", 0), ("above", 1)] {
+        let xs = [0.0, 0.5, 1.0];
+        let mut nodes = xs.map(|x| nodes_at(&blocks, x, 1.0)[of_twins]).to_vec();
+        nodes.push(nodes_at(&blocks, 1.5, 1.0)[0]);
+        blocks.facets(name, nodes.into_iter());
     }
-    for e in 0..cracked.mesh.facets.len() {
-        let nodes = cracked.mesh.facets.nodes_of_mut(e).iter_mut();
-        nodes
-            .filter(|node| **node == twin)
-            .for_each(|node| *node = below);
-    }
-    assert!(warned(&cracked, HELD).contains("touch without a contact"));
-    assert_eq!(warned(&cracked, &format!("{HELD}{CONTACT}")), "");
+    let contact = CONTACT.replace("'lower top', 'upper bottom'", "'below', 'above'");
+    assert_eq!(warned(&blocks, &format!("{HELD}{contact}")), "");
+}
+
+#[test]
+fn pieces_that_hang_together_where_cracks_meet_are_named() {
+    let blocks = Blocks::new()
+        .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+        .block("left", [0.0, 1.0], [1.0, 2.0], [2, 2])
+        .block("right", [1.0, 2.0], [1.0, 2.0], [2, 2]);
+    let contacts = "[[contact]]\nname = 'bar'\nsides = ['lower top', ['left bottom', 'right bottom']]\n\
+        [[contact]]\nname = 'stem'\nsides = ['left right', 'right left']\n";
+    let text = format!("{HELD}{contacts}");
+    assert_eq!(warned(&blocks, &text), "");
+    let at_junction = nodes_at(&blocks, 1.0, 1.0);
+    let said = warned(&glued(blocks, at_junction[1], at_junction[2]), &text);
+    says(
+        &said,
+        "contact 'stem': its sides share node … at (1, 1) m, although it meets contact 'bar' there",
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
 }
 
 #[test]

@@ -8,6 +8,7 @@ use contact_dd_partition::element::ElementKind::{self, Quad4, Quad8, Quad9, Tria
 use contact_dd_partition::element::Elements;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
+use contact_dd_partition::scene::Scene;
 
 const CONTACT: &str = "[[contact]]\nname = 'c'\nsides = ['lower top', 'upper bottom']\n";
 
@@ -270,7 +271,7 @@ fn linear_cells_that_share_an_edge_with_quadratic_ones_are_refused() {
 }
 
 #[test]
-fn linear_cells_alone_lock() {
+fn quadratic_cells_lock_far_later_than_linear_ones() {
     let text = "bodies.b.material = 'rubber'\nmaterials.rubber = {young = 1, poisson = 0.499}";
     let linear = Blocks::new().block("b", [0.0, 1.0], [0.0, 1.0], [2, 2]);
     let warnings = linear.model(text).unwrap().warnings;
@@ -278,5 +279,31 @@ fn linear_cells_alone_lock() {
         warnings[0].contains("material 'rubber': triangles of 3 nodes lock"),
         "{warnings:?}"
     );
-    assert!(linear.quadratic().model(text).unwrap().warnings.is_empty());
+    let quadratic = linear.clone().quadratic();
+    assert!(quadratic.model(text).unwrap().warnings.is_empty());
+    let softer = text.replace("0.499", "0.49999");
+    let warnings = quadratic.model(&softer).unwrap().warnings;
+    assert!(
+        warnings[0].contains(
+            "material 'rubber': triangles of 6 nodes lock, too, at a Poisson's ratio of 0.49999"
+        ),
+        "{warnings:?}"
+    );
+    let warnings = linear.model(&softer).unwrap().warnings;
+    assert!(
+        warnings[0].ends_with("quadratic ones lock less"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_sheet_locks_at_no_poissons_ratio() {
+    let text = "mesh = 'a.msh'\nplane = 'stress'\nbodies.b.material = 'rubber'\n\
+        materials.rubber = {young = 1, poisson = 0.49999}";
+    let blocks = Blocks::new().block("b", [0.0, 1.0], [0.0, 1.0], [2, 2]);
+    let scene = Scene::parse(text).unwrap();
+    for blocks in [blocks.clone(), blocks.quadratic()] {
+        let model = Model::new(&scene, blocks.mesh).unwrap();
+        assert_eq!(model.warnings, Vec::<String>::new());
+    }
 }

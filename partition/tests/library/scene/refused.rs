@@ -51,6 +51,8 @@ fn unknown_keys_are_named_with_line_and_nearest_known_key() {
 const VALUES: &str = r#"
 5.2e9 => 0.0
     line 7: materials.granite.young: Young's modulus is 0
+5.2e9 => 1e-300
+    line 7: materials.granite.young: Young's modulus is 1e-300; expected more than 0
 5.2e9 => -1
     line 7: materials.granite.young
 5.2e9 => nan
