@@ -5,7 +5,7 @@ pub mod state;
 pub mod transfer;
 pub mod working_set;
 
-use contact_dd_partition::id::{OnBlocks, OnPairs, OnTreeNodes, PairId};
+use contact_dd_partition::id::{OnBlocks, OnGroups, OnPairs, OnTreeNodes, PairId};
 
 use crate::certificate::scales::Scales;
 use crate::condense::blocks::{CondensedBlocks, ContactCluster};
@@ -37,6 +37,8 @@ pub struct StepProblem<'a> {
     pub prescribed: OnBlocks<Prescribed>,
     /// The jumps of ties.
     pub tied: TiedJumps,
+    /// The limits of this rank's contact groups.
+    pub limits: OnGroups<Limits>,
     /// The condensed load of every node of the hierarchy.
     pub condensed: OnTreeNodes<CondensedLoad>,
     /// ϑ: the clusters in contact, by their number among the pairs.
@@ -65,11 +67,16 @@ impl<'a> Loading<'a> {
     ///
     /// # Errors
     /// Prescribed displacements by which two sides of a contact penetrate.
-    pub fn problem(&self, loads: Loads, before: StepState) -> Result<StepProblem<'a>, Failure> {
+    pub fn problem(&self, mut loads: Loads, before: StepState) -> Result<StepProblem<'a>, Failure> {
         let context = &self.context;
         let prescribed = |(&b, loads)| Some((b, Prescribed::new(context.blocks.get(&b)?, loads)));
         let prescribed = loads.blocks.iter().filter_map(prescribed).collect();
         let of_groups = limits_of_groups(context, &loads)?;
+        for (g, limits) in &of_groups {
+            if let Some(of_group) = loads.groups.get_mut(g) {
+                limits.equalize(&mut of_group.gaps);
+            }
+        }
         let (limits, tied) = (
             limits_of_clusters(context, &of_groups),
             tied_jumps(&of_groups),
@@ -83,6 +90,7 @@ impl<'a> Loading<'a> {
             loads,
             prescribed,
             tied,
+            limits: of_groups,
             condensed,
             pairs,
             interface,

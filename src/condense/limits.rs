@@ -12,6 +12,10 @@ use crate::context::{Context, Loads};
 use crate::error::Failure;
 use crate::fem::contact_group::{ContactGroup, GroupLoads};
 
+/// Round-off of bounds, relative to prescribed displacements, and of measured gaps, relative to coordinates.
+const EQUAL: f64 = 1e-13;
+const OF_COORDINATES: f64 = 1e-14;
+
 /// The known jumps of the ties of every contact group of this rank, by its number, each with its constraint (m).
 pub type TiedJumps = OnGroups<Vec<(usize, f64)>>;
 
@@ -85,6 +89,7 @@ fn of_group(
         areas: &group.areas(),
         friction: &group.friction(),
         scale,
+        round_off: EQUAL * scale + OF_COORDINATES * group.largest_coordinate(),
     };
     Ok(Limits::new(jumps.pivots.len(), conditions))
 }

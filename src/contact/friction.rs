@@ -19,6 +19,7 @@ use super::laws::Iterate;
 use super::patch::LastPatch;
 use super::status::FixedStatus;
 pub use super::status::Status;
+use super::tangent::OtherTangent;
 use super::tangent::TangentialLimit;
 pub use super::tangent::{ForceBound, TangentialCondition};
 
@@ -36,8 +37,32 @@ pub struct FrictionProblem<'a> {
 impl FrictionProblem<'_> {
     /// Solves the problem from initial statuses of its limits; `status` then holds those of the solution.
     pub fn solve(&self, status: &mut [Status]) -> ContactSolution {
+        if let Some(at_rest) = self.at_rest(status) {
+            return at_rest;
+        }
         let on_patch = self.solve_on_patch(status);
         on_patch.unwrap_or_else(|| self.solve_whole(status))
+    }
+
+    /// Solution t = 0 where nothing drives any jump: what round-off leaves of it would be compared with itself alone.
+    fn at_rest(&self, status: &mut [Status]) -> Option<ContactSolution> {
+        let ContactProblem { c, bounds, .. } = self.contact;
+        let mut at_rest: Vec<Status> = bounds.iter().map(|&g| Status::new(g > 0.0)).collect();
+        let mut rests = c.iter().all(|&c| c == 0.0);
+        let mut is_tangential = vec![false; bounds.len()];
+        for tangent in self.tangents {
+            is_tangential[tangent.limit] = true;
+            let opens = tangent.bound.only_closed && tangent.normal.is_none_or(|n| bounds[n] > 0.0);
+            at_rest[tangent.limit] = Status::new(opens);
+            rests &= opens || bounds[tangent.limit] == 0.0;
+            rests &= opens || !matches!(tangent.other, OtherTangent::Prescribed(_));
+        }
+        let mut normal = bounds.iter().zip(&is_tangential);
+        rests &= normal.all(|(&g, is_tangential)| *is_tangential || g >= 0.0);
+        rests.then(|| {
+            status.copy_from_slice(&at_rest);
+            ContactSolution::bilateral(c.len(), bounds.len())
+        })
     }
 
     fn solve_whole(&self, status: &mut [Status]) -> ContactSolution {

@@ -343,13 +343,42 @@ impl Limits {
 
     /// The statuses of limits in the linear problem from those of its `conditions`.
     pub fn fixed(&self, conditions: &[FixedStatus]) -> Vec<FixedStatus> {
+        let mut jumps: Vec<f64> = conditions.iter().map(FixedStatus::lacks).collect();
+        self.share_jumps(&mut jumps);
         let of_condition = |&(condition, factor): &(usize, f64)| match conditions[condition] {
-            FixedStatus::Closed { lacks } => FixedStatus::Closed {
-                lacks: lacks / factor,
+            FixedStatus::Closed { .. } => FixedStatus::Closed {
+                lacks: jumps[condition] / factor,
             },
             other => other,
         };
         self.tightest.iter().map(of_condition).collect()
+    }
+
+    /// Makes the `gaps` of conditions that share a jump equal, which round-off keeps apart.
+    pub fn equalize(&self, gaps: &mut [f64]) {
+        for sharer in &self.sharers {
+            gaps[sharer.condition] += sharer.raise;
+        }
+    }
+
+    /// Replaces the `jumps` of conditions that share a jump's force by their mean, weighted by the parts of the force: as
+    /// force and jump are conjugate, the work of the forces stays.
+    pub fn share_jumps(&self, jumps: &mut [f64]) {
+        let mut means: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+        for sharer in &self.sharers {
+            let (rest, mean) = means.entry(sharer.jump).or_insert((1.0, 0.0));
+            *rest -= sharer.factor * sharer.part;
+            *mean += sharer.part * jumps[sharer.condition];
+        }
+        for (jump, (rest, mean)) in &mut means {
+            let (condition, factor) = self.tightest[*jump];
+            *mean += *rest / factor * jumps[condition];
+            jumps[condition] = factor * *mean;
+        }
+        for sharer in &self.sharers {
+            let (_, mean) = means[&sharer.jump];
+            jumps[sharer.condition] = sharer.factor * mean;
+        }
     }
 }
 
@@ -397,6 +426,7 @@ mod tests {
             areas,
             friction,
             scale: 0.1,
+            round_off: 1e-14,
         }
     }
 
@@ -469,5 +499,8 @@ mod tests {
             limits.closed([true, true, false]),
             [true, true, false, true, true, false]
         );
+        let mut jumps = [4.0, 0.0, 7.0, 0.0, 8.0, 9.0];
+        limits.share_jumps(&mut jumps);
+        assert_eq!(jumps, [1.0, 1.0, 7.0, 6.0, 6.0, 9.0]);
     }
 }

@@ -20,9 +20,6 @@ const SMALLEST: f64 = 1e-3;
 /// Relative reduction of the merit function that is required per fraction of a step.
 const LESSENS: f64 = 1e-4;
 
-/// Factor of the accepted merit where the residual is within the tolerance of every limit's terms.
-const OF_ROUND_OFF: f64 = 100.0;
-
 /// An operator that solves the linear problem of given statuses. Its methods are collective.
 pub trait ContactOperator {
     /// Reason for a failure: some part of the scene moves freely, or a signal has asked the run to stop.
@@ -299,12 +296,7 @@ pub fn look<O: ContactOperator>(
     };
     let residuals = laws.iter().map(of_group).collect();
     let mut total = operator.total(&residuals);
-    // The round-off of the forces' terms alone may be above the law's residual.
-    let law = match total.missed <= settings.tolerance {
-        true => OF_ROUND_OFF * settings.law,
-        false => settings.law,
-    };
-    if total.merit > law * (total.forces + operator.acting()) {
+    if total.merit > settings.law * (total.forces + operator.acting()) {
         total.missed = f64::INFINITY;
     }
     (residuals, total)

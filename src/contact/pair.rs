@@ -332,6 +332,7 @@ mod tests {
                 areas: &[1.0; GAPS.len()],
                 friction: &[],
                 scale: 0.0,
+                round_off: 0.0,
             },
         );
         ContactPair::new(Rc::new(condensed), limits, load, None)

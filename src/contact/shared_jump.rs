@@ -6,8 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::jumps::JumpOf;
 use super::tangent::TangentialCondition;
 
-/// Difference of bounds, relative to the prescribed displacements, below which they are equal.
-const EQUAL: f64 = 1e-13;
 /// Relative difference of factors and of friction laws below which they are equal.
 const SAME: f64 = 1e-9;
 
@@ -22,6 +20,8 @@ pub struct Sharer {
     pub factor: f64,
     /// Its force is this part of the jump's.
     pub part: f64,
+    /// Round-off by which its own bound is too small (m).
+    pub raise: f64,
 }
 
 /// Conditions of a group as data for shared jumps.
@@ -37,6 +37,8 @@ pub struct Conditions<'a> {
     pub friction: &'a [TangentialCondition],
     /// The largest prescribed displacement (m).
     pub scale: f64,
+    /// Difference of bounds below which they are equal (m).
+    pub round_off: f64,
 }
 
 impl Conditions<'_> {
@@ -65,6 +67,7 @@ impl Conditions<'_> {
                     condition: j,
                     factor,
                     part,
+                    raise: factor * self.gaps[first] - self.gaps[j],
                 });
                 for (own, other) in self.tangential(first).zip(self.tangential(j)) {
                     if let JumpOf::Unknown { number, factor } = self.of[own.number] {
@@ -73,6 +76,7 @@ impl Conditions<'_> {
                             condition: other.number,
                             factor,
                             part,
+                            raise: factor * self.gaps[own.number] - self.gaps[other.number],
                         });
                     }
                 }
@@ -94,7 +98,7 @@ impl Conditions<'_> {
 
     /// True if the normal condition j has the bound of the `first` one, and the same friction along the same tangents.
     fn is_alike(&self, first: usize, j: usize, factor: f64) -> bool {
-        let equal = |a: f64, b: f64| (a - b).abs() <= EQUAL * self.scale;
+        let equal = |a: f64, b: f64| (a - b).abs() <= self.round_off;
         if self.is_tangential(j) || !equal(self.gaps[j] / factor, self.gaps[first]) {
             return false;
         }

@@ -63,6 +63,7 @@ pub fn resting_limits(
         areas: &group.areas(),
         friction: &group.friction(),
         scale: 0.0,
+        round_off: 0.0,
     };
     Ok(Limits::new(jumps.pivots.len(), conditions))
 }

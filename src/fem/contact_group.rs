@@ -134,6 +134,12 @@ impl ContactGroup {
         self.points[condition.point].row_along(condition.direction)
     }
 
+    /// The largest coordinate of a contact point (m).
+    pub fn largest_coordinate(&self) -> f64 {
+        let coordinates = self.points.iter().flat_map(|point| &point.position);
+        coordinates.fold(0.0, |m, x| m.max(x.abs()))
+    }
+
     /// The area of the point of every constraint (m, in space m²).
     pub fn areas(&self) -> Vec<f64> {
         let area = |condition: Condition| self.points[condition.point].area;

@@ -6,6 +6,7 @@ use super::equations::Equation;
 use super::loads::Loads;
 use super::place::Places;
 use super::reference::NodeAxis;
+use super::springs::Springs;
 use crate::error::InputError;
 
 /// Refuses forces and supports of nodes that belong to nothing. Zero supports of a set of which other nodes are attached
@@ -15,18 +16,21 @@ use crate::error::InputError;
 /// The line of the force or support.
 pub(super) fn check(
     places: &Places,
-    equations: &[Equation],
+    (equations, springs): (&[Equation], &Springs),
     loads: &Loads,
     warnings: &mut Vec<String>,
 ) -> Result<(), InputError> {
     let has_cell = places.with_cells();
     let terms = equations.iter().flat_map(|equation| &equation.terms);
     let in_equations: BTreeSet<NodeAxis> = terms.map(|(dof, _)| *dof).collect();
+    // Springs refuse ends outside of solids themselves.
+    let of_springs: BTreeSet<u32> = springs.nodes().collect();
     let mut left_out = Vec::new();
     for line in &loads.lines {
         let is_attached = |node: u32| {
             let mut dofs = line.axes.iter().map(|&axis| (node, axis));
             has_cell[node as usize]
+                || of_springs.contains(&node)
                 || loads.references.contains_key(&node)
                 || dofs.any(|dof| in_equations.contains(&dof))
         };

@@ -222,7 +222,12 @@ impl Content {
         places: &Places,
         warnings: &mut Vec<String>,
     ) -> Result<(), InputError> {
-        attachment::check(places, &self.equations.all, &self.steps.loads, warnings)?;
+        attachment::check(
+            places,
+            (&self.equations.all, &self.springs),
+            &self.steps.loads,
+            warnings,
+        )?;
         self.conditions = conditions::all(places, &self.equations.all, &mut self.steps)?;
         Ok(())
     }

@@ -56,8 +56,10 @@ fn taken(source: &Source, block: &Block, data: &Data) -> Option<(usize, &'static
         ("DLOAD", "GRAV") => (6, "elements, GRAV, a magnitude and a direction"),
         ("DLOAD", "CENTRIF") => (9, "elements, CENTRIF, a magnitude, a point and a direction"),
         ("DSLOAD", "TRVEC") => (6, "a surface, TRVEC, a magnitude and a direction"),
-        ("DLOAD", _) => (3, "elements, the kind of a load and its magnitude"),
-        ("DSLOAD", _) => (3, "a surface, the kind of a load and its magnitude"),
+        ("DLOAD", kind) if kind.starts_with(['P', 'B']) => {
+            (3, "elements, the kind of a load and its magnitude")
+        }
+        ("DSLOAD", "P") => (3, "a surface, the kind of a load and its magnitude"),
         ("TEMPERATURE", _) => (2, "nodes and a temperature"),
         ("INITIAL CONDITIONS", _) if kind == "TEMPERATURE" => (2, "nodes and a temperature"),
         ("DENSITY", _) => (2, "a density and a temperature"),

@@ -122,7 +122,7 @@ const HARMLESS: [(&str, &[&str]); 11] = [
     ("NSET", &["UNSORTED", "FREQUENCY"]),
     ("SURFACE", &["TRIM"]),
     ("MATERIAL", &["RTOL"]),
-    ("SOLID SECTION", &["CONTROLS"]),
+    ("SOLID SECTION", &["CONTROLS", "OFFSET"]),
     ("CLOAD", &["REGION TYPE"]),
     (
         "SURFACE BEHAVIOR",

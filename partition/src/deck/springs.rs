@@ -63,6 +63,12 @@ pub(super) struct SceneSpring {
 }
 
 impl Springs {
+    /// The nodes at the ends of all springs.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = u32> {
+        let ends = self.elements.iter().flat_map(|elements| &elements.ends);
+        ends.flat_map(|(_, nodes)| nodes.iter().copied())
+    }
+
     /// Reads the nodes of a block of elements if these are springs.
     pub(super) fn elements(
         &mut self,

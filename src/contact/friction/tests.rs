@@ -316,3 +316,21 @@ fn lemke_s_path_ends_near_the_solution_the_nearer_the_finer_polygons_are() {
         }
     }
 }
+
+/// Points before a body that isn't there yet, from statuses of a bilateral problem.
+#[test]
+fn nothing_moves_without_load_and_overlap() {
+    for seed in 0..20 {
+        let mut points = Points::in_space(4, 61 * seed, [COULOMB, GIVEN][seed % 2]);
+        points.c.fill(0.0);
+        points.bounds.fill(0.0);
+        points.bounds[..3].copy_from_slice(&[0.1, 0.2, 1e-3]);
+        let mut status = vec![Status::Closed; 12];
+        let solution = points.solve(&mut status);
+        assert!(solution.converged);
+        assert_eq!(solution.jumps, [0.0; 12]);
+        assert_eq!(solution.forces, [0.0; 12]);
+        let open = status.iter().filter(|status| **status == Status::Open);
+        assert_eq!(open.count(), [9, 3][seed % 2]);
+    }
+}

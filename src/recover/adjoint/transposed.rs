@@ -91,7 +91,10 @@ impl<'a> TransposedProblem<'a> {
         }
         for (&g, group) in context.groups {
             let none = || vec![0.0; group.conditions().count()];
-            let gaps = functional.of_forces.get(&g).cloned().unwrap_or_else(none);
+            let mut gaps = functional.of_forces.get(&g).cloned().unwrap_or_else(none);
+            if let Some(limits) = solved.fixed.step.limits.get(&g) {
+                limits.share_jumps(&mut gaps);
+            }
             let held = Vec::new();
             loads.groups.insert(g, GroupLoads { gaps, held });
         }

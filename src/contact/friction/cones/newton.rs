@@ -59,14 +59,16 @@ impl FrictionCones<'_> {
             return (at_once, false, false);
         }
         let mut steps = at_once.steps;
-        if let Some(found) = self.after_interior_point(&mut steps) {
-            return (Found { steps, ..found }, true, false);
-        }
-        if let Some(found) = self.along_lemke_s_path(problem, &mut steps) {
-            return (Found { steps, ..found }, true, false);
-        }
-        if holds {
-            return (Found { steps, ..at_once }, false, false);
+        let near = self.after_interior_point(&mut steps);
+        let keeps_bounds = |found: &Found| !self.misses_a_bound(found);
+        let found = match near.as_ref().is_some_and(keeps_bounds) {
+            true => near,
+            false => self.along_lemke_s_path(problem, &mut steps).or(near),
+        };
+        match (found, holds) {
+            (Some(found), _) => return (Found { steps, ..found }, true, false),
+            (None, true) => return (Found { steps, ..at_once }, false, false),
+            (None, false) => {}
         }
         match self.regularized(&start, &state, &mut steps) {
             Rest::Found(found) => (Found { steps, ..found }, true, false),
