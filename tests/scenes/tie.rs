@@ -5,6 +5,7 @@ mod elsewhere;
 mod equation;
 mod patch;
 mod refused;
+mod seam;
 
 use contact_dd_partition::model::Model;
 
