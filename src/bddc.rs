@@ -283,7 +283,7 @@ impl Bddc {
         (std::mem::replace(&mut self.classes, classes), changed)
     }
 
-    /// Moves to the next [`PreconditionerLevel`] where the preconditioner converges too slowly or can't be factorized:
+    /// Moves to the next level of the preconditioner where it converges too slowly or can't be factorized:
     /// first coarse unknowns chosen by their energies, then rigid motions with weak springs on all unknowns. The
     /// classes are determined anew. Returns false after the last level.
     pub fn look_deeper(&mut self) -> bool {

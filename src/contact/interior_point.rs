@@ -7,7 +7,7 @@
 //! ```
 //!
 //! is solved along the path on which gap s = −v and force w of every normal limit have the product s w = μ → 0, and
-//! slip and force of every point in their cones, too ([`cone`]), in some twenty to fifty steps whatever the number of
+//! slip and force of every point in their cones, too (`cone`), in some twenty to fifty steps whatever the number of
 //! conditions and the condition of H, where Newton's method on statuses may change them one by one or cycle.
 
 mod cone;

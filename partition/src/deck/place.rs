@@ -25,6 +25,9 @@ pub(super) struct Places<'a> {
     positions: BTreeMap<String, Position>,
 }
 
+/// Nodes or elements of an instance, with its position; without one outside of parts and instances.
+type InInstance = (Option<Position>, Vec<u32>);
+
 impl<'a> Places<'a> {
     /// The whole deck, outside of parts and instances.
     ///
@@ -94,7 +97,7 @@ impl<'a> Places<'a> {
         at: LinePlace,
         of: Of,
         item: &str,
-    ) -> Result<Vec<(Option<Position>, Vec<u32>)>, InputError> {
+    ) -> Result<Vec<InInstance>, InputError> {
         let instances: Vec<Option<(String, Position)>> = match self.scope {
             Scope::Whole => vec![None],
             _ => self.instances().into_iter().map(Some).collect(),
