@@ -44,20 +44,20 @@ pub struct Conditions<'a> {
 impl Conditions<'_> {
     /// The conditions that share the jump of the one that defines it.
     pub fn sharers(&self, defining: &[usize]) -> Vec<Sharer> {
+        let mut of_jumps: Vec<Vec<(usize, f64)>> = vec![Vec::new(); defining.len()];
+        for (j, of) in self.of.iter().enumerate() {
+            if let JumpOf::Unknown { number, factor } = *of
+                && j != defining[number]
+            {
+                of_jumps[number].push((j, factor));
+            }
+        }
         let mut sharers = Vec::new();
-        for (jump, &first) in defining.iter().enumerate() {
-            if self.is_tangential(first) {
+        for (jump, (&first, mut alike)) in defining.iter().zip(of_jumps).enumerate() {
+            if alike.is_empty() || self.is_tangential(first) {
                 continue;
             }
-            let alike: Vec<(usize, f64)> = (self.of.iter().enumerate())
-                .filter_map(|(j, of)| match *of {
-                    JumpOf::Unknown { number, factor } if number == jump && j != first => {
-                        Some((j, factor))
-                    }
-                    _ => None,
-                })
-                .filter(|&(j, factor)| self.is_alike(first, j, factor))
-                .collect();
+            alike.retain(|&(j, factor)| self.is_alike(first, j, factor));
             let weight = |&(j, factor): &(usize, f64)| factor * self.areas[j];
             let total = self.areas[first] + alike.iter().map(weight).sum::<f64>();
             for (j, factor) in alike {
