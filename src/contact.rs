@@ -18,6 +18,7 @@ pub mod newton;
 pub mod open_factor;
 pub mod pair;
 pub mod patch;
+mod prescribed_slip;
 pub mod projection;
 pub mod shared_jump;
 pub mod sharing;

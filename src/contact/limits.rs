@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::dependent::DependentConstraints;
 use super::jumps::{JumpOf, defining_conditions};
-use super::law::rest_of_bound;
+use super::prescribed_slip::PrescribedSlip;
 pub use super::shared_jump::Conditions;
 use super::shared_jump::Sharer;
 use super::status::{FixedStatus, LimitState};
@@ -15,35 +15,6 @@ pub use super::tangent::{OtherTangent, TangentialLimit};
 
 /// Slip, relative to the prescribed displacements, below which it counts as zero.
 const ROUND_OFF: f64 = 1e-14;
-
-/// A tangential jump that supports prescribe on both sides, so that its force does no work.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct PrescribedSlip {
-    /// The condition, and the normal condition of its point.
-    condition: usize,
-    normal: usize,
-    /// Bound of its force.
-    bound: ForceBound,
-    /// The slip in the load step (m), and the one along the point's other tangent if that is prescribed, too.
-    slip: f64,
-    beside: f64,
-    /// The condition along the other tangent if supports leave that one free.
-    other: Option<usize>,
-}
-
-impl PrescribedSlip {
-    /// The force that opposes the slip, given the forces of other conditions.
-    fn force(&self, forces: &[f64]) -> f64 {
-        let normal = forces[self.normal];
-        let bound = self.bound.at(normal, normal > 0.0);
-        let size = match self.other {
-            Some(other) => rest_of_bound(bound, forces[other]),
-            None if self.beside == 0.0 => bound,
-            None => bound * (self.slip.abs() / self.slip.hypot(self.beside)),
-        };
-        size.copysign(self.slip)
-    }
-}
 
 /// The bounds t ≤ g and D t ≤ d, and the conditions that they come from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -407,100 +378,4 @@ fn with_other(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn unknown(number: usize, factor: f64) -> JumpOf {
-        JumpOf::Unknown { number, factor }
-    }
-
-    fn conditions<'a>(
-        of: &'a [JumpOf],
-        gaps: &'a [f64],
-        areas: &'a [f64],
-        friction: &'a [TangentialCondition],
-    ) -> Conditions<'a> {
-        Conditions {
-            of,
-            gaps,
-            areas,
-            friction,
-            scale: 0.1,
-            round_off: 1e-14,
-        }
-    }
-
-    fn limits(gap: f64) -> Limits {
-        let combination = JumpOf::Combination(vec![(0, 1.0), (1, -2.0)]);
-        let of = [
-            unknown(0, 1.0),
-            combination,
-            unknown(1, 1.0),
-            unknown(1, 2.0),
-        ];
-        Limits::new(2, conditions(&of, &[gap, 2.5, 8.0, 6.0], &[1.0; 4], &[]))
-    }
-
-    #[test]
-    fn the_tightest_condition_bounds_a_normal_jump() {
-        let limits = limits(1.0);
-        assert_eq!(limits.bounds, [1.0, 3.0, 2.5]);
-        assert_eq!(limits.forces(&[7.0, 8.0, 9.0]), [7.0, 9.0, 0.0, 4.0]);
-        assert_eq!(
-            limits.closed([true, false, true]),
-            [true, true, false, false]
-        );
-    }
-
-    #[test]
-    fn pairs_that_are_joined_keep_their_conditions() {
-        let joined = Limits::join(&[limits(1.0), limits(2.0)]);
-        assert_eq!(joined.bounds, [1.0, 3.0, 2.0, 3.0, 2.5, 2.5]);
-        assert_eq!(joined.defining, [0, 2, 4, 6]);
-        assert_eq!(joined.rows.row(1), [(2, 1.0), (3, -2.0)]);
-        let forces = joined.forces(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        assert_eq!(forces, [1.0, 5.0, 0.0, 1.0, 3.0, 6.0, 0.0, 2.0]);
-    }
-
-    /// Two points whose nodes an equation joins, and a third with another gap: the first two have one pressure, and the
-    /// friction of both.
-    #[test]
-    fn conditions_with_one_bound_share_the_force_by_their_areas() {
-        let of = [
-            unknown(0, 1.0),
-            unknown(0, 1.0),
-            unknown(0, 1.0),
-            unknown(1, 1.0),
-            unknown(1, 1.0),
-            unknown(1, 1.0),
-        ];
-        let friction: Vec<TangentialCondition> = (0..3)
-            .map(|normal| TangentialCondition {
-                number: 3 + normal,
-                normal,
-                bound: ForceBound {
-                    coefficient: 0.3,
-                    cohesion: [1.0, 3.0, 1.0][normal],
-                    only_closed: true,
-                },
-            })
-            .collect();
-        let gaps = [0.5, 0.5, 0.6, 0.0, 0.0, 0.0];
-        let areas = [1.0, 3.0, 1.0, 1.0, 3.0, 1.0];
-        let limits = Limits::new(2, conditions(&of, &gaps, &areas, &friction));
-        assert_eq!(limits.bounds, [0.5, 0.0, 0.0]);
-        let [first, third] = [0, 1].map(|k| limits.tangents[k].bound);
-        assert_eq!((first.coefficient, first.cohesion), (0.3, 4.0));
-        assert_eq!(third.cohesion, 1.0);
-        let forces = limits.forces(&[8.0, -4.0, 0.5]);
-        assert_eq!(forces, [2.0, 6.0, 0.0, -1.0, -3.0, 0.5]);
-        assert_eq!(limits.of_limits(&forces), [8.0, -4.0, 0.5]);
-        assert_eq!(
-            limits.closed([true, true, false]),
-            [true, true, false, true, true, false]
-        );
-        let mut jumps = [4.0, 0.0, 7.0, 0.0, 8.0, 9.0];
-        limits.share_jumps(&mut jumps);
-        assert_eq!(jumps, [1.0, 1.0, 7.0, 6.0, 6.0, 9.0]);
-    }
-}
+mod tests;
