@@ -20,6 +20,7 @@ mod local;
 mod motions;
 mod placement;
 mod preconditioner_level;
+pub mod slipping;
 pub mod solution;
 mod transform;
 

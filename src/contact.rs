@@ -22,5 +22,6 @@ mod prescribed_slip;
 pub mod projection;
 pub mod shared_jump;
 pub mod sharing;
+pub mod slip_law;
 pub mod status;
 pub mod tangent;

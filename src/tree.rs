@@ -10,7 +10,6 @@ mod front_jumps;
 pub mod fronts;
 mod operator;
 mod problem;
-pub mod slip_law;
 pub mod slip_problem;
 pub mod solution;
 mod update;

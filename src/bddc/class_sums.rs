@@ -3,6 +3,7 @@
 //! They run in the order of clusters, so that the result doesn't depend on the ranks.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use contact_dd_partition::id::{MergeRootId, OnMergeRoots};
 use contact_dd_partition::numbered::Numbered;
@@ -11,7 +12,7 @@ use crate::bddc::classes::Classes;
 use crate::bddc::local::{Local, Vectors};
 use crate::comm::collectives::Routes;
 use crate::comm::{Comm, ROOT};
-use crate::vector::dot;
+use crate::vector::{axpy, dot};
 
 /// The messages of sums over clusters, as far as this rank takes part: the values of each class go to the rank of its
 /// first cluster, and their sum back.
@@ -81,23 +82,31 @@ impl ClassSums {
         }
     }
 
-    /// x·y, with each unknown counted once, on all ranks. Collective.
-    pub fn dot(
+    /// x·y for several y, with each unknown counted once, on all ranks. Collective.
+    pub fn products(
         &self,
         comm: &Comm,
         classes: &Classes,
         locals: &OnMergeRoots<Local>,
-        (x, y): (&Vectors, &Vectors),
-    ) -> f64 {
+        (x, all): (&Vectors, &[&Vectors]),
+    ) -> Vec<f64> {
         let parts = comm.route_lists(&self.to_root, |i| {
             let c = MergeRootId::new(i);
             let of_cluster = classes.of_clusters[c].iter().zip(locals[&c].ranges());
             let own = of_cluster.filter(|(k, _)| classes.list[**k].clusters[0] == c);
-            let of = own.map(|(_, range)| dot(&x[&c][range.clone()], &y[&c][range.clone()]));
-            vec![of.sum::<f64>()]
+            let own: Vec<_> = own.map(|(_, range)| range.clone()).collect();
+            let product = |y: &&Vectors| {
+                let of_class =
+                    |range: &Range<usize>| dot(&x[&c][range.clone()], &y[&c][range.clone()]);
+                own.iter().map(of_class).sum::<f64>()
+            };
+            all.iter().map(product).collect()
         });
-        let mut sum: f64 = parts.into_values().flatten().sum();
-        comm.broadcast(&mut sum);
-        sum
+        let mut sums = vec![0.0; all.len()];
+        for of_cluster in parts.into_values() {
+            axpy(1.0, &of_cluster, &mut sums);
+        }
+        comm.broadcast(&mut sums);
+        sums
     }
 }

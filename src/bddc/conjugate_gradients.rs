@@ -122,7 +122,7 @@ impl ConjugateGradients<'_> {
     }
 
     /// M r. Collective.
-    fn precondition(&self, r: &Vectors) -> Vectors {
+    pub fn precondition(&self, r: &Vectors) -> Vectors {
         let (mut others, mut coarse) = (BTreeMap::new(), Vectors::new());
         for (&c, local) in self.locals {
             let (of_others, of_coarse) = local.share(&r[&c]);
@@ -140,13 +140,18 @@ impl ConjugateGradients<'_> {
     }
 
     /// Replaces each cluster's values by the sum over all that share an unknown. Collective.
-    fn add_up(&self, v: &mut Vectors) {
+    pub fn add_up(&self, v: &mut Vectors) {
         (self.sums).add_up(self.context.comm, self.classes, self.locals, v);
     }
 
     /// x·y, with each unknown counted once, on all ranks. Collective.
     fn dot(&self, x: &Vectors, y: &Vectors) -> f64 {
-        (self.sums).dot(self.context.comm, self.classes, self.locals, (x, y))
+        self.products(x, &[y])[0]
+    }
+
+    /// x·y for several y, with each unknown counted once, on all ranks. Collective.
+    pub fn products(&self, x: &Vectors, all: &[&Vectors]) -> Vec<f64> {
+        (self.sums).products(self.context.comm, self.classes, self.locals, (x, all))
     }
 }
 

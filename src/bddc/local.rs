@@ -287,8 +287,17 @@ impl Local {
     /// S x on shared unknowns, with the `s` of all unknowns of the cluster.
     pub fn multiply(&self, s: &PackedSymmetric, x: &[f64]) -> Vec<f64> {
         let x = self.recover(&vec![0.0; self.own()], x);
-        let mut y = self.gather(&self.forces(s, &x));
-        y.split_off(self.own())
+        self.on_shared(&self.forces(s, &x))
+    }
+
+    /// The part on shared unknowns of forces on all unknowns of the cluster.
+    pub fn on_shared(&self, forces: &[f64]) -> Vec<f64> {
+        self.gather(forces).split_off(self.own())
+    }
+
+    /// Number of shared unknowns.
+    pub fn shared(&self) -> usize {
+        self.shared.own.size() - self.own()
     }
 
     /// The forces (S + springs) x of the cluster, whose S is `s`.

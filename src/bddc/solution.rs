@@ -8,12 +8,14 @@ use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
 use crate::bddc::local::Vectors;
+use crate::bddc::slipping::{SlipLaws, Slipping, SlippingSolution};
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
 use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
+use crate::vector::axpy;
 
 /// The loads on this rank under a fixed active set.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +26,8 @@ pub struct ClusterLoads<'a> {
     pub prescribed: &'a OnGroups<Vec<f64>>,
     /// The forces on the open jumps of every group with friction (N/m); other groups have none.
     pub forces: &'a OnGroups<Vec<f64>>,
+    /// The laws that the forces of slipping points follow if an iterative solver is to find them, starting from `forces`.
+    pub laws: Option<&'a SlipLaws>,
 }
 
 /// Accuracy to which a solution is iterated.
@@ -52,14 +56,31 @@ pub struct BddcSolution {
     pub groups: OnGroups<Iterate>,
     /// The forces at the jumps of their ties.
     pub tied: OnGroups<Vec<f64>>,
+    /// The forces on open jumps: those of the load, or of slipping points.
+    pub forces: OnGroups<Vec<f64>>,
     /// Number of iterations.
     pub iterations: usize,
     /// True if the iteration converged.
     pub is_solved: bool,
 }
 
+/// The unknowns of this rank's clusters, and the jumps and forces of its contact groups.
+#[derive(Debug, Default)]
+pub(super) struct ClusterAnswer {
+    /// The unknowns, by cluster.
+    pub clusters: Vectors,
+    /// The jumps and forces of every contact group between clusters; 0 force where open.
+    pub groups: OnGroups<Iterate>,
+    /// The forces at the jumps of their ties.
+    pub tied: OnGroups<Vec<f64>>,
+}
+
+/// The constants of tied displacements (m).
+pub(super) type Constants = BTreeMap<InterfaceDof, f64>;
+
 impl Bddc {
-    /// Solves for `loads` on the unknowns of the clusters of this rank. Collective.
+    /// Solves for `loads` on the unknowns of the clusters of this rank, and for the forces of slipping points if they
+    /// have laws. Collective.
     pub fn solve(
         &self,
         context: &Context<'_>,
@@ -69,89 +90,6 @@ impl Bddc {
     ) -> BddcSolution {
         let Context { comm, plan, .. } = *context;
         let constants = self.constants(comm, loads.prescribed);
-        let forces = match context.catalog.has_friction() {
-            true => self.loads_of(comm, loads.forces),
-            false => Vec::new(),
-        };
-        let load_of = |c: MergeRootId| {
-            let mut load = loads.clusters[&plan.merge_roots[c]].clone();
-            let own = forces.iter().filter(|(cluster, ..)| *cluster == c);
-            own.for_each(|&(_, place, force)| load[place] += force);
-            load
-        };
-        let (mut own, mut b) = (Vectors::new(), Vectors::new());
-        for (&c, local) in &self.locals {
-            let mut load = load_of(c);
-            let held = local.forces(
-                &clusters[&plan.merge_roots[c]].s,
-                &self.constants_of(c, &constants),
-            );
-            load.iter_mut()
-                .zip(held)
-                .for_each(|(load, held)| *load -= held);
-            let (of_own, of_shared) = local.condense(&load);
-            own.insert(c, of_own);
-            b.insert(c, of_shared);
-        }
-        let (x, iterations, is_solved) = self.iterate(context, clusters, b, accuracy);
-        let solved = self.recovered(&own, &x, &constants);
-        let unbalanced = solved.iter().map(|(&c, x)| {
-            let mut r = load_of(c);
-            let s_x = self.locals[&c].forces(&clusters[&plan.merge_roots[c]].s, x);
-            r.iter_mut().zip(s_x).for_each(|(r, s_x)| *r -= s_x);
-            (c, r)
-        });
-        let answers = self.answers(comm, &solved, &unbalanced.collect());
-        let (mut groups, mut tied) = (OnGroups::new(), OnGroups::new());
-        for (g, (at, forces)) in answers {
-            groups.insert(g, at);
-            tied.insert(g, forces);
-        }
-        let by_node = solved.into_iter().map(|(c, x)| (plan.merge_roots[c], x));
-        BddcSolution {
-            clusters: by_node.collect(),
-            groups,
-            tied,
-            iterations,
-            is_solved,
-        }
-    }
-
-    /// The `constants` on the unknowns of a cluster.
-    fn constants_of(&self, c: MergeRootId, constants: &BTreeMap<InterfaceDof, f64>) -> Vec<f64> {
-        let dofs = self.unknowns.dofs[c].iter();
-        dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
-            .collect()
-    }
-
-    /// All unknowns of the clusters of this rank, from condensed loads, shared unknowns and the `constants`.
-    fn recovered(
-        &self,
-        own: &Vectors,
-        x: &Vectors,
-        constants: &BTreeMap<InterfaceDof, f64>,
-    ) -> Vectors {
-        let mut solved = Vectors::new();
-        for (&c, local) in &self.locals {
-            let mut all = local.recover(&own[&c], &x[&c]);
-            all.iter_mut()
-                .zip(self.constants_of(c, constants))
-                .for_each(|(x, constant)| *x += constant);
-            solved.insert(c, all);
-        }
-        solved
-    }
-
-    /// The shared unknowns for the clusters' parts of a load, the number of iterations and whether they converged.
-    /// Collective.
-    fn iterate(
-        &self,
-        context: &Context<'_>,
-        clusters: &OnTreeNodes<ClusterSchur>,
-        b: Vectors,
-        accuracy: Accuracy,
-    ) -> (Vectors, usize, bool) {
-        let Context { comm, plan, .. } = *context;
         let matrices = plan
             .merge_roots
             .iter()
@@ -167,7 +105,148 @@ impl Bddc {
             is_judged: self.is_judged(),
         };
         let start = accuracy.start.map(|known| self.start(comm, known, plan));
-        gradients.solve(b, start, accuracy.tolerance)
+        let solution = match loads.laws {
+            Some(laws) => {
+                let slipping = Slipping {
+                    bddc: self,
+                    context,
+                    clusters,
+                    gradients,
+                    loads,
+                    constants: &constants,
+                    laws,
+                };
+                slipping.solve(start, accuracy.tolerance)
+            }
+            None => {
+                let acting = self.acting(context, Some(loads.clusters), loads.forces);
+                let (own, b) = self.condense(context, clusters, &acting, &constants);
+                let (x, iterations, is_solved) = gradients.solve(b, start, accuracy.tolerance);
+                let solved = self.recovered(&own, &x, &constants);
+                let unbalanced = self.unbalanced(context, clusters, acting, &solved);
+                SlippingSolution {
+                    answer: self.answer(comm, solved, &unbalanced),
+                    forces: loads.forces.clone(),
+                    iterations,
+                    is_solved,
+                }
+            }
+        };
+        let ClusterAnswer {
+            clusters,
+            groups,
+            tied,
+        } = solution.answer;
+        let by_node = clusters.into_iter().map(|(c, x)| (plan.merge_roots[c], x));
+        BddcSolution {
+            clusters: by_node.collect(),
+            groups,
+            tied,
+            forces: solution.forces,
+            iterations: solution.iterations,
+            is_solved: solution.is_solved,
+        }
+    }
+
+    /// The loads on the unknowns of this rank's clusters, with `forces` on the jumps of its contact groups. Collective.
+    pub(super) fn acting(
+        &self,
+        context: &Context<'_>,
+        loads: Option<&OnTreeNodes<Vec<f64>>>,
+        forces: &OnGroups<Vec<f64>>,
+    ) -> Vectors {
+        let plan = context.plan;
+        let mut acting = Vectors::new();
+        for &c in self.locals.keys() {
+            let none = || vec![0.0; self.unknowns.dofs[c].len()];
+            let of_cluster = loads.map(|loads| loads[&plan.merge_roots[c]].clone());
+            acting.insert(c, of_cluster.unwrap_or_else(none));
+        }
+        if context.catalog.has_friction() {
+            for (c, place, force) in self.loads_of(context.comm, forces) {
+                if let Some(load) = acting.get_mut(&c) {
+                    load[place] += force;
+                }
+            }
+        }
+        acting
+    }
+
+    /// The parts of clusters that reduce these loads and `constants`: on own unknowns, and on shared ones.
+    pub(super) fn condense(
+        &self,
+        context: &Context<'_>,
+        clusters: &OnTreeNodes<ClusterSchur>,
+        acting: &Vectors,
+        constants: &Constants,
+    ) -> (Vectors, Vectors) {
+        let (mut own, mut b) = (Vectors::new(), Vectors::new());
+        for (&c, local) in &self.locals {
+            let mut load = acting[&c].clone();
+            let known = self.constants_of(c, constants);
+            if known.iter().any(|x| *x != 0.0) {
+                let s = &clusters[&context.plan.merge_roots[c]].s;
+                axpy(-1.0, &local.forces(s, &known), &mut load);
+            }
+            let (of_own, of_shared) = local.condense(&load);
+            own.insert(c, of_own);
+            b.insert(c, of_shared);
+        }
+        (own, b)
+    }
+
+    /// The part of the loads that the unknowns of clusters leave unbalanced: the forces of closed conditions.
+    pub(super) fn unbalanced(
+        &self,
+        context: &Context<'_>,
+        clusters: &OnTreeNodes<ClusterSchur>,
+        mut acting: Vectors,
+        solved: &Vectors,
+    ) -> Vectors {
+        for (c, load) in &mut acting {
+            let s = &clusters[&context.plan.merge_roots[*c]].s;
+            axpy(-1.0, &self.locals[c].forces(s, &solved[c]), load);
+        }
+        acting
+    }
+
+    /// The answer of contact groups to the unknowns of clusters and these unbalanced forces. Collective.
+    pub(super) fn answer(
+        &self,
+        comm: &Comm,
+        clusters: Vectors,
+        unbalanced: &Vectors,
+    ) -> ClusterAnswer {
+        let (mut groups, mut tied) = (OnGroups::new(), OnGroups::new());
+        for (g, (at, forces)) in self.answers(comm, &clusters, unbalanced) {
+            groups.insert(g, at);
+            tied.insert(g, forces);
+        }
+        ClusterAnswer {
+            clusters,
+            groups,
+            tied,
+        }
+    }
+
+    /// The `constants` on the unknowns of a cluster.
+    fn constants_of(&self, c: MergeRootId, constants: &Constants) -> Vec<f64> {
+        let dofs = self.unknowns.dofs[c].iter();
+        dofs.map(|dof| constants.get(dof).copied().unwrap_or(0.0))
+            .collect()
+    }
+
+    /// All unknowns of the clusters of this rank, from condensed loads, shared unknowns and the `constants`.
+    pub(super) fn recovered(&self, own: &Vectors, x: &Vectors, constants: &Constants) -> Vectors {
+        let mut solved = Vectors::new();
+        for (&c, local) in &self.locals {
+            let mut all = local.recover(&own[&c], &x[&c]);
+            all.iter_mut()
+                .zip(self.constants_of(c, constants))
+                .for_each(|(x, constant)| *x += constant);
+            solved.insert(c, all);
+        }
+        solved
     }
 
     /// The shared unknowns of clusters from `known` unknowns by node. Collective.
@@ -237,7 +316,7 @@ impl Bddc {
     }
 
     /// The constants of tied displacements, added to the terms of others, on all ranks. Collective.
-    fn constants(&self, comm: &Comm, values: &OnGroups<Vec<f64>>) -> BTreeMap<InterfaceDof, f64> {
+    fn constants(&self, comm: &Comm, values: &OnGroups<Vec<f64>>) -> Constants {
         let of_group = |i: usize| {
             let number = self.between[i].number;
             self.groups[&number].constants(&values[&number])

@@ -11,6 +11,7 @@ use crate::condense::blocks::CondensedBlocks;
 use crate::condense::limits::TiedJumps;
 use crate::condense::substitute::Factors;
 use crate::contact::limits::Limits;
+use crate::contact::slip_law::SlipLaw;
 use crate::contact::status::FixedStatus;
 use crate::context::Context;
 use crate::error::Failure;
@@ -25,7 +26,6 @@ use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
 use crate::tree::fronts::ActiveSetFronts;
-use crate::tree::slip_law::SlipLaw;
 use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
 
@@ -210,7 +210,9 @@ impl<'a> FixedActiveSet<'a> {
             let fixed = limits[&g].fixed(&of_group);
             if let Some(forces) = forces.get(&g) {
                 let group = &self.context.groups[&g];
-                let of_slipping = SlipLaw::of_slipping(group, &limits[&g], &fixed, forces);
+                let points: Vec<usize> = group.conditions().map(|one| one.point).collect();
+                let stiffness = |condition: usize| group.stiffness_at(points[condition]);
+                let of_slipping = SlipLaw::of_slipping(&limits[&g], stiffness, &fixed, forces);
                 laws.insert(g, of_slipping);
             }
             let lacks = fixed.iter().map(FixedStatus::lacks);
@@ -279,7 +281,8 @@ fn follow(
 ) -> Result<ActiveSetSolution, Failure> {
     let at_rest = |(&g, prescribed): (&GroupId, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
     let forces: OnJumps = problem.prescribed.iter().map(at_rest).collect();
-    let tolerance = match problem.context.catalog.has_friction() {
+    let has_to_nest = problem.has_laws() && !problem.is_coupled(fronts);
+    let tolerance = match has_to_nest {
         true => Accuracy::FULL.tolerance,
         false => tolerance,
     };

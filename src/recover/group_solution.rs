@@ -1,9 +1,9 @@
 //! The solution at the conditions of a contact group, and its corrections by the laws of contact.
 
 use crate::contact::law::{PointLaw, PointState};
+use crate::contact::slip_law::AT_BOUND;
 use crate::contact::status::{LimitState, Status};
 use crate::fem::contact_group::ContactGroup;
-use crate::tree::slip_law::AT_BOUND;
 
 /// The solution at the conditions of a contact group.
 #[derive(Clone, Debug, PartialEq)]

@@ -175,6 +175,7 @@ impl Search<'_> {
             clusters: self.problem.loads,
             prescribed: &self.problem.bounds,
             forces: &BTreeMap::new(),
+            laws: None,
         };
         let accuracy = Accuracy {
             tolerance,

@@ -4,6 +4,9 @@
 //! active set under forces at the slipping points alone. Where only friction keeps bodies from moving on, these forces
 //! would move them without limit: there slips are prescribed, as sticking is, and are the unknowns, which takes more
 //! products. Slips determined by closed limits aren't prescribed; their forces are the unknowns.
+//!
+//! Where slips aren't prescribed, an iterative solver between clusters finds these forces with its own unknowns
+//! ([`slipping`](crate::bddc::slipping)).
 
 use std::collections::BTreeMap;
 
@@ -13,10 +16,10 @@ use faer::{Col, Mat};
 
 use crate::bddc::solution::{Accuracy, ClusterLoads};
 use crate::contact::laws::{ContactLaws, Iterate};
+use crate::contact::slip_law::SlipLaw;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
-use crate::tree::slip_law::SlipLaw;
 use crate::tree::solution::ActiveSetSolution;
 use crate::vector::{axpy, dot};
 
@@ -32,6 +35,8 @@ const PRODUCTS: usize = 40;
 /// Tolerance of the first product relative to the goal of GMRES. The nearer that goal, the less a product matters:
 /// later ones may be less exact in proportion (Bouras and Frayssé, SIAM J. Matrix Anal. Appl. 26, 2005).
 const PRODUCT: f64 = 0.3;
+/// Tolerance of an iterative solver that finds slip forces together with its own unknowns, relative to that without.
+const COUPLED: f64 = 0.01;
 /// Largest tolerance of a product.
 const LEAST_EXACT: f64 = 1e-2;
 
@@ -100,22 +105,24 @@ impl SlipProblem<'_> {
         &self,
         fronts: &mut ActiveSetFronts,
         (clusters, prescribed): (&OnTreeNodes<Vec<f64>>, &OnJumps),
-        forces: &OnJumps,
+        (forces, laws): (&OnJumps, Option<&Laws>),
         accuracy: Accuracy<'_>,
     ) -> Result<ActiveSetSolution, Failure> {
         let mut loads = ClusterLoads {
             clusters,
             prescribed,
             forces,
+            laws,
         };
         let (mut held, of_open) = (prescribed.clone(), self.on_open(forces));
+        loads.forces = &of_open;
         if self.is_held {
             add(&mut held, &self.slips(forces));
-            (loads.prescribed, loads.forces) = (&held, &of_open);
+            loads.prescribed = &held;
         }
         let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
         for (g, at) in &mut solution.at {
-            if let Some(forces) = of_open.get(g) {
+            if let Some(forces) = solution.open_forces.get(g) {
                 axpy(1.0, forces, &mut at.forces);
             }
         }
@@ -149,6 +156,17 @@ impl SlipProblem<'_> {
         from.iter().map(of_group).collect()
     }
 
+    /// True if any point slips by a law. Collective.
+    pub fn has_laws(&self) -> bool {
+        let any = self.laws.values().any(|laws| !laws.is_empty());
+        self.context.comm.is_any(any)
+    }
+
+    /// True if an iterative solver finds the forces of slipping points together with its own unknowns. Collective.
+    pub fn is_coupled(&self, fronts: &ActiveSetFronts) -> bool {
+        self.has_laws() && !self.is_held && fronts.coarse_dofs().is_some()
+    }
+
     /// The solution that follows the laws to an `accuracy` relative to the largest force, as far as rounds of GMRES
     /// reduce the residual; from `forces` and an earlier solution, if all ranks have one. Collective.
     ///
@@ -161,21 +179,30 @@ impl SlipProblem<'_> {
         (tolerance, start): (f64, Option<&ActiveSetSolution>),
         accuracy: f64,
     ) -> Result<ActiveSetSolution, Failure> {
-        let respond =
-            |fronts: &mut ActiveSetFronts, forces: &OnJumps, start: Option<&ActiveSetSolution>| {
-                let known = start.map(|start| &start.merge_roots);
-                let accuracy = Accuracy {
-                    tolerance,
-                    start: known,
-                };
-                let load = (self.clusters, self.prescribed);
-                let mut solution = self.respond(fronts, load, forces, accuracy)?;
-                solution.iterations += start.map_or(0, |start| start.iterations);
-                Ok::<_, Failure>(solution)
+        let respond = |fronts: &mut ActiveSetFronts,
+                       of: (&OnJumps, Option<&Laws>),
+                       tolerance: f64,
+                       start: Option<&ActiveSetSolution>| {
+            let known = start.map(|start| &start.merge_roots);
+            let accuracy = Accuracy {
+                tolerance,
+                start: known,
             };
-        let mut solution = respond(fronts, &forces, start)?;
+            let load = (self.clusters, self.prescribed);
+            let mut solution = self.respond(fronts, load, of, accuracy)?;
+            solution.iterations += start.map_or(0, |start| start.iterations);
+            Ok::<_, Failure>(solution)
+        };
+        // The solver between clusters follows the laws itself, as far as it can.
+        let is_coupled = self.is_coupled(fronts);
+        let laws = Some(self.laws).filter(|_| is_coupled);
+        let first = match is_coupled {
+            true => (COUPLED * tolerance).max(f64::EPSILON),
+            false => tolerance,
+        };
+        let mut solution = respond(fronts, (&forces, laws), first, start)?;
         let mut last = f64::INFINITY;
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS + usize::from(is_coupled) {
             let slip = |g: GroupId, i: usize| solution.at[&g].jumps[i] - self.prescribed[&g][i];
             let missed = self.missed(&solution, slip, false);
             let size = self.context.comm.largest(missed.values().flatten());
@@ -184,12 +211,20 @@ impl SlipProblem<'_> {
             if size <= enough || size.is_nan() || size > STALLS * last {
                 break;
             }
-            last = size;
             let reduction = (MARGIN * enough / size).clamp(REDUCTION[1], REDUCTION[0]);
+            if is_coupled {
+                forces.clone_from(&solution.open_forces);
+            }
+            if is_coupled && round == 0 {
+                let finer = (reduction * first).max(f64::EPSILON);
+                solution = respond(fronts, (&forces, laws), finer, Some(&solution))?;
+                continue;
+            }
+            last = size;
             let (change, iterations) = self.gmres(fronts, &missed, reduction)?;
             add(&mut forces, &change);
             solution.iterations += iterations;
-            solution = respond(fronts, &forces, Some(&solution))?;
+            solution = respond(fronts, (&forces, None), tolerance, Some(&solution))?;
         }
         Ok(solution)
     }
@@ -292,7 +327,7 @@ impl SlipProblem<'_> {
         let response = self.respond(
             fronts,
             (&zeros(self.clusters), &zeros(self.prescribed)),
-            forces,
+            (forces, None),
             accuracy,
         )?;
         let product = self.missed(&response, |g, i| response.at[&g].jumps[i], true);

@@ -24,6 +24,8 @@ pub struct ActiveSetSolution {
     pub at: OnGroups<Iterate>,
     /// The forces at the jumps of the ties of every contact group above clusters.
     pub tied: OnGroups<Vec<f64>>,
+    /// The forces on open jumps: those of the load, or of slipping points that follow their laws.
+    pub open_forces: OnGroups<Vec<f64>>,
     /// The unknowns on the boundary of every cluster.
     pub boundaries: OnTreeNodes<Vec<f64>>,
     /// The unknowns of the roots between which an iterative solver works.
@@ -79,6 +81,10 @@ impl ActiveSetFronts {
                 start: Some(&solution.merge_roots),
                 ..accuracy
             };
+            let loads = ClusterLoads {
+                forces: &solution.open_forces,
+                ..loads
+            };
             let mut nearer = self.solve_as_it_is(context, loads, from_there);
             nearer.iterations += solution.iterations;
             solution = nearer;
@@ -100,6 +106,7 @@ impl ActiveSetFronts {
         let below = match &self.bddc {
             // Roots keep nothing.
             None => {
+                solution.open_forces = loads.forces.clone();
                 let roots = context.plan.merge_roots.iter();
                 roots.map(|&v| (v, Vec::new())).collect()
             }
@@ -115,6 +122,7 @@ impl ActiveSetFronts {
                 solution.iterations = between.iterations;
                 solution.at.extend(between.groups);
                 solution.tied = between.tied;
+                solution.open_forces = between.forces;
                 between.clusters
             }
         };

@@ -19,6 +19,9 @@ const AT_ONCE: f64 = 3.0;
 /// method eliminates them again, and solves for slip forces by up to 40 products. Fitted roughly to one pin in a plate
 /// (1878 constraints, 20 thousand dofs), which took 6.8 s of CPU in the tree and 1.2 s with the dense matrix.
 const WITH_FRICTION: f64 = 4.0;
+/// Ratio of the time of iterations with friction to that without. Fitted to two boxes of 212 thousand dofs with 5043
+/// constraints: 43 s of CPU a rank, and 32 s with the dense matrix, whose time grows faster.
+const ITERATIONS_WITH_FRICTION: f64 = 6.0;
 /// Number of contact constraints up to which the dense matrix is used whatever its cost: it is more robust where bodies
 /// are hardly held.
 const FEW_CONDITIONS: usize = 600;
@@ -84,13 +87,12 @@ pub struct OperatorTimes {
 }
 
 impl OperatorTimes {
-    /// The times of a problem. The dense matrix is for few constraints; iterations are for scenes in space without
-    /// friction, with node-to-node contact and known clusters.
+    /// The times of a problem. The dense matrix is for few constraints; iterations are for scenes in space with
+    /// node-to-node contact and known clusters, with friction if the constraints are many.
     ///
-    /// Iterations are excluded with friction and with mortar, because there constraints tie many unknowns of several
-    /// clusters to each other: on 2 ranks iterations took 5 to 7 times as long as the dense matrix on two boxes of 28
-    /// thousand dofs, and didn't converge in 209 s on a pin in a plate of 20 thousand dofs, which the dense matrix
-    /// solved in 9 s.
+    /// Iterations are excluded with mortar, because there constraints tie many unknowns of several clusters to each
+    /// other: they didn't converge in 209 s on a pin in a plate of 20 thousand dofs, which the dense matrix solved in
+    /// 9 s.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let has_friction = catalog.has_friction();
@@ -135,7 +137,7 @@ impl OperatorTimes {
         let why_not = match catalog.hierarchy.clusters.len() {
             _ if dim == 2 => Some("iterations pay in space alone"),
             0 | 1 => Some("there are no clusters to iterate between"),
-            _ if has_friction => Some("iterations take longer with friction or don't converge"),
+            _ if has_friction && conditions <= few => Some("iterations take longer with friction"),
             _ if !is_node_by_node => Some("iterations take longer with mortar"),
             _ => None,
         };
@@ -145,13 +147,18 @@ impl OperatorTimes {
                 times.last_resort = can_be.then_some(Operator::Clusters);
                 times.left_out.push(why.to_owned());
             }
-            None => times.add_iterations(&tree, dim),
+            None => times.add_iterations(&tree, dim, has_friction),
         }
         times.all.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         times
     }
 
-    fn add_iterations(&mut self, tree: &Tree, dim: usize) {
+    fn add_iterations(&mut self, tree: &Tree, dim: usize, has_friction: bool) {
+        let again = if has_friction {
+            ITERATIONS_WITH_FRICTION
+        } else {
+            1.0
+        };
         let of_cluster = |&c: &TreeNodeId| {
             let below = tree.subtree(c).into_iter();
             let below: f64 = below.map(|v| tree.time(v, dim, true)).sum();
@@ -159,7 +166,8 @@ impl OperatorTimes {
         };
         let clusters: f64 = tree.clusters.iter().map(of_cluster).sum();
         self.coarse = ACTIVE_SETS * PER_COARSE_PAIR * (coarse_dofs(tree, dim) as f64).powi(2);
-        self.all.push((Operator::Clusters, clusters + self.coarse));
+        let time = again * (clusters + self.coarse);
+        self.all.push((Operator::Clusters, time));
     }
 
     /// The fastest operator.

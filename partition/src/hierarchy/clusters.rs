@@ -11,7 +11,8 @@ const DOFS_IN_SPACE: usize = 5_000;
 
 impl Catalog {
     /// Chooses the clusters: starting with the roots, splits the largest one until there are `count`, or, without
-    /// `count`, until none that can be split exceeds the bound.
+    /// `count`, until none that can be split exceeds the bound. None has friction inside, as slip forces between clusters
+    /// are found together with what these share.
     pub fn choose_clusters(&mut self, count: Option<usize>) {
         let parents = &self.hierarchy.parent;
         let mut dofs = vec![0; parents.len()];
@@ -25,13 +26,16 @@ impl Catalog {
                 children[parent].push(v);
             }
         }
+        let has_friction = self.subtrees_with_friction();
         let most = if self.dim == 3 { DOFS_IN_SPACE } else { DOFS };
         let roots = (0..parents.len()).filter(|&v| parents[v].is_none());
         let mut clusters: Vec<usize> = roots.collect();
         loop {
             let can_be_split = (0..clusters.len()).filter(|&c| !children[clusters[c]].is_empty());
-            let largest = can_be_split.max_by_key(|&c| dofs[clusters[c]]);
+            let size = |&c: &usize| (has_friction[clusters[c]], dofs[clusters[c]]);
+            let largest = can_be_split.max_by_key(size);
             let wanted = |&c: &usize| match count {
+                _ if has_friction[clusters[c]] => true,
                 Some(count) => clusters.len() < count,
                 None => dofs[clusters[c]] > most,
             };
@@ -43,5 +47,29 @@ impl Catalog {
         }
         clusters.sort_unstable();
         self.hierarchy.clusters = clusters.into_iter().map(|v| v as u32).collect();
+    }
+
+    /// Flags of the nodes of the hierarchy whose subtrees have all sides of a contact point with friction.
+    fn subtrees_with_friction(&self) -> Vec<bool> {
+        let parents = &self.hierarchy.parent;
+        let above = |v: usize| parents[v].map(|parent| parent as usize);
+        let path = |v: usize| std::iter::successors(Some(v), |&v| above(v));
+        let mut flags = vec![false; parents.len()];
+        let mut sides = vec![0; parents.len()];
+        for point in self.points.iter().filter(|point| point.law.has_friction()) {
+            let entries = point.entries.iter();
+            let mut subdomains: Vec<usize> =
+                entries.map(|(node, _)| node.subdomain as usize).collect();
+            subdomains.sort_unstable();
+            subdomains.dedup();
+            let all = subdomains.iter().flat_map(|&s| path(s));
+            all.clone().for_each(|v| sides[v] += 1);
+            for v in all {
+                flags[v] |= sides[v] == subdomains.len();
+            }
+            let all = subdomains.iter().flat_map(|&s| path(s));
+            all.for_each(|v| sides[v] = 0);
+        }
+        flags
     }
 }

@@ -3,7 +3,6 @@
 use crate::contact::law::{LinearLaw, PointLaw, PointState, PointStatus};
 use crate::contact::limits::{Limits, TangentialLimit};
 use crate::contact::status::FixedStatus;
-use crate::fem::contact_group::ContactGroup;
 
 /// Part of its bound below which a slipping force is off it: the contact is about to open.
 pub const AT_BOUND: f64 = 1.0 - 1e-9;
@@ -41,22 +40,20 @@ impl SlipLaw {
         })
     }
 
-    /// The laws of the points of a `group` within `limits` that slip by these statuses of limits, under these `forces`
-    /// of their conditions; the constant part of the bound is the distance of forces to it, and where that is more than
-    /// round-off the contact is about to open.
+    /// The laws of the points within `limits` that slip by these statuses of limits, under these `forces` of their
+    /// conditions, each of which has a `stiffness` r (N/m); the constant part of the bound is the distance of forces to
+    /// it, and where that is more than round-off the contact is about to open.
     pub fn of_slipping(
-        group: &ContactGroup,
         limits: &Limits,
+        stiffness: impl Fn(usize) -> f64,
         fixed: &[FixedStatus],
         forces: &[f64],
     ) -> Vec<Self> {
         let of_limits = limits.conditions_of_limits();
         let forces = limits.of_limits(forces);
         let closed: Vec<bool> = fixed.iter().map(FixedStatus::is_closed).collect();
-        let points: Vec<usize> = group.conditions().map(|one| one.point).collect();
         let law = |tangent: &TangentialLimit| {
-            let stiffness = group.stiffness_at(points[of_limits[tangent.limit]]);
-            let mut point = PointLaw::new(tangent, stiffness)?;
+            let mut point = PointLaw::new(tangent, stiffness(of_limits[tangent.limit]))?;
             let PointState { force, bound, .. } = point.at(|_| 0.0, &forces, &closed);
             let size = match point.prescribed == 0.0 {
                 true => force[0].hypot(force[1]),
@@ -125,6 +122,34 @@ impl SlipLaw {
         for t in self.limits() {
             slips[t] += forces[t] / self.point.stiffness;
         }
+    }
+
+    /// Forces that nearly cancel a `residual` of the law: what they change by the point's own compliance 1/r, (1 + κ P/r)
+    /// λ_t, is taken into account.
+    pub fn set_correction(&self, residual: &[f64], forces: &mut [f64]) {
+        let turning = self.turning / self.point.stiffness;
+        let e = self.direction;
+        match self.point.tangents {
+            [Some(first), Some(second)] => {
+                let along = e[0] * residual[first] + e[1] * residual[second];
+                for (t, e) in [first, second].into_iter().zip(e) {
+                    forces[t] = along * e + (residual[t] - along * e) / (1.0 + turning);
+                }
+            }
+            tangents => {
+                for (t, e) in tangents.into_iter().zip(e) {
+                    if let Some(t) = t {
+                        forces[t] = residual[t] / (1.0 + turning * (1.0 - e * e));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Its part of a product of two vectors of forces, a·b / r (J).
+    pub fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let sum: f64 = self.limits().map(|t| a[t] * b[t]).sum();
+        sum / self.point.stiffness
     }
 
     /// The limits of its tangential jumps.

@@ -1,0 +1,296 @@
+//! Shared unknowns together with the forces of slipping points, which follow their laws.
+//!
+//! GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) solves for both at once, with x on the unknowns that
+//! clusters share and φ at the slipping points:
+//!
+//! ```text
+//! A x − L φ = b          balance of the clusters under the loads L φ
+//! φ − C(x, φ) = c        the laws, linear in pressures and slips
+//! ```
+//!
+//! The preconditioner cancels the residual of the laws by each point's own compliance, and the balance of what remains
+//! by BDDC. Residuals have its energy as their size.
+
+use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes};
+use faer::linalg::solvers::SolveLstsq;
+use faer::{Col, Mat};
+
+use crate::bddc::Bddc;
+use crate::bddc::cluster_schur::ClusterSchur;
+use crate::bddc::conjugate_gradients::ConjugateGradients;
+use crate::bddc::local::{Local, Vectors};
+use crate::bddc::solution::{ClusterAnswer, ClusterLoads, Constants};
+use crate::contact::slip_law::SlipLaw;
+use crate::context::Context;
+use crate::vector::axpy;
+
+/// Most iterations.
+const CYCLE: usize = 150;
+/// Least reduction of the residual by a cycle, and by as many iterations as are a trial.
+const STALLS: f64 = 0.5;
+/// Most iterations with a preconditioner of earlier matrices.
+const MAX_WITH_STALE: usize = 40;
+/// Iterations after which a preconditioner that can be improved is judged, and the reduction to be reached by then.
+const TRIAL: usize = 15;
+const GOOD: f64 = 0.02;
+
+/// The laws of slipping points between clusters, by contact group.
+pub type SlipLaws = OnGroups<Vec<SlipLaw>>;
+
+/// Values on the shared unknowns of this rank's clusters and on the jumps of its contact groups.
+#[derive(Clone, Debug, Default)]
+struct Pair {
+    x: Vectors,
+    forces: OnGroups<Vec<f64>>,
+}
+
+impl Pair {
+    /// Adds `factor` times another.
+    fn add(&mut self, factor: f64, other: &Self) {
+        for (c, x) in &mut self.x {
+            axpy(factor, &other.x[c], x);
+        }
+        for (g, forces) in &mut self.forces {
+            axpy(factor, &other.forces[g], forces);
+        }
+    }
+
+    fn scaled(mut self, factor: f64) -> Self {
+        let all = (self.x.values_mut()).chain(self.forces.values_mut());
+        all.flatten().for_each(|value| *value *= factor);
+        self
+    }
+}
+
+/// A solution on this rank, with the forces of slipping points.
+#[derive(Debug)]
+pub(super) struct SlippingSolution {
+    /// The unknowns of clusters, and the answer of contact groups without forces of slipping points.
+    pub answer: ClusterAnswer,
+    /// The forces of slipping points, on all jumps.
+    pub forces: OnGroups<Vec<f64>>,
+    /// Number of iterations.
+    pub iterations: usize,
+    /// True if the iteration converged.
+    pub is_solved: bool,
+}
+
+/// A cycle of GMRES.
+struct Cycle {
+    change: Pair,
+    iterations: usize,
+    /// True if its residual is small enough.
+    reached: bool,
+}
+
+/// The problem of slipping points between clusters.
+pub(super) struct Slipping<'a> {
+    pub bddc: &'a Bddc,
+    pub context: &'a Context<'a>,
+    pub clusters: &'a OnTreeNodes<ClusterSchur>,
+    pub gradients: ConjugateGradients<'a>,
+    pub loads: ClusterLoads<'a>,
+    pub constants: &'a Constants,
+    pub laws: &'a SlipLaws,
+}
+
+impl Slipping<'_> {
+    /// Solves from the forces of the loads and from a `start` of shared unknowns, until the residual is less than
+    /// `tolerance` times that without displacements. Collective.
+    pub fn solve(&self, start: Option<Vectors>, tolerance: f64) -> SlippingSolution {
+        let bddc = self.bddc;
+        let shared = |(&c, local): (&_, &Local)| (c, vec![0.0; local.shared()]);
+        let zero = Pair {
+            x: bddc.locals.iter().map(shared).collect(),
+            forces: self.loads.forces.clone(),
+        };
+        let of_zero = self.size(&self.residual(&zero, true).1);
+        let enough = tolerance * of_zero;
+        let mut at = zero;
+        if let Some(x) = start {
+            let from = Pair {
+                x,
+                forces: at.forces.clone(),
+            };
+            if self.size(&self.residual(&from, true).1) < of_zero {
+                at = from;
+            }
+        }
+        let (mut iterations, mut last) = (0, f64::INFINITY);
+        let mut reached = true;
+        let (answer, is_solved) = loop {
+            let (answer, residual) = self.residual(&at, true);
+            let size = self.size(&residual);
+            // Where cycles reach the goal, and the residual doesn't, the rest is round-off.
+            let ends = !reached || size.is_nan() || size > STALLS * last;
+            if size <= enough || ends {
+                break (answer, reached);
+            }
+            last = size;
+            let cycle = self.cycle(residual, size, enough, iterations);
+            at.add(1.0, &cycle.change);
+            iterations += cycle.iterations;
+            reached = cycle.reached;
+        };
+        SlippingSolution {
+            answer,
+            forces: at.forces,
+            iterations,
+            is_solved,
+        }
+    }
+
+    /// A cycle of GMRES from a residual of this size to one of `enough`, after `before` iterations. Collective.
+    fn cycle(&self, residual: [Pair; 2], size: f64, enough: f64, before: usize) -> Cycle {
+        let most = match self.gradients.is_stale {
+            true => MAX_WITH_STALE.saturating_sub(before).clamp(1, CYCLE),
+            false => CYCLE,
+        };
+        let is_judged = !self.gradients.is_stale && self.gradients.is_judged;
+        let mut basis = vec![residual.map(|part| part.scaled(1.0 / size))];
+        let mut h = Mat::<f64>::zeros(most + 1, most);
+        let (mut weights, mut sizes) = (Vec::new(), vec![size]);
+        for k in 0..most {
+            let (_, mut next) = self.residual(&basis[k][1], false);
+            // Orthogonalized twice, which is as good as one by one.
+            for _ in 0..2 {
+                let shares = self.products(&basis, &next);
+                for (i, share) in shares.iter().enumerate() {
+                    h[(i, k)] += share;
+                    for (next, known) in next.iter_mut().zip(&basis[i]) {
+                        next.add(-share, known);
+                    }
+                }
+            }
+            let rest = self.size(&next);
+            h[(k + 1, k)] = rest;
+            let small = h.submatrix(0, 0, k + 2, k + 1);
+            let right = Col::from_fn(k + 2, |i| if i == 0 { size } else { 0.0 });
+            let y = small.qr().solve_lstsq(&right);
+            let left = (small * &y - &right).norm_l2();
+            weights = y.subrows(0, k + 1).iter().copied().collect();
+            let done = (size / left).ln() / (size / enough).ln();
+            self.context
+                .listener
+                .done(done.clamp(f64::MIN_POSITIVE, 1.0));
+            sizes.push(left);
+            let ends = left <= enough || rest <= f64::EPSILON * size || left.is_nan();
+            let is_slow = is_judged && before + k + 1 == TRIAL && left > GOOD * size;
+            let stalls = k >= TRIAL && left > STALLS * sizes[k + 1 - TRIAL];
+            if ends || is_slow || stalls {
+                break;
+            }
+            basis.push(next.map(|part| part.scaled(1.0 / rest)));
+        }
+        let iterations = weights.len();
+        let none = basis[0][1].clone().scaled(0.0);
+        let change = basis.iter().zip(weights).fold(none, |mut sum, (known, w)| {
+            sum.add(w, &known[1]);
+            sum
+        });
+        Cycle {
+            change,
+            iterations,
+            reached: sizes[iterations] <= enough,
+        }
+    }
+
+    /// The residual at a pair, of the loads and laws or, without their constants, its negative, with what the
+    /// preconditioner makes of it: [r, M r] with the balance after the correction of slip forces. Collective.
+    fn residual(&self, at: &Pair, has_loads: bool) -> (ClusterAnswer, [Pair; 2]) {
+        let (bddc, comm) = (self.bddc, self.context.comm);
+        let none = Constants::new();
+        let (loads, constants) = match has_loads {
+            true => (Some(self.loads.clusters), self.constants),
+            false => (None, &none),
+        };
+        let acting = bddc.acting(self.context, loads, &at.forces);
+        let (own, _) = bddc.condense(self.context, self.clusters, &acting, constants);
+        let solved = bddc.recovered(&own, &at.x, constants);
+        let unbalanced = bddc.unbalanced(self.context, self.clusters, acting, &solved);
+        let shared = |(&c, r): (&_, &Vec<f64>)| (c, bddc.locals[&c].on_shared(r));
+        let mut balance: Vectors = unbalanced.iter().map(shared).collect();
+        let answer = bddc.answer(comm, solved, &unbalanced);
+        let (mut of_laws, mut correction) = (OnGroups::new(), OnGroups::new());
+        for (&g, forces) in &at.forces {
+            let (missed, corrected) = self.of_laws(g, &answer, forces, has_loads);
+            of_laws.insert(g, missed);
+            correction.insert(g, corrected);
+        }
+        // The balance under the corrected forces.
+        let acting = bddc.acting(self.context, None, &correction);
+        let (_, of_correction) = bddc.condense(self.context, self.clusters, &acting, &none);
+        for (c, r) in &mut balance {
+            axpy(1.0, &of_correction[c], r);
+        }
+        self.gradients.add_up(&mut balance);
+        let sign = if has_loads { 1.0 } else { -1.0 };
+        let z = self.gradients.precondition(&balance);
+        let r = Pair {
+            x: balance,
+            forces: of_laws,
+        };
+        let z = Pair {
+            x: z,
+            forces: correction,
+        };
+        (answer, [r.scaled(sign), z.scaled(sign)])
+    }
+
+    /// The negative residual of the laws of group g under these forces of its slipping points, and the change of forces
+    /// that nearly cancels it.
+    fn of_laws(
+        &self,
+        g: GroupId,
+        answer: &ClusterAnswer,
+        forces: &[f64],
+        has_loads: bool,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let (mut missed, mut correction) = (vec![0.0; forces.len()], vec![0.0; forces.len()]);
+        // Groups below clusters keep their forces.
+        let (Some(at), Some(laws)) = (answer.groups.get(&g), self.laws.get(&g)) else {
+            return (missed, correction);
+        };
+        let both = at.forces.iter().zip(forces);
+        let all: Vec<f64> = both.map(|(closed, slipping)| closed + slipping).collect();
+        let prescribed = &self.loads.prescribed[&g];
+        let start = |i: usize| if has_loads { prescribed[i] } else { 0.0 };
+        for law in laws {
+            law.add_missed(&all, |i| at.jumps[i] - start(i), !has_loads, &mut missed);
+        }
+        missed.iter_mut().for_each(|missed| *missed = -*missed);
+        for law in laws {
+            law.set_correction(&missed, &mut correction);
+        }
+        (missed, correction)
+    }
+
+    /// √(r·M r). Collective.
+    fn size(&self, both: &[Pair; 2]) -> f64 {
+        let product = self.products(std::slice::from_ref(both), both)[0];
+        product.max(0.0).sqrt()
+    }
+
+    /// r·M v for every v of a basis; of forces, the product of both corrections, as a point that hardly slips yet has a
+    /// residual of any size. Collective.
+    fn products(&self, basis: &[[Pair; 2]], [r, of_r]: &[Pair; 2]) -> Vec<f64> {
+        let Context { comm, plan, .. } = *self.context;
+        let corrections: Vec<&Vectors> = basis.iter().map(|[_, z]| &z.x).collect();
+        let mut sums = self.gradients.products(&r.x, &corrections);
+        let of_group = |g: GroupId| -> Vec<f64> {
+            let (Some(own), Some(of_r)) = (self.laws.get(&g), of_r.forces.get(&g)) else {
+                return Vec::new();
+            };
+            let product = |[_, z]: &[Pair; 2]| {
+                let of_law = |law: &SlipLaw| law.product(of_r, &z.forces[&g]);
+                own.iter().map(of_law).sum()
+            };
+            basis.iter().map(product).collect()
+        };
+        comm.gather(&plan.group_owners(), of_group, |_, of_group: Vec<f64>| {
+            axpy(1.0, &of_group, &mut sums);
+        });
+        comm.broadcast(&mut sums);
+        sums
+    }
+}
