@@ -13,6 +13,7 @@ mod stage;
 mod stage_steps;
 mod step_totals;
 mod study;
+mod swept;
 
 use std::cell::Cell;
 use std::ops::Range;
