@@ -118,12 +118,12 @@ impl Increments<'_> {
         let mut work = BTreeMap::new();
         let mut energy = EnergyBalance::default();
         loop {
-            let moment = LoadPoint {
+            let load_point = LoadPoint {
                 step: k,
                 part: halving.next(),
             };
-            let analysis = analyse(&self.context, moment, earlier)?;
-            let mut solved = self.solve(moment, &analysis, state.clone(), seconds)?;
+            let analysis = analyse(&self.context, load_point, earlier)?;
+            let mut solved = self.solve(load_point, &analysis, state.clone(), seconds)?;
             if !self.is_converged(&solved) {
                 match halving.halve() {
                     true => continue,
@@ -173,26 +173,28 @@ impl Increments<'_> {
     /// stopped the run.
     fn solve(
         &self,
-        moment: LoadPoint,
+        load_point: LoadPoint,
         analysis: &RigidBodyAnalysis,
         before: StepState,
         seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
         let closing = analysis.longest_closing_motion();
         if closing == 0.0 {
-            return self.solve_after(moment, analysis, before, seconds);
+            return self.solve_after(load_point, analysis, before, seconds);
         }
-        let found = self.solve_after(moment, analysis, before.clone(), seconds)?;
+        let found = self.solve_after(load_point, analysis, before.clone(), seconds)?;
         let moved = found.solution.displacement.values().flatten();
         if closing <= FAR * self.context.comm.largest(moved) {
             return Ok(found);
         }
         let stays = analysis.without_closing_motions();
         // Without them the contacts that hold the bodies may not be found at all.
-        Ok(match self.solve_after(moment, &stays, before, seconds) {
-            Ok(again) if self.is_converged(&again) => again,
-            _ => found,
-        })
+        Ok(
+            match self.solve_after(load_point, &stays, before, seconds) {
+                Ok(again) if self.is_converged(&again) => again,
+                _ => found,
+            },
+        )
     }
 
     /// Solves for these loads after the closing motions of an `analysis`. Collective.
@@ -201,7 +203,7 @@ impl Increments<'_> {
     /// As [`solve`](Self::solve).
     fn solve_after(
         &self,
-        moment: LoadPoint,
+        load_point: LoadPoint,
         analysis: &RigidBodyAnalysis,
         mut before: StepState,
         seconds: &mut RankSeconds,
@@ -214,7 +216,7 @@ impl Increments<'_> {
         let (start, held_at) = (before.start(), before.slips.clone());
         let energies_before = std::mem::take(&mut before.energies);
         let statuses = std::mem::take(&mut before.statuses);
-        let loads = before.loads(&context, moment, analysis);
+        let loads = before.loads(&context, load_point, analysis);
         let mut problem = self
             .operators
             .loading(context, analysis)
@@ -250,10 +252,10 @@ impl Increments<'_> {
         let lap = comm.times();
         let fixed = self.fixed(&problem, analysis, &limits, swept.outcome.as_ref());
         let discrete = swept.substituted_back(&fixed, &problem, self.operators);
-        let stress_of = (!self.settings.no_stress).then_some(moment.step);
+        let stress_of = (!self.settings.no_stress).then_some(load_point.step);
         let mut solution = Solution::new(&fixed, analysis, discrete, stress_of);
         let slips_before = self.has_derivatives.then_some(&held_at);
-        solution.quantities = quantities_at(moment, &fixed, &solution, slips_before);
+        solution.quantities = quantities_at(load_point, &fixed, &solution, slips_before);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
         let scales = self.accept(&mut swept.outcome, &solution, &energy, problem.earlier);
         seconds.add(|s| &mut s.recover, comm.times() - lap);

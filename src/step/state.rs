@@ -69,10 +69,10 @@ impl StepState {
     pub fn loads(
         &self,
         context: &Context<'_>,
-        moment: LoadPoint,
+        load_point: LoadPoint,
         analysis: &RigidBodyAnalysis,
     ) -> Loads {
-        let mut loads = context.loads(moment);
+        let mut loads = context.loads(load_point);
         for (g, loads) in &mut loads.groups {
             let slips = self.slips.get(g).map_or(&[][..], Vec::as_slice);
             let first = loads.gaps.len() - slips.len();
@@ -149,10 +149,10 @@ pub fn analyse_steps(
 /// Prescribed displacements that contradict obstacles at a node, or a load that drives a free rigid-body motion.
 pub fn analyse(
     context: &Context<'_>,
-    moment: LoadPoint,
+    load_point: LoadPoint,
     before: &[Vec<f64>],
 ) -> Result<RigidBodyAnalysis, Failure> {
-    let loads = context.loads(moment);
+    let loads = context.loads(load_point);
     let mut groups = context.groups.values().zip(loads.groups.values());
     let checked = groups
         .try_for_each(|(group, loads)| infeasible_nodes::check(group, loads, context.catalog));
