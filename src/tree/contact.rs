@@ -106,7 +106,7 @@ fn without_friction(
     let found = Found {
         at: settled.solution.at.clone(),
         statuses: begin(&problem.laws, &settled.open).1,
-        missed: if settled.is_right { 0.0 } else { f64::INFINITY },
+        residual: if settled.is_right { 0.0 } else { f64::INFINITY },
         steps: steps.count(),
     };
     Ok((found, settled.solution))
@@ -147,7 +147,7 @@ fn with_friction(
         let found = newton(&mut operator, laws, &start, &statuses, settings)?;
         let solution = operator.solution.unwrap_or_default();
         settings.most = settings.most.saturating_sub(steps.count() - 1);
-        if found.missed.is_finite() || is_anew || settings.most == 0 {
+        if found.residual.is_finite() || is_anew || settings.most == 0 {
             return Ok((found, solution));
         }
         is_anew = true;
@@ -166,7 +166,7 @@ fn conclude(
 ) -> Result<TreeContact, Failure> {
     let sweep = outcome.records.len() - 1;
     let is_finite = solution.is_finite(problem.context.comm);
-    outcome.status = match found.missed.is_finite() {
+    outcome.status = match found.residual.is_finite() {
         _ if !is_finite => not_finite(sweep),
         true => SweepStatus::Converged,
         false => SweepStatus::NotConverged(format!(

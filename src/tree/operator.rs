@@ -96,8 +96,8 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             None => 0.0,
         };
         let tolerance = match accuracy {
-            StepAccuracy::Rough(missed) => {
-                self.accuracy = (LOOSE * missed.min(1.0)).max(ROUND_OFF);
+            StepAccuracy::Rough(residual) => {
+                self.accuracy = (LOOSE * residual.min(1.0)).max(ROUND_OFF);
                 self.accuracy.max(finest)
             }
             StepAccuracy::Full => {
@@ -195,20 +195,22 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
     }
 
     fn accuracy(&self, total: &TotalResidual) -> StepAccuracy {
-        let missed = total.missed;
+        let residual = total.largest;
         match total.wrong {
-            0 if self.turns && missed > NEARLY => {
-                StepAccuracy::Rough(missed.min(missed * missed / LOOSE))
+            0 if self.turns && residual > NEARLY => {
+                StepAccuracy::Rough(residual.min(residual * residual / LOOSE))
             }
             0 => StepAccuracy::Full,
-            _ => StepAccuracy::Rough(missed),
+            _ => StepAccuracy::Rough(residual),
         }
     }
 
     fn record(&mut self, step: NewtonStep) -> Result<(), Failure> {
-        let TotalResidual { missed, active, .. } = step.total;
+        let TotalResidual {
+            largest, active, ..
+        } = step.total;
         let iterations = self.solution.as_ref().map_or(0, |last| last.iterations);
-        (self.steps).record((missed, active, step.changed), self.fronts, iterations);
+        (self.steps).record((largest, active, step.changed), self.fronts, iterations);
         Ok(())
     }
 }

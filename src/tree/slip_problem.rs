@@ -139,7 +139,7 @@ impl SlipProblem<'_> {
             let mut holding = forces.clone();
             for law in &self.laws[&g] {
                 law.set_force(&from.forces, &mut forces);
-                law.set_holding(|t| laws[&g].beyond(t, from), &mut holding);
+                law.set_holding(|t| laws[&g].violation(t, from), &mut holding);
             }
             for ((force, holding), open) in forces.iter_mut().zip(holding).zip(&self.open[&g]) {
                 *force = if *open { *force } else { holding };
@@ -177,8 +177,8 @@ impl SlipProblem<'_> {
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
             let slip = |g: GroupId, i: usize| solution.at[&g].jumps[i] - self.prescribed[&g][i];
-            let missed = self.missed(&solution, slip, false);
-            let size = self.context.comm.largest(missed.values().flatten());
+            let residual = self.residual(&solution, slip, false);
+            let size = self.context.comm.largest(residual.values().flatten());
             let all = solution.at.values().flat_map(|at| &at.forces);
             let enough = accuracy * self.context.comm.largest(all);
             if size <= enough || size.is_nan() || size > STALLS * last {
@@ -186,7 +186,7 @@ impl SlipProblem<'_> {
             }
             last = size;
             let reduction = (MARGIN * enough / size).clamp(REDUCTION[1], REDUCTION[0]);
-            let (change, iterations) = self.gmres(fronts, &missed, reduction)?;
+            let (change, iterations) = self.gmres(fronts, &residual, reduction)?;
             add(&mut forces, &change);
             solution.iterations += iterations;
             solution = respond(fronts, &forces, Some(&solution))?;
@@ -195,23 +195,23 @@ impl SlipProblem<'_> {
     }
 
     /// The residual of the laws at the forces of a solution with the slips `slip` of each group's jumps.
-    fn missed(
+    fn residual(
         &self,
         solution: &ActiveSetSolution,
         slip: impl Fn(GroupId, usize) -> f64,
         is_change: bool,
     ) -> OnJumps {
         let of_group = |(&g, at): (&GroupId, &Iterate)| {
-            let mut missed = vec![0.0; at.forces.len()];
+            let mut residual = vec![0.0; at.forces.len()];
             for law in self.laws.get(&g).into_iter().flatten() {
-                law.add_missed(&at.forces, |i| slip(g, i), is_change, &mut missed);
+                law.add_residual(&at.forces, |i| slip(g, i), is_change, &mut residual);
             }
-            (g, missed)
+            (g, residual)
         };
         solution.at.iter().map(of_group).collect()
     }
 
-    /// The change of forces that cancels the residual `missed` of the laws to a relative accuracy `reduction`, and the
+    /// The change of forces that cancels the `residual` of the laws to a relative accuracy `reduction`, and the
     /// number of iterations. Collective.
     ///
     /// # Errors
@@ -219,19 +219,19 @@ impl SlipProblem<'_> {
     fn gmres(
         &self,
         fronts: &mut ActiveSetFronts,
-        missed: &OnJumps,
+        residual: &OnJumps,
         reduction: f64,
     ) -> Result<(OnJumps, usize), Failure> {
-        let mut sum: OnJumps = missed
+        let mut sum: OnJumps = residual
             .iter()
             .map(|(&g, m)| (g, vec![0.0; m.len()]))
             .collect();
-        let size = self.dot(missed, missed).sqrt();
+        let size = self.dot(residual, residual).sqrt();
         let mut iterations = 0;
         if size == 0.0 {
             return Ok((sum, iterations));
         }
-        let mut basis = vec![scaled(missed, -1.0 / size)];
+        let mut basis = vec![scaled(residual, -1.0 / size)];
         let mut h = Mat::<f64>::zeros(PRODUCTS + 1, PRODUCTS);
         let mut weights = Vec::new();
         let mut tolerance = PRODUCT * reduction;
@@ -295,7 +295,7 @@ impl SlipProblem<'_> {
             forces,
             accuracy,
         )?;
-        let product = self.missed(&response, |g, i| response.at[&g].jumps[i], true);
+        let product = self.residual(&response, |g, i| response.at[&g].jumps[i], true);
         Ok((product, response.iterations))
     }
 

@@ -36,7 +36,7 @@ struct FrictionCones<'a> {
 struct Found {
     place: Iterate,
     state: Statuses,
-    missed: f64,
+    residual: f64,
     steps: usize,
 }
 
@@ -49,7 +49,7 @@ enum Rest {
 
 impl Found {
     fn converged(&self) -> bool {
-        self.missed <= ACCEPTABLE
+        self.residual <= ACCEPTABLE
     }
 }
 
@@ -121,10 +121,10 @@ impl FrictionProblem<'_> {
         let start = cones.start();
         let place = cones.step(&start, &cones.laws.begin(status, &start));
         let right = cones.laws.residual(&place, None, 0.0).statuses;
-        let missed = cones.laws.missed(&place, &right);
+        let residuals = cones.laws.residuals(&place, &right);
         let is_wrong =
-            |&i: &usize| missed[i].abs() > FORCE_TOLERANCE * cones.force_scale(i, &place);
-        (0..missed.len()).filter(is_wrong).collect()
+            |&i: &usize| residuals[i].abs() > FORCE_TOLERANCE * cones.force_scale(i, &place);
+        (0..residuals.len()).filter(is_wrong).collect()
     }
 }
 

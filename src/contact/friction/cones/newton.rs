@@ -81,11 +81,14 @@ impl FrictionCones<'_> {
     /// and so are the terms to which the law's residual is relative.
     fn misses_a_bound(&self, found: &Found) -> bool {
         let Found { place, state, .. } = found;
-        let missed = self.laws.missed(place, state);
+        let residuals = self.laws.residuals(place, state);
         let mut points = self.laws.points.iter().zip(&state.points);
         points.any(|(point, status)| {
             let bound = self.laws.point(point, place, &state.closed).bound;
-            let miss = point.limits().map(|i| missed[i].abs()).fold(0.0, f64::max);
+            let miss = point
+                .limits()
+                .map(|i| residuals[i].abs())
+                .fold(0.0, f64::max);
             matches!(status, PointStatus::Slips { .. })
                 && miss > MISSED_OF_BOUND * bound
                 && miss > MISSED_OF_TERMS * self.force_scale(point.first, place)
@@ -293,7 +296,7 @@ impl FrictionCones<'_> {
         Found {
             place,
             state,
-            missed: found.missed,
+            residual: found.residual,
             steps: found.steps,
         }
     }
