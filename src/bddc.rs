@@ -205,8 +205,8 @@ impl Bddc {
                     Ok(placement(c).sides(&cluster(c).diagonal, is_made))
                 }
                 level => shared(c).and_then(|(shared, s)| {
-                    let is_looked_into = level == PreconditionerLevel::Energies;
-                    shared.sides(&s, is_made, is_looked_into, par)
+                    let uses_energies = level == PreconditionerLevel::Energies;
+                    shared.sides(&s, is_made, uses_energies, par)
                 }),
             };
             Ok((c, sides.map_err(moves)?))
@@ -286,7 +286,7 @@ impl Bddc {
     /// Moves to the next level of the preconditioner where it converges too slowly or can't be factorized:
     /// first coarse unknowns chosen by their energies, then rigid motions with weak springs on all unknowns. The
     /// classes are determined anew. Returns false after the last level.
-    pub fn look_deeper(&mut self) -> bool {
+    pub fn raise_level(&mut self) -> bool {
         let Some(deeper) = self.level.next() else {
             return false;
         };
@@ -304,14 +304,14 @@ impl Bddc {
     }
 
     /// The smallest pivot of the coarse problem on this rank, relative to its diagonal entry.
-    pub fn coarse_pivot(&self) -> f64 {
+    pub fn smallest_coarse_pivot(&self) -> f64 {
         self.coarse.smallest_pivot()
     }
 
     /// The smallest pivot on this rank, relative to its diagonal entry, including the coarse problem.
     pub fn smallest_pivot(&self) -> f64 {
         let pivots = (self.locals.values()).map(|local| local.shared.smallest_pivot);
-        pivots.fold(self.coarse_pivot(), f64::min)
+        pivots.fold(self.smallest_coarse_pivot(), f64::min)
     }
 
     /// True if S of any cluster has changed since the preconditioner was computed; the same on all ranks.

@@ -80,12 +80,12 @@ impl Shared {
     }
 
     /// The Schur complement of each class that `is_chosen`, by its index, with all other shared unknowns held and, if
-    /// it `is_looked_into`, with them free.
+    /// it `uses_energies`, with them free.
     pub fn sides(
         &self,
         s: &Mat<f64>,
         is_chosen: impl Fn(usize) -> bool,
-        is_looked_into: bool,
+        uses_energies: bool,
         par: Par,
     ) -> Result<Vec<Option<Side>>, Mechanism> {
         let n = s.nrows();
@@ -98,7 +98,7 @@ impl Shared {
             held.llt(Lower).ok()
         };
         let mut inverse = Mat::zeros(0, 0);
-        if is_looked_into {
+        if uses_energies {
             let factor = HOLDS.into_iter().find_map(held_by).ok_or(Mechanism)?;
             inverse.resize_with(n, n, |_, _| 0.0);
             invert_lower_triangular(inverse.as_mut(), factor.L(), par);
@@ -110,7 +110,7 @@ impl Shared {
                 let mut s = s.submatrix(first, first, len, len).to_owned();
                 fill_upper_triangle(s.as_mut());
                 hold(s.as_mut(), 0..len, MORE_HOLD, self.round_off);
-                let compliance = match is_looked_into {
+                let compliance = match uses_energies {
                     true => {
                         let columns = inverse.submatrix(first, first, n - first, len);
                         columns.transpose() * columns

@@ -189,7 +189,7 @@ impl<'a> CoupledContact<'a> {
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
         let fixed = self.side_by_side(statuses.iter().map(Vec::as_slice));
-        let bounds: Vec<f64> = fixed.iter().map(FixedStatus::lacks).collect();
+        let bounds: Vec<f64> = fixed.iter().map(FixedStatus::distance_to_bound).collect();
         let problem = FrictionProblem {
             contact: ContactProblem {
                 scale: match moves {

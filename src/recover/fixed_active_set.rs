@@ -187,8 +187,8 @@ impl<'a> FixedActiveSet<'a> {
     /// Missing jumps of ties, where their conditions have these statuses.
     pub fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
         let of_group = |(&g, tied): (&GroupId, &Vec<(usize, f64)>)| {
-            let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
-            (g, tied.iter().map(lacks).collect())
+            let distance = |&(j, _): &(usize, f64)| (j, conditions[&g][j].distance_to_bound());
+            (g, tied.iter().map(distance).collect())
         };
         self.step.tied.iter().map(of_group).collect()
     }
@@ -213,9 +213,9 @@ impl<'a> FixedActiveSet<'a> {
                 let of_slipping = SlipLaw::of_slipping(group, &limits[&g], &fixed, forces);
                 laws.insert(g, of_slipping);
             }
-            let lacks = fixed.iter().map(FixedStatus::lacks);
+            let distances = fixed.iter().map(FixedStatus::distance_to_bound);
             let of_ties = tied[&g].iter().map(|&(_, jump)| jump);
-            missing.insert(g, lacks.chain(of_ties).collect());
+            missing.insert(g, distances.chain(of_ties).collect());
             open.insert(g, fixed.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();

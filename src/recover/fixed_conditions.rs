@@ -23,8 +23,8 @@ pub fn conditions(
     prescribed: &[bool],
 ) -> Vec<FixedStatus> {
     let both = solution.closed.iter().zip(&solution.gaps);
-    let fixed = |(&closed, &lacks): (&bool, &f64)| match closed {
-        true => FixedStatus::Closed { lacks },
+    let fixed = |(&closed, &distance): (&bool, &f64)| match closed {
+        true => FixedStatus::Closed { distance },
         false => FixedStatus::Open,
     };
     let mut conditions: Vec<FixedStatus> = both.map(fixed).collect();
@@ -123,7 +123,7 @@ mod tests {
         let (group, slip) = (group(COULOMB), [-3e-3, -4e-3]);
         let mut solution = pressed([1.2, 1.6], slip, false);
         let fixed = conditions(&group, &mut solution, &[false; 3]);
-        assert_eq!(fixed[0], FixedStatus::Closed { lacks: 0.0 });
+        assert_eq!(fixed[0], FixedStatus::Closed { distance: 0.0 });
         for (fixed, (share, force)) in fixed[1..].iter().zip([(0.6, 1.2), (0.8, 1.6)]) {
             let [e, turning] = fixed.slip().unwrap();
             assert!((e - share).abs() < 1e-13, "{e}");

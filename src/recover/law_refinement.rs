@@ -120,8 +120,8 @@ impl FixedActiveSet<'_> {
 /// The statuses of all conditions with the closed ones held at their bounds.
 fn held(solution: &DiscreteSolution) -> FixedStatuses {
     let of_group = |of_group: &GroupSolution| {
-        let status = |(&lacks, &closed): (&f64, &bool)| match closed {
-            true => FixedStatus::Closed { lacks },
+        let status = |(&distance, &closed): (&f64, &bool)| match closed {
+            true => FixedStatus::Closed { distance },
             false => FixedStatus::Open,
         };
         let all = of_group.gaps.iter().zip(&of_group.closed);

@@ -64,7 +64,7 @@ pub fn fix(
         hold(fronts, open);
     }
     fronts.fix(context, open)?;
-    if was_held || !fronts.has_to_hold(context) {
+    if was_held || !fronts.must_hold_slipping(context) {
         return Ok(was_held);
     }
     hold(fronts, open);

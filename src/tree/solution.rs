@@ -74,7 +74,7 @@ impl ActiveSetFronts {
             if !solution.is_too_far {
                 break;
             }
-            self.make_better(context, open)?;
+            self.improve_preconditioner(context, open)?;
             let from_there = Accuracy {
                 start: Some(&solution.merge_roots),
                 ..accuracy

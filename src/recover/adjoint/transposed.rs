@@ -247,8 +247,8 @@ impl<'a> TransposedProblem<'a> {
         let on_unknowns = residuals.into_iter().filter_map(on_unknowns).collect();
         let conditions = state.groups.iter().map(|(&g, of_group)| {
             let both = of_group.closed.iter().zip(&of_group.gaps);
-            let status = both.map(|(&closed, &lacks)| match closed {
-                true => FixedStatus::Closed { lacks },
+            let status = both.map(|(&closed, &distance)| match closed {
+                true => FixedStatus::Closed { distance },
                 false => FixedStatus::Open,
             });
             let mut statuses: Vec<FixedStatus> = status.collect();
