@@ -109,7 +109,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     if settings.check {
         let checked = all.into_iter().map(|steps| stages.check(steps));
         log.check(&checked.collect::<Result<Vec<_>, _>>()?);
-        comm.agree(log.heard())?;
+        comm.agree(log.check_written())?;
         return Ok(Ending::Converged);
     }
     let lock = comm.is_root().then(|| OutputLock::take(&settings.output));

@@ -89,7 +89,7 @@ impl Stages<'_> {
             written.map_err(Failure::from)
         };
         (self.comm).agree(self.comm.is_root().then(write).transpose())?;
-        self.comm.agree(self.log.heard())?;
+        self.comm.agree(self.log.check_written())?;
         Ok(self.comm.decide(all_converged))
     }
 

@@ -58,7 +58,7 @@ impl FrictionProblem<'_> {
     pub(super) fn solve_cones(&self, status: &mut [Status]) -> ContactSolution {
         let cones = FrictionCones::new(self);
         let (found, fell_back, slides) = cones.solve(self, status);
-        cones.tell(&found.state, status);
+        cones.write_statuses(&found.state, status);
         let (jumps, forces) = cones.exact(&found);
         ContactSolution {
             jumps,
@@ -160,7 +160,7 @@ impl<'a> FrictionCones<'a> {
     }
 
     /// The statuses of all limits.
-    fn tell(&self, state: &Statuses, status: &mut [Status]) {
+    fn write_statuses(&self, state: &Statuses, status: &mut [Status]) {
         for (status, &closed) in status.iter_mut().zip(&state.closed) {
             *status = Status::new(!closed);
         }

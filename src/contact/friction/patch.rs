@@ -50,7 +50,7 @@ impl FrictionProblem<'_> {
             let joins = |i: &usize| normal_of[*i].is_none_or(|n| is_in[n]);
             let patch = Patch::new(self, joins)?;
             let (found, of_patch) = patch.ask(&now, |problem, status| problem.solve(status));
-            patch.tell(&of_patch, &mut now);
+            patch.write_statuses(&of_patch, &mut now);
             (steps, fell_back) = (steps + found.steps, fell_back || found.fell_back);
             let whole = ContactSolution {
                 jumps: patch.all_jumps(&found.jumps),
@@ -268,7 +268,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Writes the statuses of the patch, and open ones elsewhere, to `now`.
-    fn tell(&self, of_patch: &[Status], now: &mut [Status]) {
+    fn write_statuses(&self, of_patch: &[Status], now: &mut [Status]) {
         now.fill(Status::Open);
         for (i, status) in self.limits().into_iter().zip(of_patch) {
             now[i] = *status;
