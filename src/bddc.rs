@@ -209,13 +209,13 @@ impl Bddc {
                     shared.sides(&s, is_made, uses_energies, par)
                 }),
             };
-            Ok((c, sides.map_err(moves)?))
+            Ok((c, sides.map_err(free_motion)?))
         });
         let sides: OnMergeRoots<Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
             let local = shared(c).and_then(|shared| Local::new(shared, bases, self.level, par));
-            Ok((c, local.map_err(moves)?))
+            Ok((c, local.map_err(free_motion)?))
         });
         let made_anew: OnMergeRoots<(Local, PackedSymmetric)> = comm.agree(locals.collect())?;
         let (mut locals, mut parts) = (BTreeMap::new(), BTreeMap::new());
@@ -225,7 +225,7 @@ impl Bddc {
         }
         let others = (self.locals.keys().copied()).filter(|c| !locals.contains_key(c));
         let touched = others.filter(|&c| touched[plan.merge_roots[c]] && self.locals[&c].own() > 0);
-        let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
+        let refreshed = touched.map(|c| Ok((c, shared(c).map_err(free_motion)?.0)));
         self.refresh(comm.agree(refreshed.collect())?);
         self.locals.extend(locals);
         if !changed.values().contains(&true) {
@@ -296,7 +296,7 @@ impl Bddc {
     }
 
     /// True at the levels that are abandoned for a better preconditioner when they converge slowly.
-    pub fn is_judged(&self) -> bool {
+    pub fn is_provisional(&self) -> bool {
         matches!(
             self.level,
             PreconditionerLevel::Diagonals | PreconditionerLevel::Motions
@@ -337,7 +337,7 @@ impl Bddc {
     }
 }
 
-fn moves(Mechanism: Mechanism) -> Failure {
+fn free_motion(Mechanism: Mechanism) -> Failure {
     Failure::ill_posed(
         "a part of the scene can move although every contact that presses is held; expected supports or contact that \
          hold it",

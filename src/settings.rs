@@ -15,7 +15,7 @@ use serde::{Serialize, Serializer};
 
 use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
-use crate::plan::choice::Wishes;
+use crate::plan::choice::SolverRequest;
 
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -152,9 +152,9 @@ impl Settings {
     }
 
     /// The user's choices of solvers.
-    pub fn wishes(&self) -> Wishes {
+    pub fn solver_request(&self) -> SolverRequest {
         let interface = self.interface;
-        Wishes {
+        SolverRequest {
             method: self.method,
             iterative: interface.map(|method| method == InterfaceMethod::Iterative),
             second_start: self.second_start,

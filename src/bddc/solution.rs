@@ -164,7 +164,7 @@ impl Bddc {
             matrices: &matrices.collect(),
             coarse: &self.coarse,
             is_stale: self.is_stale(),
-            is_judged: self.is_judged(),
+            is_provisional: self.is_provisional(),
         };
         let start = accuracy.start.map(|known| self.start(comm, known, plan));
         gradients.solve(b, start, accuracy.tolerance)

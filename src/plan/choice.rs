@@ -13,7 +13,7 @@ use crate::error::Failure;
 
 /// The user's choices.
 #[derive(Clone, Copy, Debug)]
-pub struct Wishes {
+pub struct SolverRequest {
     /// The method of the sweeps.
     pub method: Method,
     /// True for the iterative interface solver, false for the direct one; `None` if not chosen.
@@ -64,35 +64,35 @@ impl Choice {
     ///
     /// # Errors
     /// The iterative solver is requested, but the problem file has no clusters.
-    pub fn all(catalog: &Catalog, wishes: Wishes) -> Result<Vec<Self>, Failure> {
+    pub fn all(catalog: &Catalog, request: SolverRequest) -> Result<Vec<Self>, Failure> {
         let only = |merging, why: &str| Ok(vec![Self::new(merging, why)]);
-        match wishes.method {
+        match request.method {
             Method::Picard => return only(Merging::Linear, "picard inverts S_0 alone"),
             Method::Anderson => {
                 return only(Merging::Groups, "anderson sweeps over contact groups");
             }
             Method::Newton => {}
         }
-        if wishes.iterative == Some(true) && catalog.hierarchy.clusters.is_empty() {
+        if request.iterative == Some(true) && catalog.hierarchy.clusters.is_empty() {
             return Err(Failure::input(
                 "dataset /hierarchy/cluster is missing, which --interface iterative needs; make the problem file \
                  anew, or use --interface direct",
             ));
         }
-        if catalog.has_friction() && wishes.second_start {
+        if catalog.has_friction() && request.second_start {
             return only(
                 Merging::All,
                 "--second-start solves for all conditions at once",
             );
         }
-        if wishes.iterative == Some(true) {
+        if request.iterative == Some(true) {
             return only(
                 Merging::Clusters,
                 "conjugate gradients between clusters, as --interface iterative demands",
             );
         }
         let times = OperatorTimes::new(catalog);
-        let operators: Vec<Operator> = match wishes.iterative {
+        let operators: Vec<Operator> = match request.iterative {
             Some(_) => times.direct().collect(),
             None => times.operators().collect(),
         };

@@ -14,7 +14,7 @@ use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
 
 /// Approximate angle between force and slip beyond which the slip is too small to determine its direction.
-const TOLD: f64 = 0.1;
+const RELIABLE_ANGLE: f64 = 0.1;
 
 /// The conditions of a group in the linear problem; forces of points that slip in a plane are aligned with their slips.
 pub fn conditions(
@@ -70,7 +70,7 @@ fn turned(solution: &mut GroupSolution, point: &PointLaw, here: PointState) -> (
     {
         let along = slip[0] * e[0] + slip[1] * e[1];
         let across = [0, 1].map(|k| slip[k] - along * e[k]);
-        if turning > 0.0 && turning * across[0].hypot(across[1]) <= TOLD * bound {
+        if turning > 0.0 && turning * across[0].hypot(across[1]) <= RELIABLE_ANGLE * bound {
             for (k, j) in point.limits().enumerate() {
                 solution.forces[j] = bound * e[k] + turning * across[k];
             }

@@ -23,7 +23,7 @@ const LIMIT_OF_LOAD: f64 = 1e-11;
 const LIMIT_OF_FRICTION: f64 = 1e-14;
 /// Violation of the law of friction above which sticking and slipping are corrected: well above round-off, well below
 /// the error that is rejected.
-const ASTRAY: f64 = 1e-12;
+const CORRECTED_ABOVE: f64 = 1e-12;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
 /// Accuracy of a correction by an iterative solver.
@@ -77,12 +77,12 @@ pub fn refine_laws(
     certificate: Certificate,
 ) -> Certificate {
     let mut best = certificate;
-    if !decide(fixed, breaks_laws(&best)) {
+    if !decide(fixed, violates_laws(&best)) {
         return best;
     }
     laws_from(fixed, solution, &mut best);
     // A cycle from the present state recurs from other ones, too.
-    let tries_again = fixed.root.is_some_and(|root| !root.cycles) && breaks_laws(&best);
+    let tries_again = fixed.root.is_some_and(|root| !root.cycles) && violates_laws(&best);
     if fixed.context.catalog.has_friction() && decide(fixed, tries_again) {
         let mut stuck = solution.clone();
         for _ in 0..MAX_REFINEMENTS {
@@ -94,7 +94,7 @@ pub fn refine_laws(
             ..best
         };
         laws_from(fixed, &mut stuck, &mut of_stuck);
-        if decide(fixed, short_of_laws(&of_stuck) < short_of_laws(&best)) {
+        if decide(fixed, law_violation(&of_stuck) < law_violation(&best)) {
             *solution = stuck;
             best = of_stuck;
         }
@@ -105,7 +105,7 @@ pub fn refine_laws(
 /// Solves the laws of contact anew, and refines, as long as the certificate falls short and improves. Collective.
 fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: &mut Certificate) {
     for _ in 0..MAX_REFINEMENTS_OF_LAWS {
-        if !decide(fixed, breaks_laws(best)) {
+        if !decide(fixed, violates_laws(best)) {
             break;
         }
         let residuals = unbalanced(fixed, solution);
@@ -113,7 +113,7 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
             break;
         };
         let after = refine(fixed, &mut refined);
-        if !decide(fixed, short_of_laws(&after) < short_of_laws(best)) {
+        if !decide(fixed, law_violation(&after) < law_violation(best)) {
             break;
         }
         *solution = refined;
@@ -122,13 +122,13 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
 }
 
 /// True if a solution violates balance or the laws of contact by more than is good enough.
-fn breaks_laws(certificate: &Certificate) -> bool {
-    short_of_laws(certificate) > GOOD
+fn violates_laws(certificate: &Certificate) -> bool {
+    law_violation(certificate) > GOOD
 }
 
 /// Violation of balance and of the laws of contact by a solution, on the scale of equilibrium.
-fn short_of_laws(certificate: &Certificate) -> f64 {
-    worst(certificate).max(certificate.friction * (GOOD / ASTRAY))
+fn law_violation(certificate: &Certificate) -> f64 {
+    worst(certificate).max(certificate.friction * (GOOD / CORRECTED_ABOVE))
 }
 
 /// Corrects statuses against the laws of contact, as forces are more accurate after refinement than in the sweeps, and
@@ -142,7 +142,7 @@ pub fn correct_statuses(
 ) -> Certificate {
     let (mut corrected, mut after) = (None, certificate);
     for _ in 0..MAX_CORRECTIONS {
-        let is_astray = decide(fixed, after.friction > ASTRAY);
+        let is_violated = decide(fixed, after.friction > CORRECTED_ABOVE);
         let is_short = decide(fixed, worst(&after) > GOOD);
         let next: &mut DiscreteSolution = corrected.get_or_insert_with(|| solution.clone());
         let mut changed = decide(fixed, after.friction > AGAINST_FRICTION);
@@ -151,7 +151,7 @@ pub fn correct_statuses(
             if is_short {
                 changed |= of_group.open_or_close(group);
             }
-            if is_astray {
+            if is_violated {
                 changed |= of_group.stick_or_slip(group);
             }
         }
@@ -172,7 +172,10 @@ pub fn correct_statuses(
         next.share(&fixed.context, &fixed.step.loads);
         after = check(fixed, next);
     }
-    let is_right = after.friction <= certificate.friction.clamp(ASTRAY, AGAINST_FRICTION);
+    let is_right = after.friction
+        <= certificate
+            .friction
+            .clamp(CORRECTED_ABOVE, AGAINST_FRICTION);
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
     match corrected {
         Some(corrected) if decide(fixed, is_right && as_good) => {

@@ -74,7 +74,7 @@ impl Scene {
     /// The load drives a motion that neither supports nor contact restrain; the message names body and motion.
     pub fn analyse(&self) -> Result<RigidMotions, Failure> {
         let Self { bodies, names, .. } = self;
-        let rows = &self.both_ways();
+        let rows = &self.two_sided_rows();
         let kinematics = Kinematics::new(self.dim, bodies);
         if kinematics.len == 0 {
             return Ok(RigidMotions::default());
@@ -125,7 +125,12 @@ impl Scene {
         let fixing_dofs = kinematics.fixing_dofs(bodies, &free);
         let mut motions = kinematics.fix(bodies, names, list.collect(), fixing_dofs);
         if !is_nothing(&unbalanced) && found.proof.is_some() {
-            (motions.warnings).push(kinematics.nearly_held(bodies, names, &unbalanced, scale));
+            (motions.warnings).push(kinematics.round_off_warning(
+                bodies,
+                names,
+                &unbalanced,
+                scale,
+            ));
         }
         Ok(motions)
     }
@@ -133,7 +138,7 @@ impl Scene {
     /// The failure of a scene whose bodies only friction could restrain, for use when the solver finds that it doesn't:
     /// elastic bodies may be pressed together less than rigid ones could be.
     pub fn unheld(&self) -> Option<Failure> {
-        let normals = self.both_ways().into_iter();
+        let normals = self.two_sided_rows().into_iter();
         let normals: Vec<RigidRow> = normals.filter(|row| row.friction.is_none()).collect();
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         let load = kinematics.load(&self.bodies);
@@ -141,7 +146,7 @@ impl Scene {
         let sliding =
             |unbalanced: &DVector<f64>| kinematics.sliding(&self.bodies, &self.names, unbalanced);
         if kinematics.len >= MANY {
-            let unbalanced = self.unpressed_many(&kinematics, scale);
+            let unbalanced = self.unbalanced_part_many(&kinematics, scale);
             return unbalanced.as_ref().map(sliding);
         }
         let b = kinematics.rows(&normals);
@@ -190,7 +195,7 @@ impl Kinematics {
     }
 
     /// The warning of an unbalanced load that is taken for round-off of all loads.
-    fn nearly_held(
+    fn round_off_warning(
         &self,
         bodies: &[BodyState],
         names: &[String],

@@ -162,7 +162,7 @@ impl Scene {
             let ConditionState {
                 carrying, closed, ..
             } = conditions[friction.normal];
-            friction.bound.coefficient > 0.0 && carrying || friction.holds_unpressed(closed)
+            friction.bound.coefficient > 0.0 && carrying || friction.holds_without_pressure(closed)
         };
         conditions[j].carrying || self.rows[j].friction.as_ref().is_some_and(can_resist)
     }

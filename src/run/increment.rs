@@ -28,7 +28,7 @@ use crate::run::swept::Swept;
 use crate::settings::Settings;
 use crate::step::StepProblem;
 use crate::step::halving::StepHalving;
-use crate::step::state::{StepState, analyse, go_on};
+use crate::step::state::{StepState, analyse, check_interrupt};
 use crate::sweep::{Method, SweepOutcome, SweepStatus};
 
 /// Ratio of closing motions to displacements from which on the digits that their difference loses matter.
@@ -226,7 +226,7 @@ impl Increments<'_> {
             None => BTreeMap::new(),
         };
         seconds.add(|s| &mut s.interface, comm.times() - lap);
-        go_on(&context)?;
+        check_interrupt(&context)?;
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the state before.
         log.phase("sweeping", None);
@@ -245,7 +245,7 @@ impl Increments<'_> {
             outcome.is_settled &= self.settings.max_sweeps.is_none();
         }
         // From here on the load step is finished before the run stops, so that its solution is kept.
-        go_on(&context)?;
+        check_interrupt(&context)?;
 
         // Back-substitution, and the check of the full discrete problem.
         log.phase("recovering", None);

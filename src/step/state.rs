@@ -174,14 +174,14 @@ pub fn finished(failure: Failure, context: &Context<'_>, settings: &Settings, k:
 /// # Errors
 /// A signal has asked the run to stop.
 pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Result<(), Failure> {
-    go_on(context).map_err(|failure| finished(failure, context, settings, k))
+    check_interrupt(context).map_err(|failure| finished(failure, context, settings, k))
 }
 
 /// Returns an error if a signal has asked the run to stop. Collective.
 ///
 /// # Errors
 /// A signal has asked the run to stop.
-pub fn go_on(context: &Context<'_>) -> Result<(), Failure> {
+pub fn check_interrupt(context: &Context<'_>) -> Result<(), Failure> {
     match context.comm.is_any_asked_to_stop() {
         false => Ok(()),
         true => Err(Failure::interrupted("interrupted")),

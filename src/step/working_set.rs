@@ -63,7 +63,7 @@ pub enum Outside {
 
 /// True if a working set may pay for a problem: friction at many points, most of them with an initial gap.
 pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
-    let wishes = settings.wishes();
+    let request = settings.solver_request();
     let of_point = |point: &ContactPoint<SubdomainNode>| 1 + point.tangents(catalog.dim).len();
     let conditions: usize = catalog.points.iter().map(of_point).sum();
     let apart = catalog
@@ -77,9 +77,9 @@ pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
         // Quantities may refer to any point, and added or removed bodies have a state of their own.
         && catalog.quantities.is_empty()
         && !catalog.has_stages()
-        && wishes.method == Method::Newton
-        && wishes.iterative != Some(true)
-        && !wishes.second_start
+        && request.method == Method::Newton
+        && request.iterative != Some(true)
+        && !request.second_start
         && settings.max_sweeps.is_none()
 }
 

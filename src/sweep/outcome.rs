@@ -17,7 +17,7 @@ const TOO_FAR: f64 = 1e3;
 pub const AGAINST_FRICTION: f64 = 1e-9;
 /// Slip of sticking points, over the largest displacement, above which there is no solution; like penetration it is an
 /// error of displacements, which round-off of forces doesn't explain.
-const DRIFT: f64 = 1e-13;
+const STICKING_SLIP: f64 = 1e-13;
 /// Tension, or product of force and gap, above which there is no solution.
 const AGAINST_CONTACT: f64 = 1e-11;
 /// Residual of equilibrium relative to the load above which the result is meaningless.
@@ -99,7 +99,7 @@ pub struct SweepOutcome {
     /// Solver that didn't converge before this one took over, and the reason, as text.
     pub took_over: Option<String>,
     /// The constraints of every pair with cycling status, if friction prevents convergence.
-    pub unsettled: Vec<Vec<usize>>,
+    pub violated_limits: Vec<Vec<usize>>,
 }
 
 impl SweepOutcome {
@@ -122,7 +122,7 @@ impl SweepOutcome {
             other_solution: None,
             slides: false,
             took_over: None,
-            unsettled: Vec::new(),
+            violated_limits: Vec::new(),
         }
     }
 
@@ -204,7 +204,7 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         is_driven,
         ..
     } = *certificate;
-    if friction > AGAINST_FRICTION || drift > DRIFT {
+    if friction > AGAINST_FRICTION || drift > STICKING_SLIP {
         return Some(format!(
             "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
         ));

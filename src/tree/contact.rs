@@ -17,7 +17,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
-use crate::tree::active_set::settle;
+use crate::tree::active_set::find_active_set;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::operator::{ROUND_OFF, TreeOperator};
 use crate::tree::problem::{Steps, TreeProblem};
@@ -102,14 +102,18 @@ fn without_friction(
             *open = known.closed.iter().map(|closed| !closed).collect();
         }
     }
-    let settled = settle(problem, fronts, steps, (open, most))?;
+    let active_set = find_active_set(problem, fronts, steps, (open, most))?;
     let found = Found {
-        at: settled.solution.at.clone(),
-        statuses: begin(&problem.laws, &settled.open).1,
-        residual: if settled.is_right { 0.0 } else { f64::INFINITY },
+        at: active_set.solution.at.clone(),
+        statuses: begin(&problem.laws, &active_set.open).1,
+        residual: if active_set.is_right {
+            0.0
+        } else {
+            f64::INFINITY
+        },
         steps: steps.count(),
     };
-    Ok((found, settled.solution))
+    Ok((found, active_set.solution))
 }
 
 /// The solution with friction, by Newton's method. If that stalls, it starts again with the conditions closed that are
@@ -152,8 +156,8 @@ fn with_friction(
         }
         is_anew = true;
         let first = (problem.all_closed(), settings.most);
-        let settled = settle(problem, fronts, steps, first)?;
-        (start, statuses) = begin(laws, &settled.open);
+        let active_set = find_active_set(problem, fronts, steps, first)?;
+        (start, statuses) = begin(laws, &active_set.open);
     }
 }
 

@@ -16,7 +16,7 @@ use crate::context::Context;
 use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
 use crate::schur::condensed::Condensed;
-use crate::schur::merge::{Merge, Spare};
+use crate::schur::merge::{MatrixPool, Merge};
 use crate::schur::substitution::Replaced;
 use crate::tree::front_jumps::FrontJumps;
 
@@ -51,7 +51,7 @@ pub struct ActiveSetFronts {
     /// The dependent rows of every contact group of this rank.
     rows: OnGroups<DependentConstraints>,
     spring: f64,
-    spare: Spare,
+    spare: MatrixPool,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// Number of solves.
@@ -97,7 +97,7 @@ impl ActiveSetFronts {
             replaced,
             rows: context.comm.agree(rows.collect())?,
             spring: 0.0,
-            spare: Spare::default(),
+            spare: MatrixPool::default(),
             smallest_pivot: f64::INFINITY,
             solves: 0,
             bddc: None,
@@ -242,7 +242,7 @@ impl ActiveSetFronts {
             open,
             (self.spring, renewed),
         );
-        while fixed.is_err() && (bddc.is_judged() || is_sound) && bddc.raise_level() {
+        while fixed.is_err() && (bddc.is_provisional() || is_sound) && bddc.raise_level() {
             fixed = bddc.fix(
                 context,
                 &self.merge_roots,

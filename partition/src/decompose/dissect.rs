@@ -41,7 +41,7 @@ const PARALLEL: f64 = 50_000.0;
 
 /// Number of vertices below which fragments that a cut disconnects from a side move to the other side; in larger sets
 /// later cuts take care of them.
-const TIDIED: usize = 50_000;
+const FRAGMENTS_MOVE_BELOW: usize = 50_000;
 
 /// The condition at which a dissection ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -258,12 +258,12 @@ fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     }
     let mut left = bisect(graph, aim);
     let Wanted::Sets(sets) = wanted else {
-        return match graph.len() < TIDIED {
-            true => tidied(graph, left),
+        return match graph.len() < FRAGMENTS_MOVE_BELOW {
+            true => with_connected_pieces(graph, left),
             false => left,
         };
     };
-    left = tidied(graph, left);
+    left = with_connected_pieces(graph, left);
     let (piece, count) = graph.pieces();
     if count == 1 {
         return left;
@@ -304,7 +304,7 @@ fn whole(graph: &Graph, labels: &[u32], count: usize, aim: Aim) -> Vec<bool> {
 }
 
 /// The cut, changed so that each piece of the graph stays connected on either side.
-fn tidied(graph: &Graph, mut left: Vec<bool>) -> Vec<bool> {
+fn with_connected_pieces(graph: &Graph, mut left: Vec<bool>) -> Vec<bool> {
     let (piece, count) = graph.pieces();
     for side in [true, false] {
         let together = |vertex: usize, to: u32| left[vertex] == left[to as usize];

@@ -116,7 +116,7 @@ impl FrictionProblem<'_> {
     }
 
     /// Limits whose law is violated one step after these statuses.
-    pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
+    pub fn violated_limits(&self, status: &[Status]) -> Vec<usize> {
         let cones = FrictionCones::new(self);
         let start = cones.start();
         let place = cones.step(&start, &cones.laws.begin(status, &start));

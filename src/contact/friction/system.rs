@@ -13,8 +13,8 @@ pub(super) const SPRING: f64 = 1e-12;
 pub(super) const YIELD: f64 = 1e-6;
 /// Reduction of the springs when refinement leaves more than this part of the right-hand side: soft bodies between
 /// stiff ones carry a small part of what their rows could.
-const LESS: f64 = 1e-3;
-const BENT: f64 = 1e-12;
+const REDUCTION: f64 = 1e-3;
+const REFINED: f64 = 1e-12;
 /// Maximum number of refinements that remove the forces of the springs.
 const MAX_REFINEMENTS: usize = 40;
 
@@ -42,10 +42,10 @@ impl System {
         }
         let x = self.refine(&self.held(1.0), &b, MAX_REFINEMENTS);
         let residual = |x: &[f64]| largest(&self.remainder(&b, x));
-        if residual(&x) <= BENT * largest(&b) {
+        if residual(&x) <= REFINED * largest(&b) {
             return x;
         }
-        let stiffer = self.refine(&self.held(LESS), &b, MAX_REFINEMENTS);
+        let stiffer = self.refine(&self.held(REDUCTION), &b, MAX_REFINEMENTS);
         match residual(&stiffer) < residual(&x) {
             true => stiffer,
             false => x,

@@ -46,7 +46,7 @@ impl Scene {
         scale: f64,
     ) -> Option<Result<RigidMotions, Failure>> {
         let (bodies, names) = (&self.bodies, &self.names);
-        let rows = self.both_ways();
+        let rows = self.two_sided_rows();
         let (touched, alone) = kinematics.touched(&rows);
         let driven = self.driven_alone(kinematics, &alone);
         let touched = Touched {
@@ -114,12 +114,12 @@ impl Scene {
     }
 
     /// The part of the load that normal forces can't balance, if it is more than round-off.
-    pub(super) fn unpressed_many(
+    pub(super) fn unbalanced_part_many(
         &self,
         kinematics: &Kinematics,
         scale: f64,
     ) -> Option<DVector<f64>> {
-        let rows = self.both_ways();
+        let rows = self.two_sided_rows();
         let normals = rows.iter().filter(|row| row.friction.is_none());
         let normals = normals.map(|row| kinematics.sparse_row(row)).collect();
         let load = kinematics.load(&self.bodies);

@@ -55,8 +55,8 @@ pub(in crate::model) fn pair(sides: &Sides, what: &str) -> Result<Mortar, String
     let round_off = ROUND_OFF * a.facet_size().min(b.facet_size());
     let fits = |unseen: f64| unseen <= off.max(round_off);
     let ratio = a.facet_size() / b.facet_size();
-    let stands_off = a.stands_off().max(b.stands_off()) > round_off;
-    let is_finer = stands_off && ratio < FINER;
+    let is_curved = a.sagitta().max(b.sagitta()) > round_off;
+    let is_finer = is_curved && ratio < FINER;
     if fits(first.unseen) && !is_finer {
         return Ok(of(first, None));
     }

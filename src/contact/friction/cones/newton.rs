@@ -210,7 +210,7 @@ impl FrictionCones<'_> {
     /// loads do more work than all contacts dissipate, under their present pressure and with friction at its bound.
     fn slides_on(&self, found: &Found, changes: &[f64]) -> bool {
         let Found { place, state, .. } = found;
-        if self.resists(changes) > NO_RESISTANCE {
+        if self.resistance(changes) > NO_RESISTANCE {
             return false;
         }
         let along = |row: &[(usize, f64)]| row.iter().map(|&(i, c)| c * changes[i]).sum::<f64>();
@@ -235,7 +235,7 @@ impl FrictionCones<'_> {
     }
 
     /// Resistance of the bodies to a motion of jumps, relative to springs as stiff as they are.
-    fn resists(&self, changes: &[f64]) -> f64 {
+    fn resistance(&self, changes: &[f64]) -> f64 {
         let mut forces = vec![0.0; changes.len()];
         self.contact.subtract(changes, &mut forces);
         let springs = changes
