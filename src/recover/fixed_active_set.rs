@@ -20,7 +20,7 @@ use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
 use crate::recover::BlockSolution;
-use crate::recover::motions::Motions;
+use crate::recover::motions::{Field, Motions};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
@@ -141,6 +141,20 @@ impl<'a> FixedActiveSet<'a> {
             &solution.u,
             &solution.pushes,
         ))
+    }
+
+    /// Forces at the nodes of this rank's blocks as loads on their unknowns, without the part along free motions.
+    /// Collective.
+    pub fn on_unknowns(&self, mut forces: OnBlocks<Vec<f64>>) -> OnBlocks<Vec<f64>> {
+        let fields = forces.iter_mut().map(|(&b, r)| (b, r)).collect();
+        self.free.project(&self.context, Field::Summed, fields);
+        let of_block = |(b, forces): (BlockId, Vec<f64>)| {
+            let dofs = &self.condensed.blocks.get(&b)?.dofs;
+            let mut load = vec![0.0; dofs.len()];
+            dofs.add_load(&forces, &mut load);
+            Some((b, load))
+        };
+        forces.into_iter().filter_map(of_block).collect()
     }
 
     /// The change due to `loads` on the unknowns of this rank's blocks, and of the others', if `conditions` keep their

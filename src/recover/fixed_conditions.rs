@@ -22,12 +22,7 @@ pub fn conditions(
     solution: &mut GroupSolution,
     prescribed: &[bool],
 ) -> Vec<FixedStatus> {
-    let both = solution.closed.iter().zip(&solution.gaps);
-    let fixed = |(&closed, &distance): (&bool, &f64)| match closed {
-        true => FixedStatus::Closed { distance },
-        false => FixedStatus::Open,
-    };
-    let mut conditions: Vec<FixedStatus> = both.map(fixed).collect();
+    let mut conditions = solution.fixed_statuses();
     for point in group.point_laws() {
         let here = solution.point(&point);
         let size = here.size();

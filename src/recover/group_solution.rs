@@ -1,7 +1,7 @@
 //! The solution at the conditions of a contact group, and its corrections by the laws of contact.
 
 use crate::contact::law::{PointLaw, PointState};
-use crate::contact::status::{LimitState, Status};
+use crate::contact::status::{FixedStatus, LimitState, Status};
 use crate::fem::contact_group::ContactGroup;
 use crate::tree::slip_law::AT_BOUND;
 
@@ -49,6 +49,16 @@ impl GroupSolution {
             }
         }
         states
+    }
+
+    /// Statuses that close the closed conditions at their bounds and leave the others open.
+    pub fn fixed_statuses(&self) -> Vec<FixedStatus> {
+        let both = self.closed.iter().zip(&self.gaps);
+        let fixed = |(&closed, &distance): (&bool, &f64)| match closed {
+            true => FixedStatus::Closed { distance },
+            false => FixedStatus::Open,
+        };
+        both.map(fixed).collect()
     }
 
     /// Sets forces and closed flags of all conditions but ties.

@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::id::{OnBlocks, OnPairs, PairId};
 
-use crate::contact::status::{FixedStatus, LimitState};
+use crate::contact::status::LimitState;
 use crate::interface::coupled::{CoupledContact, PairChange};
+use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses, put_tied};
-use crate::recover::{DiscreteSolution, GroupSolution};
 
 /// Vectors on all unknowns of every block of this rank.
 type OnUnknowns = OnBlocks<Vec<f64>>;
@@ -119,14 +119,8 @@ impl FixedActiveSet<'_> {
 
 /// The statuses of all conditions with the closed ones held at their bounds.
 fn held(solution: &DiscreteSolution) -> FixedStatuses {
-    let of_group = |of_group: &GroupSolution| {
-        let status = |(&distance, &closed): (&f64, &bool)| match closed {
-            true => FixedStatus::Closed { distance },
-            false => FixedStatus::Open,
-        };
-        let all = of_group.gaps.iter().zip(&of_group.closed);
-        all.map(status).collect()
-    };
     let groups = solution.groups.iter();
-    groups.map(|(&g, own)| (g, of_group(own))).collect()
+    groups
+        .map(|(&g, of_group)| (g, of_group.fixed_statuses()))
+        .collect()
 }

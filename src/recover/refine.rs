@@ -1,7 +1,7 @@
 //! Iterative refinement with the available factors: the full discrete problem's residual is solved for with the active
 //! set fixed, wherever the certificate falls short.
 
-use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
+use contact_dd_partition::id::{GroupId, OnBlocks, OnGroups};
 
 use crate::certificate::Certificate;
 use crate::contact::jumps::JumpOf;
@@ -10,7 +10,6 @@ use crate::context::hierarchy::jumps;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::fixed_conditions::{change_forces, conditions};
-use crate::recover::motions::Field;
 use crate::recover::solution_check::check;
 use crate::sweep::AGAINST_FRICTION;
 
@@ -268,16 +267,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
 /// The unbalanced forces of a solution on this rank's unknowns, without those along free motions. Collective.
 fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBlocks<Vec<f64>> {
     let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
-    let mut residuals: OnBlocks<Vec<f64>> = solution.blocks.iter().filter_map(residual).collect();
-    let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
-    fixed.free.project(&fixed.context, Field::Summed, fields);
-    let on_unknowns = |(b, residual): (BlockId, Vec<f64>)| {
-        let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
-        let mut load = vec![0.0; dofs.len()];
-        dofs.add_load(&residual, &mut load);
-        Some((b, load))
-    };
-    residuals.into_iter().filter_map(on_unknowns).collect()
+    fixed.on_unknowns(solution.blocks.iter().filter_map(residual).collect())
 }
 
 /// Flags of contact group g's conditions whose jumps supports prescribe; in the plane friction doesn't need them.

@@ -15,7 +15,6 @@ use contact_dd_partition::numbered::Numbered;
 use super::functional::Functional;
 use super::slipping::{Direction, OnConditions, SlippingPoints, add};
 use super::solved::Solved;
-use crate::contact::status::FixedStatus;
 use crate::context::Loads;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
@@ -23,7 +22,6 @@ use crate::fem::contact_group::GroupLoads;
 use crate::fem::load::BlockLoads;
 use crate::fem::prescribed::Prescribed;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
-use crate::recover::motions::Field;
 use crate::recover::{BlockSolution, DiscreteSolution, GroupSolution};
 use crate::vector::{axpy, dot};
 
@@ -235,23 +233,9 @@ impl<'a> TransposedProblem<'a> {
         loads: &Loads,
         state: &mut DiscreteSolution,
     ) {
-        let mut residuals = self.left(loads, state);
-        let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
-        fixed.free.project(&fixed.context, Field::Summed, fields);
-        let on_unknowns = |(b, residual): (BlockId, Vec<f64>)| {
-            let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
-            let mut load = vec![0.0; dofs.len()];
-            dofs.add_load(&residual, &mut load);
-            Some((b, load))
-        };
-        let on_unknowns = residuals.into_iter().filter_map(on_unknowns).collect();
+        let on_unknowns = fixed.on_unknowns(self.left(loads, state));
         let conditions = state.groups.iter().map(|(&g, of_group)| {
-            let both = of_group.closed.iter().zip(&of_group.gaps);
-            let status = both.map(|(&closed, &distance)| match closed {
-                true => FixedStatus::Closed { distance },
-                false => FixedStatus::Open,
-            });
-            let mut statuses: Vec<FixedStatus> = status.collect();
+            let mut statuses = of_group.fixed_statuses();
             self.slipping[&g].set_turning(&mut statuses);
             (g, statuses)
         });
