@@ -5,7 +5,7 @@ use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
 use super::cost::CostEstimate;
-use crate::comm::Comm;
+use crate::comm::{Comm, host_name};
 use crate::error::Failure;
 
 /// Peak resident memory of this process (bytes); 0 if the system doesn't report it.
@@ -96,7 +96,7 @@ pub fn afford(comm: &Comm, costs: &[CostEstimate], share: f64) -> Result<f64, Fa
     // If the system doesn't report memory, nothing is refused.
     let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
-    let ranks = comm.collect(&(comm.host_name(), available));
+    let ranks = comm.collect(&(host_name(), available));
     for ((name, available), cost) in ranks.into_iter().zip(costs) {
         let host = hosts.entry(name).or_default();
         host.available = available;

@@ -18,7 +18,7 @@ use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::slip_law::SlipLaw;
 use crate::tree::solution::ActiveSetSolution;
-use crate::vector::{axpy, dot};
+use crate::vector::{add_multiple, axpy, dot, multiple};
 
 /// Most rounds.
 const ROUNDS: usize = 2;
@@ -110,7 +110,7 @@ impl SlipProblem<'_> {
         };
         let (mut held, of_open) = (prescribed.clone(), self.on_open(forces));
         if self.is_held {
-            add(&mut held, &self.slips(forces));
+            add_multiple(1.0, &self.slips(forces), &mut held);
             (loads.prescribed, loads.forces) = (&held, &of_open);
         }
         let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
@@ -187,7 +187,7 @@ impl SlipProblem<'_> {
             last = size;
             let reduction = (MARGIN * enough / size).clamp(REDUCTION[1], REDUCTION[0]);
             let (change, iterations) = self.gmres(fronts, &residual, reduction)?;
-            add(&mut forces, &change);
+            add_multiple(1.0, &change, &mut forces);
             solution.iterations += iterations;
             solution = respond(fronts, &forces, Some(&solution))?;
         }
@@ -231,7 +231,7 @@ impl SlipProblem<'_> {
         if size == 0.0 {
             return Ok((sum, iterations));
         }
-        let mut basis = vec![scaled(residual, -1.0 / size)];
+        let mut basis = vec![multiple(-1.0 / size, residual)];
         let mut h = Mat::<f64>::zeros(PRODUCTS + 1, PRODUCTS);
         let mut weights = Vec::new();
         let mut tolerance = PRODUCT * reduction;
@@ -256,7 +256,7 @@ impl SlipProblem<'_> {
             if left <= reduction * size || rest <= f64::EPSILON * size {
                 break;
             }
-            basis.push(scaled(&next, 1.0 / rest));
+            basis.push(multiple(1.0 / rest, &next));
         }
         for (known, weight) in basis.iter().zip(weights) {
             for (g, sum) in &mut sum {
@@ -313,24 +313,9 @@ impl SlipProblem<'_> {
     }
 }
 
-/// Adds another vector on jumps.
-fn add(to: &mut OnJumps, others: &OnJumps) {
-    for (g, to) in to {
-        if let Some(others) = others.get(g) {
-            axpy(1.0, others, to);
-        }
-    }
-}
-
 /// Vectors of the same lengths, all 0.
 fn zeros<K: Copy + Ord>(of: &BTreeMap<K, Vec<f64>>) -> BTreeMap<K, Vec<f64>> {
     let all = of.iter();
     all.map(|(&k, values)| (k, vec![0.0; values.len()]))
-        .collect()
-}
-
-fn scaled(of_jumps: &OnJumps, factor: f64) -> OnJumps {
-    let all = of_jumps.iter();
-    all.map(|(&g, own)| (g, own.iter().map(|x| factor * x).collect()))
         .collect()
 }

@@ -13,7 +13,7 @@ use contact_dd_partition::model::Support;
 use contact_dd_partition::numbered::Numbered;
 
 use super::functional::Functional;
-use super::slipping::{Direction, OnConditions, SlippingPoints, add};
+use super::slipping::{Direction, OnConditions, SlippingPoints};
 use super::solved::Solved;
 use crate::context::Loads;
 use crate::fem::balance::Balance;
@@ -23,7 +23,7 @@ use crate::fem::load::BlockLoads;
 use crate::fem::prescribed::Prescribed;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::{BlockSolution, DiscreteSolution, GroupSolution};
-use crate::vector::{axpy, dot};
+use crate::vector::{add_multiple, axpy, dot};
 
 /// Accuracy of a correction by an iterative solver.
 const ACCURACY: f64 = 1e-10;
@@ -138,7 +138,7 @@ impl<'a> TransposedProblem<'a> {
         for _ in 0..ROUNDS {
             let mut missing = self.wanted(&state);
             let size = self.norm(&self.weighed(missing.clone()));
-            add(&mut missing, -1.0, &z);
+            add_multiple(-1.0, &z, &mut missing);
             missing = self.weighed(missing);
             let off = self.norm(&missing);
             if context.comm.decide(off <= ENOUGH * size || off.is_nan()) {
@@ -146,7 +146,7 @@ impl<'a> TransposedProblem<'a> {
             }
             let change = self
                 .conditions_of_slips(&missing, 0.1 * ENOUGH * size.max(f64::MIN_POSITIVE) / off);
-            add(&mut z, 1.0, &change);
+            add_multiple(1.0, &change, &mut z);
             for (g, points) in self.slipping {
                 let (jumps, forces) = points.split(&z[g]);
                 if let (Some(of_group), Some(to), Some(from)) = (
