@@ -249,8 +249,8 @@ impl Bddc {
         let is_remade =
             |c: MergeRootId| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
         let remade: Numbered<MergeRootId, bool> = changed.ids().map(is_remade).collect();
-        let holds = self.level.holds();
-        (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
+        let shifts = self.level.shifts();
+        (self.coarse).factorize(context, &self.classes, parts, &remade, shifts)?;
         self.coarse_dofs = context.comm.collect(&self.coarse.len()).into_iter().sum();
         Ok(())
     }

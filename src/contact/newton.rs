@@ -18,7 +18,7 @@ use crate::vector::larger;
 /// Smallest fraction of a step.
 const SMALLEST: f64 = 1e-3;
 /// Relative reduction of the merit function that is required per fraction of a step.
-const LESSENS: f64 = 1e-4;
+const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 /// An operator that solves the linear problem of given statuses. Its methods are collective.
 pub trait ContactOperator {
@@ -311,7 +311,8 @@ fn line_search<O: ContactOperator>(
     (whole, of_whole): (OnGroups<LawResidual>, TotalResidual),
     settings: NewtonSettings,
 ) -> (OnGroups<Iterate>, f64, OnGroups<Statuses>) {
-    let lessens = |total: TotalResidual, part: f64| total.merit <= (1.0 - LESSENS * part) * merit;
+    let lessens =
+        |total: TotalResidual, part: f64| total.merit <= (1.0 - SUFFICIENT_DECREASE * part) * merit;
     let statuses = |residuals: OnGroups<LawResidual>| {
         let all = residuals.into_iter();
         all.map(|(g, residual)| (g, residual.statuses)).collect()

@@ -7,7 +7,7 @@ use contact_dd_partition::solver::Method;
 use super::Plan;
 use super::cluster::Merging;
 use super::cost::CostEstimate;
-use super::memory::{CERTAIN, LIKELY, afford};
+use super::memory::{CERTAIN_SHARE, LIKELY_SHARE, check_memory};
 use crate::comm::Comm;
 use crate::error::Failure;
 
@@ -120,7 +120,7 @@ impl Choice {
         let plan = Plan::new(catalog, comm.size(), self.merging);
         let costs = plan.cost_estimates(catalog, comm.size());
         let needed = CostEstimate::sum(&costs).bytes;
-        match afford(comm, &costs, share) {
+        match check_memory(comm, &costs, share) {
             Ok(available) => Ok(ChosenPlan {
                 choice: self,
                 plan,
@@ -146,7 +146,7 @@ impl ChosenPlan {
     /// Too little memory for any of them.
     pub fn new(comm: &Comm, catalog: &Catalog, choices: &[Choice]) -> Result<Self, Failure> {
         let mut least: Option<Refusal> = None;
-        for share in [LIKELY, CERTAIN] {
+        for share in [LIKELY_SHARE, CERTAIN_SHARE] {
             let mut refused = String::new();
             for choice in choices {
                 match choice.clone().plan(comm, catalog, share) {

@@ -23,7 +23,7 @@ pub fn names_against_law(
     if points.is_empty() {
         let pairs = outcome
             .iter()
-            .flat_map(|o| (0..).map(PairId::new).zip(&o.violated_limits));
+            .flat_map(|o| (0..).map(PairId::new).zip(&o.unsettled));
         points = pairs
             .flat_map(|(p, conditions)| {
                 (context.plan).points_of_conditions(context.catalog, p, conditions)

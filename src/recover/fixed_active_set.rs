@@ -115,7 +115,7 @@ impl<'a> FixedActiveSet<'a> {
             root: on_root.map(|outcome| FixedActiveSetRoot {
                 interface,
                 is_refined: outcome.status == SweepStatus::Converged || outcome.is_settled,
-                cycles: !outcome.violated_limits.is_empty(),
+                cycles: !outcome.unsettled.is_empty(),
                 moves: false,
             }),
             fronts,

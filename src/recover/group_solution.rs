@@ -115,7 +115,7 @@ impl GroupSolution {
     /// Changes sticking points beyond their bound to slipping, and slipping points whose force drives the slip to
     /// sticking. A slipping point without a force, lost with its pressure, gets that of its law. Returns whether any
     /// changed.
-    pub fn stick_or_slip(&mut self, group: &ContactGroup) -> bool {
+    pub fn correct_statuses(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
         for point in group.point_laws() {
             let here = self.point(&point);

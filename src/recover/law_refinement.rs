@@ -96,7 +96,7 @@ impl FixedActiveSet<'_> {
 
     /// Undoes slips: closed points return to their positions of stick, with the forces that this takes, as the solution
     /// moves under these `loads`. Collective.
-    pub fn hold_slips(&self, solution: &mut DiscreteSolution, loads: OnUnknowns) {
+    pub fn undo_slips(&self, solution: &mut DiscreteSolution, loads: OnUnknowns) {
         for (&g, of_group) in &mut solution.groups {
             for point in self.context.groups[&g].point_laws() {
                 let holds = !point.has_opened(&of_group.closed);

@@ -86,7 +86,7 @@ pub fn refine_laws(
         let mut stuck = solution.clone();
         for _ in 0..MAX_REFINEMENTS {
             let loads = unbalanced(fixed, &stuck);
-            fixed.hold_slips(&mut stuck, loads);
+            fixed.undo_slips(&mut stuck, loads);
         }
         let mut of_stuck = Certificate {
             equilibrium: f64::INFINITY,
@@ -151,7 +151,7 @@ pub fn correct_statuses(
                 changed |= of_group.open_or_close(group);
             }
             if is_violated {
-                changed |= of_group.stick_or_slip(group);
+                changed |= of_group.correct_statuses(group);
             }
         }
         let changed = fixed.context.comm.collect(&changed).contains(&true);

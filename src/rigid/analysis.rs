@@ -21,7 +21,7 @@ const LOAD_TOLERANCE: f64 = 1e-10;
 /// Load that contact can't balance, relative to all loads, that counts as zero.
 const BALANCE_TOLERANCE: f64 = 1e-9;
 /// Unbalanced load, relative to all loads, that may be more than round-off and leads to a warning.
-const UNDECIDED: f64 = 1e-12;
+const WARNED_IMBALANCE: f64 = 1e-12;
 /// Load that friction can't balance, relative to all loads, up to which it is round-off of their sum. It is small
 /// because a body on a slope slides just beyond a known angle.
 const SLIDING: f64 = 2e-14;
@@ -98,7 +98,7 @@ impl Scene {
         let mut forces = Forces::new(rows, |_| true);
         let nothing = match forces.has_friction {
             true => SLIDING,
-            false => UNDECIDED,
+            false => WARNED_IMBALANCE,
         };
         let is_nothing = |left: &DVector<f64>| left.norm() <= nothing * scale;
         let loaded = Loaded {
@@ -159,7 +159,7 @@ impl Scene {
             load: &held,
             scale,
         };
-        let found = Forces::new(&normals, |_| true).unbalanced(&loaded, UNDECIDED * scale);
+        let found = Forces::new(&normals, |_| true).unbalanced(&loaded, WARNED_IMBALANCE * scale);
         let unbalanced = driven + found.left;
         (unbalanced.norm() > BALANCE_TOLERANCE * scale).then(|| sliding(&unbalanced))
     }

@@ -32,7 +32,7 @@ use crate::step::state::{StepState, analyse, check_interrupt};
 use crate::sweep::{Method, SweepOutcome, SweepStatus};
 
 /// Ratio of closing motions to displacements from which on the digits that their difference loses matter.
-const FAR: f64 = 1e3;
+const LARGE_CLOSING_MOTION: f64 = 1e3;
 
 /// Data common to all increments, including all factorized matrices.
 #[derive(Clone, Copy)]
@@ -184,7 +184,7 @@ impl Increments<'_> {
         }
         let found = self.solve_after(load_point, analysis, before.clone(), seconds)?;
         let moved = found.solution.displacement.values().flatten();
-        if closing <= FAR * self.context.comm.largest(moved) {
+        if closing <= LARGE_CLOSING_MOTION * self.context.comm.largest(moved) {
             return Ok(found);
         }
         let stays = analysis.without_closing_motions();

@@ -206,8 +206,12 @@ fn read(settings: &Settings) -> Result<Option<(file::Kept, KeptState)>, Failure>
         return Ok(None);
     };
     let state = take(&mut file.state);
-    let kept: KeptState = ciborium::from_reader(&state[..])
-        .map_err(|error| unread(file::unread(&file::state_of(&settings.output), &error)))?;
+    let kept: KeptState = ciborium::from_reader(&state[..]).map_err(|error| {
+        unreadable_state(file::unreadable_state(
+            &file::state_of(&settings.output),
+            &error,
+        ))
+    })?;
     let run = Identity::new(settings)?;
     let why = match &kept.run {
         kept if kept.problem != run.problem => "it is of another problem file",

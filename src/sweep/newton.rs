@@ -43,7 +43,7 @@ impl Sweeps<'_, '_> {
                 );
             }
             if !step.contact.converged && coupled.has_friction() {
-                self.outcome.violated_limits = step.violated_limits;
+                self.outcome.unsettled = step.violated_limits;
                 self.outcome.slides = step.contact.slides;
                 self.outcome.is_settled = true;
                 return Ok(self.gave_up(&residual, "statuses of contacts with friction cycle"));

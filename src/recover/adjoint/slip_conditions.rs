@@ -44,11 +44,11 @@ impl TransposedProblem<'_> {
         self.correct_by(&fixed, &loads, &mut state);
         let mut product = z.clone();
         add_multiple(-1.0, &self.wanted(&state), &mut product);
-        self.weighed(product)
+        self.weighted(product)
     }
 
     /// W times a vector on conditions.
-    pub(super) fn weighed(&self, mut of: OnConditions) -> OnConditions {
+    pub(super) fn weighted(&self, mut of: OnConditions) -> OnConditions {
         for (g, points) in self.slipping {
             if let Some(of) = of.get_mut(g) {
                 points.weigh(of);

@@ -30,7 +30,7 @@ const ACCURACY: f64 = 1e-10;
 /// Most rounds in which the conditions of slipping points are solved for.
 const ROUNDS: usize = 3;
 /// Residual to which the conditions of slipping points are solved.
-const ENOUGH: f64 = 1e-9;
+const SLIP_TOLERANCE: f64 = 1e-9;
 
 /// The transposed problem of a quantity, on this rank.
 pub struct TransposedProblem<'a> {
@@ -137,15 +137,20 @@ impl<'a> TransposedProblem<'a> {
         let mut z: OnConditions = self.zeros();
         for _ in 0..ROUNDS {
             let mut missing = self.wanted(&state);
-            let size = self.norm(&self.weighed(missing.clone()));
+            let size = self.norm(&self.weighted(missing.clone()));
             add_multiple(-1.0, &z, &mut missing);
-            missing = self.weighed(missing);
+            missing = self.weighted(missing);
             let off = self.norm(&missing);
-            if context.comm.decide(off <= ENOUGH * size || off.is_nan()) {
+            if context
+                .comm
+                .decide(off <= SLIP_TOLERANCE * size || off.is_nan())
+            {
                 break;
             }
-            let change = self
-                .conditions_of_slips(&missing, 0.1 * ENOUGH * size.max(f64::MIN_POSITIVE) / off);
+            let change = self.conditions_of_slips(
+                &missing,
+                0.1 * SLIP_TOLERANCE * size.max(f64::MIN_POSITIVE) / off,
+            );
             add_multiple(1.0, &change, &mut z);
             for (g, points) in self.slipping {
                 let (jumps, forces) = points.split(&z[g]);

@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use super::{
-    BALANCE_TOLERANCE, FixingDof, LOAD_TOLERANCE, RigidMotions, RigidRow, Scene, UNDECIDED,
+    BALANCE_TOLERANCE, FixingDof, LOAD_TOLERANCE, RigidMotions, RigidRow, Scene, WARNED_IMBALANCE,
 };
 use crate::error::Failure;
 use crate::rigid::forces::{Forces, slips};
@@ -203,7 +203,7 @@ impl Touched<'_> {
         let balance = |rows: Vec<SparseRow>| {
             let rest = ManyBodies::new(&self.kinematics.centers, rows)
                 .and_then(|bodies| bodies.rest(self.load.as_slice(), &vec![0.0; bodies.len()]));
-            rest.is_some_and(|rest| rest.unbalanced() <= UNDECIDED * scale)
+            rest.is_some_and(|rest| rest.unbalanced() <= WARNED_IMBALANCE * scale)
         };
         let forces = Forces::new(self.rows, |_| true);
         if balance(self.normals())

@@ -8,7 +8,7 @@ use crate::magnitude::short;
 
 /// Factor on the larger sagitta of the facets of curves on either side: sides with gaps up to that value are
 /// conforming.
-const FITTING: f64 = 2.0;
+const CONFORMING_GAP: f64 = 2.0;
 
 /// Gap, relative to the smaller facets, that is round-off.
 const ROUND_OFF: f64 = 1e-6;
@@ -51,7 +51,7 @@ pub(in crate::model) fn pair(sides: &Sides, what: &str) -> Result<Mortar, String
         warning,
     };
     let (a, b) = (sides.a, sides.b);
-    let off = FITTING * a.kinks().max(b.kinks());
+    let off = CONFORMING_GAP * a.kinks().max(b.kinks());
     let round_off = ROUND_OFF * a.facet_size().min(b.facet_size());
     let fits = |unseen: f64| unseen <= off.max(round_off);
     let ratio = a.facet_size() / b.facet_size();

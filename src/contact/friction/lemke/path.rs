@@ -73,7 +73,7 @@ pub(super) struct Path {
 }
 
 /// Number from 0.5 to 1.5 by which forces differ, so that no two vanish at once.
-fn spread(i: usize, attempt: usize) -> f64 {
+fn perturbation(i: usize, attempt: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     0.5 + ((i + 1) as f64 * GOLDEN + attempt as f64 * 0.37).fract()
 }
@@ -96,7 +96,7 @@ impl Path {
             zero: (0..count).map(Quantity::Gap).collect(),
             bounds,
             added: (0..count)
-                .map(|i| unit * spread(i, polygons.attempt))
+                .map(|i| unit * perturbation(i, polygons.attempt))
                 .collect(),
             points: Vec::new(),
             normals: Vec::new(),
