@@ -33,12 +33,12 @@ const BEYOND_CURVED: usize = 2;
 /// The part of a facet of side a that is covered by side b, and whether a facet of side b there faces the same way.
 pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let chart = Chart::new(field);
-    let mut shadows = ProjectedOutlines::new(&chart);
+    let mut outlines = ProjectedOutlines::new(&chart);
     let mut pieces = Vec::new();
     let mut any_back_facing = false;
     for candidate in candidates(opposite, field, &chart) {
         let facet = &opposite.surface.facets[candidate];
-        let mut shadow = shadows.of(facet);
+        let mut shadow = outlines.of(facet);
         let faces = opposite.faces(candidate, chart.normal());
         if faces {
             shadow.reverse();
