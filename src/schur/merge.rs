@@ -146,7 +146,7 @@ impl Merge {
         });
         substitution.transform_diagonal(&mut diagonal);
         let tied = known_columns(&mut columns, &mut s, e + k);
-        for j in order.gone.len()..e {
+        for j in order.eliminated.len()..e {
             columns[(j, j)] += own.spring * diagonal[j];
         }
         let mut merge = Self {

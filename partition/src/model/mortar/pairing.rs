@@ -1,7 +1,7 @@
 //! Choice of the side that carries the multipliers.
 
 use super::super::sides::Sides;
-use super::carried::{Carried, carried};
+use super::carried::{CarriedPoints, carried};
 use super::probes::probes;
 use crate::contact_point::{ContactPoint, Probe};
 use crate::magnitude::short;
@@ -45,7 +45,7 @@ pub(in crate::model) struct Mortar {
 /// Sides that don't face each other.
 pub(in crate::model) fn pair(sides: &Sides, what: &str) -> Result<Mortar, String> {
     let first = carried(sides)?;
-    let of = |first: Carried, warning| Mortar {
+    let of = |first: CarriedPoints, warning| Mortar {
         points: first.points,
         probes: probes(sides),
         warning,
