@@ -206,17 +206,17 @@ impl Bddc {
                     Ok(placement(c).sides(&cluster(c).diagonal, is_made))
                 }
                 level => shared(c).and_then(|(shared, s)| {
-                    let is_looked_into = level == PreconditionerLevel::Energies;
-                    shared.sides(&s, is_made, is_looked_into, par)
+                    let uses_energies = level == PreconditionerLevel::Energies;
+                    shared.sides(&s, is_made, uses_energies, par)
                 }),
             };
-            Ok((c, sides.map_err(moves)?))
+            Ok((c, sides.map_err(free_motion)?))
         });
         let sides: OnMergeRoots<Vec<Option<Side>>> = comm.agree(sides.collect())?;
         let bases = self.bases(context, &before, &changed, &made, sides)?;
         let locals = bases.into_iter().map(|(c, bases)| {
             let local = shared(c).and_then(|shared| Local::new(shared, bases, self.level, par));
-            Ok((c, local.map_err(moves)?))
+            Ok((c, local.map_err(free_motion)?))
         });
         let made_anew: OnMergeRoots<(Local, PackedSymmetric)> = comm.agree(locals.collect())?;
         let (mut locals, mut parts) = (BTreeMap::new(), BTreeMap::new());
@@ -226,7 +226,7 @@ impl Bddc {
         }
         let others = (self.locals.keys().copied()).filter(|c| !locals.contains_key(c));
         let touched = others.filter(|&c| touched[plan.merge_roots[c]] && self.locals[&c].own() > 0);
-        let refreshed = touched.map(|c| Ok((c, shared(c).map_err(moves)?.0)));
+        let refreshed = touched.map(|c| Ok((c, shared(c).map_err(free_motion)?.0)));
         self.refresh(comm.agree(refreshed.collect())?);
         self.locals.extend(locals);
         if !changed.values().contains(&true) {
@@ -250,8 +250,8 @@ impl Bddc {
         let is_remade =
             |c: MergeRootId| changed[c] || self.classes.of_clusters[c].iter().any(|&k| made[k]);
         let remade: Numbered<MergeRootId, bool> = changed.ids().map(is_remade).collect();
-        let holds = self.level.holds();
-        (self.coarse).factorize(context, &self.classes, parts, &remade, holds)?;
+        let shifts = self.level.shifts();
+        (self.coarse).factorize(context, &self.classes, parts, &remade, shifts)?;
         self.coarse_dofs = context.comm.collect(&self.coarse.len()).into_iter().sum();
         Ok(())
     }
@@ -287,7 +287,7 @@ impl Bddc {
     /// Moves to the next level of the preconditioner where it converges too slowly or can't be factorized:
     /// first coarse unknowns chosen by their energies, then rigid motions with weak springs on all unknowns. The
     /// classes are determined anew. Returns false after the last level.
-    pub fn look_deeper(&mut self) -> bool {
+    pub fn raise_level(&mut self) -> bool {
         let Some(deeper) = self.level.next() else {
             return false;
         };
@@ -297,7 +297,7 @@ impl Bddc {
     }
 
     /// True at the levels that are abandoned for a better preconditioner when they converge slowly.
-    pub fn is_judged(&self) -> bool {
+    pub fn is_provisional(&self) -> bool {
         matches!(
             self.level,
             PreconditionerLevel::Diagonals | PreconditionerLevel::Motions
@@ -305,14 +305,14 @@ impl Bddc {
     }
 
     /// The smallest pivot of the coarse problem on this rank, relative to its diagonal entry.
-    pub fn coarse_pivot(&self) -> f64 {
+    pub fn smallest_coarse_pivot(&self) -> f64 {
         self.coarse.smallest_pivot()
     }
 
     /// The smallest pivot on this rank, relative to its diagonal entry, including the coarse problem.
     pub fn smallest_pivot(&self) -> f64 {
         let pivots = (self.locals.values()).map(|local| local.shared.smallest_pivot);
-        pivots.fold(self.coarse_pivot(), f64::min)
+        pivots.fold(self.smallest_coarse_pivot(), f64::min)
     }
 
     /// True if S of any cluster has changed since the preconditioner was computed; the same on all ranks.
@@ -338,7 +338,7 @@ impl Bddc {
     }
 }
 
-fn moves(Mechanism: Mechanism) -> Failure {
+fn free_motion(Mechanism: Mechanism) -> Failure {
     Failure::ill_posed(
         "a part of the scene can move although every contact that presses is held; expected supports or contact that \
          hold it",

@@ -38,6 +38,11 @@ pub const ROOT: usize = 0;
 /// Most bytes in one piece of a message, as MPI counts in 32 bits.
 const PIECE: usize = 1 << 30;
 
+/// The name of this process's host.
+pub fn host_name() -> String {
+    uname().nodename().to_string_lossy().into_owned()
+}
+
 /// All ranks of a run.
 pub struct Comm {
     rank: usize,
@@ -59,11 +64,6 @@ impl Comm {
     /// Number of ranks.
     pub fn size(&self) -> usize {
         self.size
-    }
-
-    /// The name of this rank's host.
-    pub fn host_name(&self) -> String {
-        uname().nodename().to_string_lossy().into_owned()
     }
 
     /// True if this rank is the root.

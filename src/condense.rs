@@ -74,7 +74,7 @@ impl Condensation<'_> {
         };
         let (factor, s) = condensed_block.map_err(|error| match error {
             FactorError::Size => too_large(number),
-            FactorError::Pivot(unknown) => moves(block, &dofs, unknown, catalog),
+            FactorError::Pivot(unknown) => free_motion(block, &dofs, unknown, catalog),
         })?;
         let of_block = Condensed {
             jumps: 0,
@@ -168,7 +168,7 @@ fn too_large(subdomain: BlockId) -> Failure {
     ))
 }
 
-fn moves(block: &Block, dofs: &Dofs, unknown: usize, catalog: &Catalog) -> Failure {
+fn free_motion(block: &Block, dofs: &Dofs, unknown: usize, catalog: &Catalog) -> Failure {
     let node = (0..block.nodes() as u32).find(|&node| {
         (0..block.dim).any(|c| {
             dofs.terms(node, c)

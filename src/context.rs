@@ -71,21 +71,21 @@ pub struct Loads {
 
 impl Context<'_> {
     /// The loads at a point of the load path.
-    pub fn loads(&self, moment: LoadPoint) -> Loads {
-        let mut loads = self.loads_of_step(moment.step);
-        if moment.part < 1.0 {
-            let before = (moment.step.checked_sub(1)).map(|step| self.loads_of_step(step));
+    pub fn loads(&self, load_point: LoadPoint) -> Loads {
+        let mut loads = self.loads_of_step(load_point.step);
+        if load_point.part < 1.0 {
+            let before = (load_point.step.checked_sub(1)).map(|step| self.loads_of_step(step));
             for (b, loads) in &mut loads.blocks {
                 // Loads of the step before don't act on a body that is now absent.
                 if self.catalog.bodies[self.catalog.body_of(*b)].is_absent {
                     continue;
                 }
                 let before = before.as_ref().map(|before| &before.blocks[b]);
-                loads.go_back(before, moment.part);
+                loads.go_back(before, load_point.part);
             }
             for (g, loads) in &mut loads.groups {
                 let before = before.as_ref().map(|before| &before.groups[g]);
-                loads.go_back(before, moment.part);
+                loads.go_back(before, load_point.part);
             }
         }
         loads

@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_stops_a_run_hears_how_it_goes_on() {
+    fn the_message_of_an_interrupted_run_says_how_to_continue() {
         let after = |k| Failure::interrupted("interrupted").after(k, 5, Path::new("x.unfinished"));
         assert_eq!(after(0).message, "interrupted, before a result was written");
         let message = after(2).message;

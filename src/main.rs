@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     }
     let command_line = match CommandLine::of_this_program() {
         Ok(command_line) => command_line,
-        Err(answer) if comm::is_first() => return tell(&answer),
+        Err(answer) if comm::is_first() => return print_answer(&answer),
         // Any failing rank would make the launcher kill the first one before that has printed its message.
         Err(_) => return ExitCode::SUCCESS,
     };
@@ -68,7 +68,7 @@ fn solve(comm: &Comm, command_line: &CommandLine) -> ExitCode {
 }
 
 /// Prints the answer to a command line that starts no run.
-fn tell(answer: &Answer) -> ExitCode {
+fn print_answer(answer: &Answer) -> ExitCode {
     match answer {
         Answer::Refusal(why) => {
             event::error(LogFormat::of_this_program(), BAD_USAGE, why);

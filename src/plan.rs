@@ -71,7 +71,7 @@ impl Plan {
             pairs: Numbered::default(),
             merging,
         };
-        plan.node_owners = plan.hand_out(catalog, ranks);
+        plan.node_owners = plan.assign_nodes(catalog, ranks);
         plan.form_clusters(merging);
         plan
     }
@@ -82,7 +82,7 @@ impl Plan {
     }
 
     /// The owner of every node of the hierarchy.
-    fn hand_out(&self, catalog: &Catalog, ranks: usize) -> Numbered<TreeNodeId, usize> {
+    fn assign_nodes(&self, catalog: &Catalog, ranks: usize) -> Numbered<TreeNodeId, usize> {
         let top = match self.merging {
             Merging::ActiveSet | Merging::Clusters => self.merge_roots.values().to_vec(),
             _ => cluster_nodes(&self.tree, self.merging, self.merge_roots.values()),

@@ -107,7 +107,7 @@ fn warnings(totals: &Totals<'_>, settings: &Settings) -> Vec<String> {
     warnings.extend(totals.warnings.iter().cloned());
     warnings.extend(totals.step_warnings());
     warnings.extend(solved_directly(totals, settings));
-    warnings.extend(more_robust(totals, settings));
+    warnings.extend(advice_on_solver(totals, settings));
     let certificate = totals.certificate();
     let condition = totals.condition();
     if certificate.equilibrium > 1e-14 || certificate.penetration > 1e-14 {
@@ -154,7 +154,7 @@ fn contact_operator(plan: &Plan) -> ContactOperator {
 }
 
 /// Advice where the iterative solver didn't converge.
-fn more_robust(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
+fn advice_on_solver(totals: &Totals<'_>, settings: &Settings) -> Option<String> {
     let is_iterative = totals.interface_solver() == InterfaceMethod::Iterative;
     let is_direct = !is_iterative || totals.took_over().is_some();
     if is_direct || totals.status() == Status::Converged {

@@ -13,6 +13,7 @@ mod stage;
 mod stage_steps;
 mod step_totals;
 mod study;
+mod swept;
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -108,7 +109,7 @@ pub fn run(comm: &Comm, command_line: &CommandLine) -> Result<Ending, Failure> {
     if settings.check {
         let checked = all.into_iter().map(|steps| stages.check(steps));
         log.check(&checked.collect::<Result<Vec<_>, _>>()?);
-        comm.agree(log.heard())?;
+        comm.agree(log.check_written())?;
         return Ok(Ending::Converged);
     }
     let lock = comm.is_root().then(|| OutputLock::take(&settings.output));

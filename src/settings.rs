@@ -15,7 +15,7 @@ use serde::{Serialize, Serializer};
 
 use self::command_line::{CommandLine, InterfaceMethod, LogFormat};
 use crate::error::Failure;
-use crate::plan::choice::Wishes;
+use crate::plan::choice::SolverRequest;
 
 /// Relative residual of the interface problem at which sweeps end.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -152,9 +152,9 @@ impl Settings {
     }
 
     /// The user's choices of solvers.
-    pub fn wishes(&self) -> Wishes {
+    pub fn solver_request(&self) -> SolverRequest {
         let interface = self.interface;
-        Wishes {
+        SolverRequest {
             method: self.method,
             iterative: interface.map(|method| method == InterfaceMethod::Iterative),
             second_start: self.second_start,
@@ -163,27 +163,27 @@ impl Settings {
 
     /// The settings by name, as text; those that differ from the default with their origin.
     pub fn in_words(&self) -> Vec<(&'static str, String)> {
-        let said = |title, name: &str, value: String| match self.from.of(name) {
+        let entry = |title, name: &str, value: String| match self.from.of(name) {
             Origin::Default => (title, value),
             origin => (title, format!("{value} ({origin})")),
         };
         let mut list = vec![
-            said("method", "method", self.method.name().to_owned()),
-            said("tolerance", "tolerance", format!("{:e}", self.tolerance)),
+            entry("method", "method", self.method.name().to_owned()),
+            entry("tolerance", "tolerance", format!("{:e}", self.tolerance)),
         ];
         if let Some(n) = self.max_sweeps {
-            list.push(said("sweeps", "max_sweeps", format!("at most {n}")));
+            list.push(entry("sweeps", "max_sweeps", format!("at most {n}")));
         }
         if let Some(theta) = self.relaxation {
-            list.push(said("relaxation", "relaxation", theta.to_string()));
+            list.push(entry("relaxation", "relaxation", theta.to_string()));
         }
         if self.no_stress {
-            list.push(said("stress", "no_stress", "left out".to_owned()));
+            list.push(entry("stress", "no_stress", "left out".to_owned()));
         }
         if let Some(report) = &self.report {
-            list.push(said("report", "report", report.display().to_string()));
+            list.push(entry("report", "report", report.display().to_string()));
         }
-        list.push(said("result", "output", self.output.display().to_string()));
+        list.push(entry("result", "output", self.output.display().to_string()));
         list
     }
 }

@@ -86,7 +86,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             Method::Picard => sweeps.picard(residual)?,
         };
         if settings.second_start && status == SweepStatus::Converged {
-            sweeps.look_for_another();
+            sweeps.find_second_solution();
         }
         Ok(sweeps.end(status))
     }
@@ -153,7 +153,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     ///
     /// # Errors
     /// A signal has asked the run to stop.
-    fn goes_on(&self, residual: &Residual) -> Result<bool, Failure> {
+    fn needs_sweep(&self, residual: &Residual) -> Result<bool, Failure> {
         if self.is_converged(residual) {
             return Ok(false);
         }

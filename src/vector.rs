@@ -1,4 +1,6 @@
-//! Products and norms of vectors.
+//! Sums, products and norms of vectors.
+
+use std::collections::BTreeMap;
 
 /// x·y over the components that both vectors have.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
@@ -11,6 +13,23 @@ pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += a * x;
     }
+}
+
+/// y ← y + a x, for vectors in parts, over the parts that both have.
+pub fn add_multiple<K: Ord>(a: f64, x: &BTreeMap<K, Vec<f64>>, y: &mut BTreeMap<K, Vec<f64>>) {
+    for (key, y) in y {
+        if let Some(x) = x.get(key) {
+            axpy(a, x, y);
+        }
+    }
+}
+
+/// a x, for a vector in parts.
+pub fn multiple<K: Copy + Ord>(a: f64, x: &BTreeMap<K, Vec<f64>>) -> BTreeMap<K, Vec<f64>> {
+    let parts = x.iter();
+    parts
+        .map(|(&key, x)| (key, x.iter().map(|x| a * x).collect()))
+        .collect()
 }
 
 /// The vector x + `part` (y − x).

@@ -20,7 +20,7 @@ use contact_dd_mpi::interface::numbering::Numbering;
 use contact_dd_mpi::interface::operator::{Contribution, Interface};
 use contact_dd_mpi::schur::condensed::Condensed;
 use contact_dd_mpi::schur::local::LocalSchur;
-use contact_dd_mpi::schur::merge::{Merge, Spare};
+use contact_dd_mpi::schur::merge::{MatrixPool, Merge};
 use contact_dd_partition::id::TreeNodeId;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use faer::Par;
@@ -93,7 +93,7 @@ fn merge(c: &mut Criterion) {
             .map(|child| scene.of_block(child.index()))
             .collect()
     };
-    let mut spare = Spare::default();
+    let mut spare = MatrixPool::default();
     c.bench_function("merge", |bench| {
         bench.iter_batched(
             children,

@@ -117,10 +117,10 @@ impl Destination {
 
     /// An error that names the file, with the system's message where HDF5 quotes it among addresses.
     pub fn failure(&self, reason: impl ToString) -> OutputError {
-        let said = reason.to_string();
-        let quoted = said.split_once("error message = '");
+        let message = reason.to_string();
+        let quoted = message.split_once("error message = '");
         let quoted = quoted.and_then(|(_, rest)| rest.split_once('\''));
-        failure(&self.path, quoted.map_or(&*said, |(words, _)| words))
+        failure(&self.path, quoted.map_or(&*message, |(words, _)| words))
     }
 
     /// Flushes the temporary file to the disk and renames it.

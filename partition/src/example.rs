@@ -143,7 +143,7 @@ impl Example {
         // Nothing is written if one of the files can't be replaced.
         files.retain(|(path, text)| fs::read(path).ok().as_ref() != Some(text));
         let others = files.iter().filter(|(path, _)| path.exists());
-        let mut others = others.filter(|(path, _)| !is_ours(path));
+        let mut others = others.filter(|(path, _)| !is_own_output(path));
         if let Some((other, _)) = others.next() {
             let why = "another file is there, with changes of yours perhaps; expected another folder behind \
                        --write-scene, or that file moved away";
@@ -158,7 +158,7 @@ impl Example {
 
 /// True if a file has the form in which this program writes it: a built-in scene or geometry, or a mesh of any size and
 /// cells in the exact format of this program, which neither Gmsh nor an editor produces.
-fn is_ours(path: &Path) -> bool {
+fn is_own_output(path: &Path) -> bool {
     let Ok(bytes) = fs::read(path) else {
         return false;
     };

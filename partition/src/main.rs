@@ -68,22 +68,22 @@ fn main() -> ExitCode {
 
 fn run(args: &CommandLine) -> Result<(), Failure> {
     if let Some(document) = args.generate {
-        return Ok(message::say(
+        return Ok(message::print(
             &MANUAL.write(document, CommandLine::command()),
         )?);
     }
     if let Some(name) = &args.explain {
-        return Ok(message::say(&Explanation::named(name)?.text())?);
+        return Ok(message::print(&Explanation::named(name)?.text())?);
     }
     if args.list_examples {
         for example in EXAMPLES {
-            say(&format!("{:<10} {}", example.name, example.about))?;
+            print_line(&format!("{:<10} {}", example.name, example.about))?;
         }
         return Ok(());
     }
     if let Some(path) = &args.info {
         trial::check(path, || false)?;
-        say(&Info::read(path)?.to_string())?;
+        print_line(&Info::read(path)?.to_string())?;
         return Ok(());
     }
     let Some(source) = read(args)? else {
@@ -231,9 +231,9 @@ fn goes_on(args: &CommandLine, scene: &Path) -> Result<bool, Failure> {
         keep(&scene.with_file_name(example::MESH), output)?;
     }
     let scene = scene.display();
-    say(&format!("scene         {scene}"))?;
+    print_line(&format!("scene         {scene}"))?;
     if args.output.is_none() {
-        say(&format!("next          contact-dd-partition {scene}"))?;
+        print_line(&format!("next          contact-dd-partition {scene}"))?;
     }
     Ok(args.output.is_some())
 }
@@ -262,30 +262,30 @@ fn output(args: &CommandLine, stem: &Path) -> PathBuf {
 /// Prints the content of the problem file, the contacts that were `found`, and the next command.
 fn report(problem: &Problem, found: &[String], output: &Path) -> Result<(), OutputError> {
     if !problem.catalog.title.is_empty() {
-        say(&format!("title         {}", problem.catalog.title))?;
+        print_line(&format!("title         {}", problem.catalog.title))?;
     }
-    say(&problem.summary().to_string())?;
+    print_line(&problem.summary().to_string())?;
     if !problem.catalog.solver.is_empty() {
-        say(&format!("settings      {}", problem.catalog.solver))?;
+        print_line(&format!("settings      {}", problem.catalog.solver))?;
     }
     for contact in found {
-        say(&format!("found         {contact}"))?;
+        print_line(&format!("found         {contact}"))?;
     }
     for warning in &problem.catalog.warnings {
         let warning = with_name(warning);
-        say(&format!("{WARNING}warning{WARNING:#}       {warning}"))?;
+        print_line(&format!("{WARNING}warning{WARNING:#}       {warning}"))?;
     }
     let output = output.display();
-    say(&format!("written       {output}"))?;
+    print_line(&format!("written       {output}"))?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let launcher = match Work::new(&problem.catalog).useful_ranks().min(cores) {
         1 => String::new(),
         ranks => format!("mpirun -n {ranks} "),
     };
-    say(&format!("next          {launcher}contact-dd-mpi {output}"))
+    print_line(&format!("next          {launcher}contact-dd-mpi {output}"))
 }
 
 /// Prints a line.
-fn say(line: &str) -> Result<(), OutputError> {
-    message::say(&format!("{line}\n"))
+fn print_line(line: &str) -> Result<(), OutputError> {
+    message::print(&format!("{line}\n"))
 }

@@ -58,17 +58,17 @@ pub enum Answer {
 impl Answer {
     /// The output for a result of the parser: help, the version, or an error.
     pub fn of(error: &clap::Error) -> Self {
-        let said = error.render();
+        let text = error.render();
         match error.kind() {
             ErrorKind::DisplayHelp
             | ErrorKind::DisplayVersion
             | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-                Self::Text(said.ansi().to_string())
+                Self::Text(text.ansi().to_string())
             }
             _ => {
-                let said = said.to_string();
-                let said = said.strip_prefix("error: ").unwrap_or(&said);
-                Self::Refusal(said.trim_end().to_owned())
+                let text = text.to_string();
+                let text = text.strip_prefix("error: ").unwrap_or(&text);
+                Self::Refusal(text.trim_end().to_owned())
             }
         }
     }
@@ -76,7 +76,7 @@ impl Answer {
     /// Prints the output; returns the exit code of the program.
     pub fn print(&self) -> ExitCode {
         match self {
-            Self::Text(text) => match message::say(text) {
+            Self::Text(text) => match message::print(text) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(error) => {
                     message::error(&error.to_string());

@@ -18,17 +18,17 @@ pub const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 ///
 /// # Errors
 /// Other write errors, as on a full disk.
-pub fn say(text: &str) -> Result<(), OutputError> {
+pub fn print(text: &str) -> Result<(), OutputError> {
     let mut stdout = anstream::stdout();
-    heard((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
+    ignoring_closed_pipe((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
 }
 
-/// The result of a write to stdout; a closed pipe isn't an error, see [`say`].
+/// The result of a write to stdout; a closed pipe isn't an error, see [`print`].
 ///
 /// # Errors
 /// Other write errors.
-pub fn heard(said: io::Result<()>) -> Result<(), OutputError> {
-    match said {
+pub fn ignoring_closed_pipe(written: io::Result<()>) -> Result<(), OutputError> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             let (path, reason) = ("stdout".into(), error.to_string());
             Err(OutputError { path, reason })
@@ -39,15 +39,15 @@ pub fn heard(said: io::Result<()>) -> Result<(), OutputError> {
 
 /// Prints an error, with the name of its explanation.
 pub fn error(text: &str) {
-    print(ERROR, "error:", text);
+    print_on_stderr(ERROR, "error:", text);
 }
 
 /// Prints a warning, with the name of its explanation.
 pub fn warning(text: &str) {
-    print(WARNING, "warning:", text);
+    print_on_stderr(WARNING, "warning:", text);
 }
 
-fn print(style: Style, word: &str, text: &str) {
+fn print_on_stderr(style: Style, word: &str, text: &str) {
     let text = with_name(text);
     let line = match AutoStream::choice(&stderr()) {
         ColorChoice::Never => format!("{word} {text}\n"),

@@ -75,7 +75,7 @@ impl fmt::Display for Positive {
 ///
 /// # Errors
 /// It is neither `true` nor `false`.
-pub fn truth(text: &str) -> Result<bool, String> {
+pub fn parse_flag(text: &str) -> Result<bool, String> {
     // A parser with possible values would make shells complete them where a file name is expected.
     text.parse().map_err(|_| "expected true or false".into())
 }
@@ -103,7 +103,7 @@ pub struct SolverSettings {
 
     /// Neither recover nor write stresses
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
-          default_missing_value = "true", value_parser = truth)]
+          default_missing_value = "true", value_parser = parse_flag)]
     pub no_stress: Option<bool>,
 }
 
@@ -132,16 +132,16 @@ impl fmt::Display for SolverSettings {
             relaxation,
             no_stress,
         } = self;
-        let said = [
+        let values = [
             method.map(|method| method.name().to_owned()),
             tolerance.map(|tolerance| tolerance.to_string()),
             max_sweeps.map(|count| count.to_string()),
             relaxation.map(|theta| theta.value().to_string()),
             no_stress.map(|left_out| left_out.to_string()),
         ];
-        let said = Self::NAMES.iter().zip(said);
-        let said = said.filter_map(|(name, value)| Some(format!("{name} = {}", value?)));
-        f.write_str(&said.collect::<Vec<_>>().join(", "))
+        let entries = Self::NAMES.iter().zip(values);
+        let entries = entries.filter_map(|(name, value)| Some(format!("{name} = {}", value?)));
+        f.write_str(&entries.collect::<Vec<_>>().join(", "))
     }
 }
 

@@ -141,13 +141,13 @@ def above_zero(text: str, otherwise: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    heard: set[str] = set()
+    warned: set[str] = set()
     if arguments.source.suffix.lower() != ".inp":
-        print(programs.solve(partitioned(arguments, heard), arguments.ranks, (), True, heard=heard).path)
+        print(programs.solve(partitioned(arguments, warned), arguments.ranks, (), True, warned=warned).path)
         return
     with tempfile.TemporaryDirectory(prefix="contact-dd-") as folder:
         prints = Path(folder) / "prints.json"
-        result = programs.solve(partitioned(arguments, heard, prints), arguments.ranks, (), True, heard=heard)
+        result = programs.solve(partitioned(arguments, warned, prints), arguments.ranks, (), True, warned=warned)
         print(result.path)
         path = result.path.with_suffix(".dat")
         if write_dat(result, json.loads(prints.read_text(encoding="utf-8")), path):
@@ -158,9 +158,9 @@ def study(arguments: argparse.Namespace) -> None:
     vary = dict(map(values_of, arguments.vary))
     if len(vary) < len(arguments.vary):
         raise InputError("--vary: a name occurs twice; expected it once, with all of its values")
-    heard: set[str] = set()
-    problem = partitioned(arguments, heard)
-    table = programs.study(problem, cases_of(problem, vary), arguments.ranks, (), True, heard=heard)
+    warned: set[str] = set()
+    problem = partitioned(arguments, warned)
+    table = programs.study(problem, cases_of(problem, vary), arguments.ranks, (), True, warned=warned)
     for path, write in (
         (problem.with_suffix(".study.csv"), table.write_csv), (problem.with_suffix(".study.h5"), table.write_hdf5)
     ):
@@ -173,16 +173,16 @@ def study(arguments: argparse.Namespace) -> None:
     print(picture)
 
 
-def partitioned(arguments: argparse.Namespace, heard: set[str], prints: Path | None = None) -> Path:
+def partitioned(arguments: argparse.Namespace, warned: set[str], prints: Path | None = None) -> Path:
     """The problem file of a scene or a deck, in the folder asked for; what a deck prints in a file of its own. Warnings
-    are added to those `heard`."""
+    are added to those `warned`."""
     source, folder = arguments.source, arguments.folder
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{folder}: can't be made: {error.strerror}") from error
     problem: Path = folder / (source.stem + ".h5")
-    return programs.partition(source, arguments.subdomains, True, problem=problem, prints=prints, heard=heard)
+    return programs.partition(source, arguments.subdomains, True, problem=problem, prints=prints, warned=warned)
 
 
 def convert(arguments: argparse.Namespace) -> None:

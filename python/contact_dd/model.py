@@ -327,9 +327,9 @@ class Model:
 
         Raises the programs' messages as `InputError`, `NotConverged`, `IllPosed` and so on.
         """
-        heard: set[str] = set()
-        temporary, problem, worded = self._partition(folder, subdomains, progress, heard)
-        result = programs.solve(problem, ranks, options, progress, worded, heard)
+        warned: set[str] = set()
+        temporary, problem, worded = self._partition(folder, subdomains, progress, warned)
+        result = programs.solve(problem, ranks, options, progress, worded, warned)
         result.folder = temporary
         return result
 
@@ -346,20 +346,20 @@ class Model:
         takes a run of its own. The other arguments are those of `run`.
         """
         # The folder is needed until the table is read.
-        heard: set[str] = set()
-        temporary, problem, worded = self._partition(folder, subdomains, progress, heard)
+        warned: set[str] = set()
+        temporary, problem, worded = self._partition(folder, subdomains, progress, warned)
         cases = cases_of(problem, vary)
-        table = programs.study(problem, cases, ranks, options, progress, worded, heard)
+        table = programs.study(problem, cases, ranks, options, progress, worded, warned)
         if temporary:
             temporary.cleanup()
         return table
 
     def _partition(
         self, folder: str | Path | None, subdomains: int | None,
-        progress: bool | Callable[[dict[str, Any]], None], heard: set[str],
+        progress: bool | Callable[[dict[str, Any]], None], warned: set[str],
     ) -> tuple[tempfile.TemporaryDirectory[str] | None, Path, Callable[[str], str]]:
         """Writes the problem file into a folder; returns the folder if it is temporary, the file, and a function that
-        completes messages. Warnings are added to those `heard`."""
+        completes messages. Warnings are added to those `warned`."""
         try:
             temporary = tempfile.TemporaryDirectory(prefix="contact-dd-") if folder is None else None
         except OSError as error:
@@ -369,7 +369,7 @@ class Model:
         def worded(message: str) -> str:
             return self._calls.worded(message, self.scene, scene, self._name)
 
-        return temporary, programs.partition(scene, subdomains, progress, worded, heard=heard), worded
+        return temporary, programs.partition(scene, subdomains, progress, worded, warned=warned), worded
 
     def _add(self, kind: str, /, **keys: Any) -> dict[str, Any]:
         entry = given(**keys)

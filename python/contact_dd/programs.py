@@ -69,26 +69,26 @@ def launcher(ranks: int) -> list[str]:
 
 def partition(
     scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str, problem: Path | None = None,
-    prints: Path | None = None, heard: set[str] | None = None,
+    prints: Path | None = None, warned: set[str] | None = None,
 ) -> Path:
     """Writes the problem file of a scene or a deck, beside it unless it is named, and what the deck asks to be printed
-    into `prints`. Messages are `worded`; warnings are added to those `heard`, as the file has them, too."""
+    into `prints`. Messages are `worded`; warnings are added to those `warned`, as the file has them, too."""
     problem = problem or scene.with_suffix(".h5")
     number = [] if subdomains is None else ["-n", str(subdomains)]
     number += [] if prints is None else ["--write-prints", str(prints)]
 
-    def hear(line: str) -> None:
+    def take_line(line: str) -> None:
         word, _, rest = line.partition(" ")
         if word == "warning":
             # The solver's warnings come without the name of their explanation.
             message = NAMED.sub("", rest.strip())
-            if heard is not None:
-                heard.add(message)
+            if warned is not None:
+                warned.add(message)
             warnings.warn(worded(message), stacklevel=6)
         elif progress is True and word in ("mesh", "contact"):
             print(line, flush=True)
 
-    run([find("contact-dd-partition"), str(scene), "-o", str(problem), *number], hear, worded)
+    run([find("contact-dd-partition"), str(scene), "-o", str(problem), *number], take_line, worded)
     return problem
 
 
@@ -99,14 +99,14 @@ def convert(deck: Path, folder: Path) -> None:
 
 def solve(
     problem: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str,
-    heard: Collection[str] = (),
+    warned: Collection[str] = (),
 ) -> Result:
-    """Solves a problem file. Messages are `worded`; warnings that are `heard` aren't given again."""
+    """Solves a problem file. Messages are `worded`; warnings that are `warned` aren't given again."""
     if isinstance(options, str):
         raise errors.InputError(f"options={options!r}; expected a list of them")
     output = problem.with_suffix(".vtkhdf")
     try:
-        hear_solver(problem, output, ranks, options, progress, worded, heard)
+        run_solver(problem, output, ranks, options, progress, worded, warned)
     except errors.NotConverged as error:
         error.result = Result(output)
         raise
@@ -115,28 +115,28 @@ def solve(
 
 def study(
     problem: Path, cases: dict[str, Any], ranks: int, options: Sequence[str], progress: Progress, worded: Worded = str,
-    heard: Collection[str] = (),
+    warned: Collection[str] = (),
 ) -> Study:
-    """Solves the cases of a study. Messages are `worded`; warnings that are `heard` aren't given again."""
+    """Solves the cases of a study. Messages are `worded`; warnings that are `warned` aren't given again."""
     asked, output = problem.with_suffix(".cases.json"), problem.with_suffix(".study.json")
     files.write(asked, json.dumps(cases))
     # Which cases don't converge the table says.
     with contextlib.suppress(errors.NotConverged):
-        hear_solver(problem, output, ranks, ["--study", str(asked), *options], progress, worded, heard)
+        run_solver(problem, output, ranks, ["--study", str(asked), *options], progress, worded, warned)
     return studies.read(output)
 
 
-def hear_solver(
+def run_solver(
     problem: Path, output: Path, ranks: int, options: Sequence[str], progress: Progress, worded: Worded,
-    heard: Collection[str],
+    warned: Collection[str],
 ) -> None:
-    """Runs the solver. Messages are `worded`; warnings that are `heard` aren't given again."""
+    """Runs the solver. Messages are `worded`; warnings that are `warned` aren't given again."""
 
-    def hear(line: str) -> None:
+    def take_line(line: str) -> None:
         event = event_of(line)
         if event is None:
             return
-        if event["event"] == "warning" and event["message"] not in heard:
+        if event["event"] == "warning" and event["message"] not in warned:
             warnings.warn(worded(event["message"]), stacklevel=6)
         if callable(progress):
             progress(event)
@@ -144,11 +144,11 @@ def hear_solver(
             show(event)
 
     command = [*launcher(ranks), find("contact-dd-mpi"), str(problem), "-o", str(output), "--log", "json"]
-    run([*command, *map(str, options)], hear, worded)
+    run([*command, *map(str, options)], take_line, worded)
 
 
-def run(command: Sequence[str], hear: Callable[[str], None], worded: Worded) -> None:
-    """Runs a program, which is heard line by line. Raises its error, `worded`."""
+def run(command: Sequence[str], take_line: Callable[[str], None], worded: Worded) -> None:
+    """Runs a program, whose output `take_line` gets line by line. Raises its error, `worded`."""
     text: Any = {"encoding": "utf-8", "errors": "replace"}
     with tempfile.TemporaryFile("w+", **text) as said:
         try:
@@ -160,7 +160,7 @@ def run(command: Sequence[str], hear: Callable[[str], None], worded: Worded) -> 
         with program:
             try:
                 for line in program.stdout or ():
-                    hear(line.rstrip("\n"))
+                    take_line(line.rstrip("\n"))
             except BaseException:
                 program.terminate()
                 raise

@@ -7,7 +7,7 @@ use contact_dd_partition::numbered::Numbered;
 
 use crate::bddc::classes::Classes;
 use crate::bddc::constraints::{Basis, Mechanism, Side};
-use crate::bddc::{Bddc, moves};
+use crate::bddc::{Bddc, free_motion};
 use crate::context::Context;
 use crate::error::Failure;
 
@@ -79,7 +79,7 @@ impl Bddc {
                     let ends = class.clusters.iter().map(|&c| (k, c));
                     results.extend(ends.zip(bases));
                 }
-                Err(Mechanism) => result = Err(moves(Mechanism)),
+                Err(Mechanism) => result = Err(free_motion(Mechanism)),
             }
         }
         comm.agree(result)?;

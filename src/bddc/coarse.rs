@@ -133,7 +133,7 @@ impl Coarse {
     }
 
     /// Factorizes all nodes above clusters that are `remade`, which have these `parts`, by cluster; adds the first of
-    /// `holds`, shares of the diagonal, that makes the matrix definite. Collective.
+    /// `shifts`, shares of the diagonal, that makes the matrix definite. Collective.
     ///
     /// # Errors
     /// A part of the scene can move.
@@ -143,14 +143,14 @@ impl Coarse {
         classes: &Classes,
         mut parts: OnMergeRoots<Part>,
         remade: &Numbered<MergeRootId, bool>,
-        holds: &[f64],
+        shifts: &[f64],
     ) -> Result<(), Failure> {
         let Context { comm, plan, .. } = *context;
         for (c, &top) in plan.merge_roots.each().filter(|&(c, _)| remade[c]) {
             self.pass_up(context, top, parts.remove(&c));
         }
         let mut factorized = Ok(());
-        for &share in holds {
+        for &share in shifts {
             let is_other = self.share != Some(share);
             let mut touched = plan.tree.nodes.like(false);
             for (&top, is_remade) in plan.merge_roots.iter().zip(remade) {

@@ -41,7 +41,7 @@ pub struct ConjugateGradients<'a> {
     /// True if the preconditioner is that of earlier matrices.
     pub is_stale: bool,
     /// True if the preconditioner can be improved.
-    pub is_judged: bool,
+    pub is_provisional: bool,
 }
 
 impl ConjugateGradients<'_> {
@@ -81,8 +81,8 @@ impl ConjugateGradients<'_> {
         let mut iterations = 0;
         let begin = rho;
         let is_slow = |iterations: usize, rho: f64| {
-            let is_judged = !self.is_stale && self.is_judged && iterations == TRIAL;
-            is_judged && rho > GOOD * GOOD * begin
+            let is_provisional = !self.is_stale && self.is_provisional && iterations == TRIAL;
+            is_provisional && rho > GOOD * GOOD * begin
         };
         let mut done = 0.0_f64;
         self.context.listener.done(done);

@@ -91,9 +91,9 @@ impl Basis {
                 Side::Whole { s, compliance } => whole.push((s, compliance)),
             }
         }
-        let is_looked_into =
+        let uses_energies =
             |(s, compliance): &(&Mat<f64>, &Mat<f64>)| compliance.nrows() == s.nrows();
-        let weights = match !whole.is_empty() && whole.iter().all(is_looked_into) {
+        let weights = match !whole.is_empty() && whole.iter().all(uses_energies) {
             true => adaptive(&whole)?,
             false => motions(),
         };

@@ -80,12 +80,12 @@ impl Shared {
     }
 
     /// The Schur complement of each class that `is_chosen`, by its index, with all other shared unknowns held and, if
-    /// it `is_looked_into`, with them free.
+    /// it `uses_energies`, with them free.
     pub fn sides(
         &self,
         s: &Mat<f64>,
         is_chosen: impl Fn(usize) -> bool,
-        is_looked_into: bool,
+        uses_energies: bool,
         par: Par,
     ) -> Result<Vec<Option<Side>>, Mechanism> {
         let n = s.nrows();
@@ -98,8 +98,11 @@ impl Shared {
             held.llt(Lower).ok()
         };
         let mut inverse = Mat::zeros(0, 0);
-        if is_looked_into {
-            let factor = HOLDS.into_iter().find_map(held_by).ok_or(Mechanism)?;
+        if uses_energies {
+            let factor = DIAGONAL_SHIFTS
+                .into_iter()
+                .find_map(held_by)
+                .ok_or(Mechanism)?;
             inverse.resize_with(n, n, |_, _| 0.0);
             invert_lower_triangular(inverse.as_mut(), factor.L(), par);
         }
@@ -109,8 +112,8 @@ impl Shared {
                 // The cluster may also move with all but this class held; such modes become coarse.
                 let mut s = s.submatrix(first, first, len, len).to_owned();
                 fill_upper_triangle(s.as_mut());
-                hold(s.as_mut(), 0..len, MORE_HOLD, self.round_off);
-                let compliance = match is_looked_into {
+                hold(s.as_mut(), 0..len, CLASS_SHIFT, self.round_off);
+                let compliance = match uses_energies {
                     true => {
                         let columns = inverse.submatrix(first, first, n - first, len);
                         columns.transpose() * columns
@@ -128,9 +131,9 @@ impl Shared {
 const ROUND_OFF: f64 = 1e-14;
 /// Shares of the largest diagonal entry, the least of which that makes the matrix definite in spite of round-off is
 /// added where unknowns may be free.
-const HOLDS: [f64; 3] = [1e-11, 1e-9, 1e-7];
+const DIAGONAL_SHIFTS: [f64; 3] = [1e-11, 1e-9, 1e-7];
 /// Share added to a class's stiffness, far above round-off.
-const MORE_HOLD: f64 = 1e-9;
+const CLASS_SHIFT: f64 = 1e-9;
 
 /// Adds to the diagonal a share of its largest entry, and a bound on the round-off.
 fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64) {
@@ -241,7 +244,7 @@ impl Local {
             hold(held.as_mut(), 0..n, share, 0.0);
             Others::new(held, count, level, par)
         };
-        let (last, before) = level.holds().split_last().ok_or(Mechanism)?;
+        let (last, before) = level.shifts().split_last().ok_or(Mechanism)?;
         let found = before
             .iter()
             .find_map(|&share| factor(permuted.clone(), share).ok());

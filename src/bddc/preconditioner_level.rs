@@ -23,7 +23,7 @@ impl PreconditionerLevel {
     }
 
     /// Shares of diagonal entries, the first of which that makes the matrix definite is added.
-    pub fn holds(self) -> &'static [f64] {
+    pub fn shifts(self) -> &'static [f64] {
         match self {
             Self::Held => &[0.0, 1e-13, 1e-11, 1e-9, 1e-7],
             _ => &[0.0],

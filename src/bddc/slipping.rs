@@ -22,7 +22,7 @@ use crate::bddc::local::{Local, Vectors};
 use crate::bddc::solution::{ClusterAnswer, ClusterLoads, Constants};
 use crate::contact::slip_law::SlipLaw;
 use crate::context::Context;
-use crate::vector::axpy;
+use crate::vector::{add_multiple, axpy, multiple};
 
 /// Most iterations.
 const CYCLE: usize = 150;
@@ -47,18 +47,15 @@ struct Pair {
 impl Pair {
     /// Adds `factor` times another.
     fn add(&mut self, factor: f64, other: &Self) {
-        for (c, x) in &mut self.x {
-            axpy(factor, &other.x[c], x);
-        }
-        for (g, forces) in &mut self.forces {
-            axpy(factor, &other.forces[g], forces);
-        }
+        add_multiple(factor, &other.x, &mut self.x);
+        add_multiple(factor, &other.forces, &mut self.forces);
     }
 
-    fn scaled(mut self, factor: f64) -> Self {
-        let all = (self.x.values_mut()).chain(self.forces.values_mut());
-        all.flatten().for_each(|value| *value *= factor);
-        self
+    fn scaled(&self, factor: f64) -> Self {
+        Self {
+            x: multiple(factor, &self.x),
+            forces: multiple(factor, &self.forces),
+        }
     }
 }
 
@@ -147,7 +144,7 @@ impl Slipping<'_> {
             false => CYCLE,
         };
         let is_judged = !self.gradients.is_stale && self.gradients.is_judged;
-        let mut basis = vec![residual.map(|part| part.scaled(1.0 / size))];
+        let mut basis = vec![residual.each_ref().map(|part| part.scaled(1.0 / size))];
         let mut h = Mat::<f64>::zeros(most + 1, most);
         let (mut weights, mut sizes) = (Vec::new(), vec![size]);
         for k in 0..most {
@@ -180,10 +177,10 @@ impl Slipping<'_> {
             if ends || is_slow || stalls {
                 break;
             }
-            basis.push(next.map(|part| part.scaled(1.0 / rest)));
+            basis.push(next.each_ref().map(|part| part.scaled(1.0 / rest)));
         }
         let iterations = weights.len();
-        let none = basis[0][1].clone().scaled(0.0);
+        let none = basis[0][1].scaled(0.0);
         let change = basis.iter().zip(weights).fold(none, |mut sum, (known, w)| {
             sum.add(w, &known[1]);
             sum
@@ -213,8 +210,8 @@ impl Slipping<'_> {
         let answer = bddc.answer(comm, solved, &unbalanced);
         let (mut of_laws, mut correction) = (OnGroups::new(), OnGroups::new());
         for (&g, forces) in &at.forces {
-            let (missed, corrected) = self.of_laws(g, &answer, forces, has_loads);
-            of_laws.insert(g, missed);
+            let (residual, corrected) = self.of_laws(g, &answer, forces, has_loads);
+            of_laws.insert(g, residual);
             correction.insert(g, corrected);
         }
         // The balance under the corrected forces.
@@ -246,23 +243,25 @@ impl Slipping<'_> {
         forces: &[f64],
         has_loads: bool,
     ) -> (Vec<f64>, Vec<f64>) {
-        let (mut missed, mut correction) = (vec![0.0; forces.len()], vec![0.0; forces.len()]);
+        let (mut residual, mut correction) = (vec![0.0; forces.len()], vec![0.0; forces.len()]);
         // Groups below clusters keep their forces.
         let (Some(at), Some(laws)) = (answer.groups.get(&g), self.laws.get(&g)) else {
-            return (missed, correction);
+            return (residual, correction);
         };
         let both = at.forces.iter().zip(forces);
         let all: Vec<f64> = both.map(|(closed, slipping)| closed + slipping).collect();
         let prescribed = &self.loads.prescribed[&g];
         let start = |i: usize| if has_loads { prescribed[i] } else { 0.0 };
         for law in laws {
-            law.add_missed(&all, |i| at.jumps[i] - start(i), !has_loads, &mut missed);
+            law.add_residual(&all, |i| at.jumps[i] - start(i), !has_loads, &mut residual);
         }
-        missed.iter_mut().for_each(|missed| *missed = -*missed);
+        residual
+            .iter_mut()
+            .for_each(|residual| *residual = -*residual);
         for law in laws {
-            law.set_correction(&missed, &mut correction);
+            law.set_correction(&residual, &mut correction);
         }
-        (missed, correction)
+        (residual, correction)
     }
 
     /// √(r·M r). Collective.

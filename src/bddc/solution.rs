@@ -102,7 +102,7 @@ impl Bddc {
             matrices: &matrices.collect(),
             coarse: &self.coarse,
             is_stale: self.is_stale(),
-            is_judged: self.is_judged(),
+            is_provisional: self.is_provisional(),
         };
         let start = accuracy.start.map(|known| self.start(comm, known, plan));
         let solution = match loads.laws {
@@ -266,12 +266,14 @@ impl Bddc {
                 let at = dofs.map(|dof| self.unknowns.dofs[c].binary_search(dof).ok());
                 at.map(|at| at.map(|at| of_cluster[at])).collect::<Vec<_>>()
             },
-            |i, said| {
-                let of_class = values.entry(ends[i].0).or_insert_with(|| said.clone());
+            |i, of_cluster| {
+                let of_class = values
+                    .entry(ends[i].0)
+                    .or_insert_with(|| of_cluster.clone());
                 of_class
                     .iter_mut()
-                    .zip(said)
-                    .for_each(|(value, said)| *value = value.or(said));
+                    .zip(of_cluster)
+                    .for_each(|(value, other)| *value = value.or(other));
             },
         );
         let turned = values.into_iter().map(|(k, values)| {
@@ -356,16 +358,16 @@ impl Bddc {
                 .map(|&(i, c)| (self.owners[c], self.between[i].owner)),
             |route| {
                 let (i, c) = routes[route];
-                let said = self.between[i].dofs.iter().map(|dof| {
+                let of_dofs = self.between[i].dofs.iter().map(|dof| {
                     let at = self.unknowns.dofs[c].binary_search(dof).ok();
                     (at.map(|at| clusters[&c][at]), forces[&c].get(dof).copied())
                 });
-                said.collect::<Vec<_>>()
+                of_dofs.collect::<Vec<_>>()
             },
-            |route, said| {
+            |route, of_dofs| {
                 let group = &self.between[routes[route].0];
                 let [x, r] = of_groups.entry(group.number).or_default();
-                for (dof, (of_x, of_r)) in group.dofs.iter().zip(said) {
+                for (dof, (of_x, of_r)) in group.dofs.iter().zip(of_dofs) {
                     if let Some(of_x) = of_x {
                         x.entry(*dof).or_insert(of_x);
                     }

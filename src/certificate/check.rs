@@ -200,11 +200,11 @@ pub fn not_opposed(
         }
         let pressure = point.normal.map_or(0.0, |n| forces[n]);
         let opposing = slipped.work() / distance;
-        let lacks = match point.bound.only_closed && pressure <= no_force {
+        let shortfall = match point.bound.only_closed && pressure <= no_force {
             true => 0.5 * (slipped.size() - opposing),
             false => slipped.bound - opposing,
         };
-        scales.lesser(distance, lacks)
+        scales.lesser(distance, shortfall)
     };
     let points = group.point_laws();
     points.into_iter().map(of_point).fold(0.0, larger)

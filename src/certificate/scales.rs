@@ -78,12 +78,12 @@ pub struct SlipScales {
 
 impl SlipScales {
     /// The lesser of a slip (m) and of the shortfall of a force (N/m), each over its scale.
-    pub(super) fn lesser(self, slip: f64, lacks: f64) -> f64 {
-        if lacks <= 0.0 {
+    pub(super) fn lesser(self, slip: f64, shortfall: f64) -> f64 {
+        if shortfall <= 0.0 {
             // Without contact forces their scale is zero.
             return 0.0;
         }
         let slip = slip / (SLIP_LIKE_FORCE * self.displacement);
-        slip.min(lacks / self.force)
+        slip.min(shortfall / self.force)
     }
 }

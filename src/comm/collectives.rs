@@ -48,15 +48,13 @@ impl Comm {
     ) {
         for bundles in bundles(owners.ranks()) {
             let mut arrived = BTreeMap::new();
-            let routes: Vec<(usize, usize)> = bundles.keys().map(|&owner| (owner, ROOT)).collect();
-            let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
-            self.route(
-                routes,
-                |k| {
-                    let made = bundles[k].iter().map(|&i| make(i.into()));
-                    made.collect::<Vec<T>>()
+            self.route_bundles(
+                bundles,
+                |owner| (owner, ROOT),
+                &mut make,
+                |i, value| {
+                    arrived.insert(i, value);
                 },
-                |k, values| arrived.extend(bundles[k].iter().copied().zip(values)),
             );
             for (i, value) in arrived {
                 take(i.into(), value);
@@ -100,20 +98,39 @@ impl Comm {
         mut take: impl FnMut(O::Of, T),
     ) {
         for bundles in bundles(owners.ranks()) {
-            let routes: Vec<(usize, usize)> = bundles.keys().map(|&owner| (ROOT, owner)).collect();
-            let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
-            self.route(
-                routes,
-                |k| {
-                    let made = bundles[k].iter().map(|&i| make(i.into()));
-                    made.collect::<Vec<T>>()
-                },
-                |k, values| {
-                    let all = bundles[k].iter().copied().zip(values);
-                    all.for_each(|(i, value)| take(i.into(), value));
+            self.route_bundles(
+                bundles,
+                |owner| (ROOT, owner),
+                &mut make,
+                |i, value| {
+                    take(i.into(), value);
                 },
             );
         }
+    }
+
+    /// Sends the values of every bundle, which belongs to the rank before it, along its `route` in one message.
+    /// Collective.
+    fn route_bundles<I: From<usize>, T: Serialize + DeserializeOwned>(
+        &self,
+        bundles: BTreeMap<usize, Vec<usize>>,
+        route: impl Fn(usize) -> (usize, usize),
+        make: &mut impl FnMut(I) -> T,
+        mut take: impl FnMut(usize, T),
+    ) {
+        let routes: Vec<(usize, usize)> = bundles.keys().copied().map(route).collect();
+        let bundles: Vec<Vec<usize>> = bundles.into_values().collect();
+        self.route(
+            routes,
+            |k| {
+                let made = bundles[k].iter().map(|&i| make(i.into()));
+                made.collect::<Vec<T>>()
+            },
+            |k, values| {
+                let all = bundles[k].iter().copied().zip(values);
+                all.for_each(|(i, value)| take(i, value));
+            },
+        );
     }
 
     /// Sends a value along each of `routes`, from one rank to another, in their order. Collective.

@@ -21,7 +21,7 @@ pub fn set_rank(rank: usize) {
 /// Ends or stops this rank if the variable requests it in `phase`.
 #[expect(clippy::panic, reason = "that's the purpose")]
 pub fn end(phase: &str) {
-    match wish(phase).as_deref() {
+    match requested(phase).as_deref() {
         Some("panic") => panic!("on purpose"),
         Some("kill") => {
             let _ = raise(SIGKILL);
@@ -36,14 +36,14 @@ pub fn end(phase: &str) {
 
 /// The failure that the variable requests on this rank in `phase`.
 pub fn failure(phase: &str) -> Option<Failure> {
-    let wish = wish(phase)?;
-    (wish == "failure").then(|| Failure::ill_posed("on purpose"))
+    let request = requested(phase)?;
+    (request == "failure").then(|| Failure::ill_posed("on purpose"))
 }
 
 /// The kind of end that the variable requests on this rank in `phase`.
-fn wish(phase: &str) -> Option<String> {
-    let wish = env::var("CONTACT_DD_END").ok()?;
-    let mut words = wish.splitn(3, ' ');
+fn requested(phase: &str) -> Option<String> {
+    let request = env::var("CONTACT_DD_END").ok()?;
+    let mut words = request.splitn(3, ' ');
     let rank: usize = words.next()?.parse().ok()?;
     let kind = words.next()?;
     (RANK.get() == Some(&rank) && words.next() == Some(phase)).then(|| kind.to_owned())

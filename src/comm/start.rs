@@ -89,9 +89,9 @@ fn end_all_at_a_panic(comm: &Comm) {
 
 /// Name and version of the MPI library, as it reports them.
 pub fn library() -> String {
-    let said = mpi::environment::library_version().unwrap_or_default();
+    let version = mpi::environment::library_version().unwrap_or_default();
     // MPICH reports its configuration in further lines.
-    let name = said.lines().next().unwrap_or_default();
+    let name = version.lines().next().unwrap_or_default();
     // Open MPI includes the terminating zero.
     let name = name.trim_end_matches('\0');
     name.split_whitespace().collect::<Vec<_>>().join(" ")

@@ -21,7 +21,7 @@ impl Factors<'_> {
         self.context.comm.route(
             plan.routes_to_clusters(),
             |i| of_groups.remove(&places[i].1).unwrap_or_default(),
-            |i, said| of_clusters.entry(places[i].0).or_default().extend(said),
+            |i, data| of_clusters.entry(places[i].0).or_default().extend(data),
         );
         of_clusters
     }
@@ -43,8 +43,8 @@ impl Factors<'_> {
                 let left = of_clusters.get_mut(&p).map(|left| left.drain(..count));
                 left.into_iter().flatten().collect()
             },
-            |i, said| {
-                of_groups.insert(places[i].1, said);
+            |i, data| {
+                of_groups.insert(places[i].1, data);
             },
         );
         of_groups

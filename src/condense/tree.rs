@@ -14,7 +14,7 @@ use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
 use crate::interface::rigid_modes::RigidModes;
 use crate::schur::condensed::{Condensed, InterfaceDof};
-use crate::schur::merge::{FreeInterfaceDof, Merge, Spare};
+use crate::schur::merge::{FreeInterfaceDof, MatrixPool, Merge};
 
 /// Condenses the `blocks` of this rank and merges them, with the Schur complements that other ranks send, up to the
 /// clusters. Collective.
@@ -36,7 +36,7 @@ pub fn condense_clusters(
         condensation,
         condensed: CondensedBlocks::default(),
         waiting: BTreeMap::new(),
-        spare: Spare::default(),
+        spare: MatrixPool::default(),
     };
     let (alone, across) = merging.nodes();
     let time = |&v: &TreeNodeId| match plan.node_owners[v] == comm.rank() {
@@ -86,7 +86,7 @@ struct Merging<'a> {
     /// Condensed nodes waiting to be merged.
     waiting: OnTreeNodes<Condensed>,
     /// Memory of matrices already merged.
-    spare: Spare,
+    spare: MatrixPool,
 }
 
 impl Merging<'_> {
@@ -173,14 +173,14 @@ impl Merging<'_> {
             &mut self.spare,
             self.condensation.context.par,
         )
-        .map_err(|FreeInterfaceDof(dof)| self.moves(v, dof))?;
+        .map_err(|FreeInterfaceDof(dof)| self.free_motion(v, dof))?;
         self.condensed.merges.insert(v, merge);
         self.waiting.insert(v, condensed);
         self.condensed.seconds[1] += comm.times() - began;
         Ok(())
     }
 
-    fn moves(&self, v: TreeNodeId, dof: InterfaceDof) -> Failure {
+    fn free_motion(&self, v: TreeNodeId, dof: InterfaceDof) -> Failure {
         let plan = self.condensation.context.plan;
         let under = plan.tree.subtree(v).into_iter();
         let subdomains: Vec<BlockId> = under.filter_map(|v| plan.tree.block(v)).collect();

@@ -288,7 +288,7 @@ impl ContactProblem<'_> {
                 if open[i] {
                     self.violation(i, open, trial) > 0.0
                 } else {
-                    self.pulls(i, trial)
+                    self.is_in_tension(i, trial)
                 }
             })
             .collect()
@@ -317,7 +317,7 @@ impl ContactProblem<'_> {
     }
 
     /// True if condition i is in tension, beyond round-off.
-    pub(super) fn pulls(&self, i: usize, trial: &Trial) -> bool {
+    pub(super) fn is_in_tension(&self, i: usize, trial: &Trial) -> bool {
         let force = trial.forces[i];
         force < 0.0 && force < -FORCE_TOLERANCE * self.force_scale(i, trial)
     }

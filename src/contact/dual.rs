@@ -32,7 +32,7 @@ impl ContactProblem<'_> {
     }
 
     /// True if condition i is in compression, beyond round-off.
-    fn presses(&self, i: usize, trial: &Trial) -> bool {
+    fn is_in_compression(&self, i: usize, trial: &Trial) -> bool {
         trial.forces[i] > FORCE_TOLERANCE * self.force_scale(i, trial)
     }
 
@@ -45,7 +45,7 @@ impl ContactProblem<'_> {
             let trial = self.linear(open);
             self.open_redundant(open, &trial);
             let redundant: Vec<usize> = (0..open.len())
-                .filter(|&i| !open[i] && !self.presses(i, &trial))
+                .filter(|&i| !open[i] && !self.is_in_compression(i, &trial))
                 .collect();
             if redundant.is_empty() {
                 break trial;
@@ -63,8 +63,8 @@ impl ContactProblem<'_> {
             let Some((k, _)) = violated else {
                 return self.solution(&trial, steps, true);
             };
-            match self.press(k, open, &trial, &mut steps, limit) {
-                Some(pressed) => trial = pressed,
+            match self.close_violated(k, open, &trial, &mut steps, limit) {
+                Some(next) => trial = next,
                 None => return self.solution(&trial, steps, false),
             }
         }
@@ -72,7 +72,7 @@ impl ContactProblem<'_> {
 
     /// Closes the violated condition k and opens those that would come under tension; `None` where the conditions
     /// contradict each other or too many systems are solved.
-    fn press(
+    fn close_violated(
         &self,
         k: usize,
         open: &mut [bool],
@@ -99,9 +99,10 @@ impl ContactProblem<'_> {
             *steps += 1;
             open[k] = false;
             let target = self.linear(open);
-            let pulling = (0..open.len()).filter(|&i| i != k && !open[i] && self.pulls(i, &target));
+            let in_tension =
+                (0..open.len()).filter(|&i| i != k && !open[i] && self.is_in_tension(i, &target));
             let share = |i: usize| forces[i] / (forces[i] - target.forces[i]);
-            let first = pulling
+            let first = in_tension
                 .map(|i| (i, share(i)))
                 .min_by(|(_, a), (_, b)| a.total_cmp(b));
             let Some((blocking, share)) = first else {

@@ -82,15 +82,15 @@ impl IndependentLimits<'_> {
             self.open[k] = false;
             return;
         };
-        let beyond = self.beyond(k, &shares);
+        let violation = self.violation(k, &shares);
         if laws.is_tangential[k] {
-            if beyond != 0.0 {
+            if violation != 0.0 {
                 self.slip_of(k, now);
             }
             return;
         }
-        if beyond <= 0.0 {
-            now.closed[k] &= beyond == 0.0;
+        if violation <= 0.0 {
+            now.closed[k] &= violation == 0.0;
             return;
         }
         let opening = shares.iter().filter(|(i, _)| !laws.is_tangential[*i]);
@@ -120,19 +120,19 @@ impl IndependentLimits<'_> {
                     0.0 => shares.map(|share| -share / size),
                     force_size => force.map(|f| f / force_size),
                 };
-                self.slip(p, direction, beyond / size, now);
+                self.slip(p, direction, violation / size, now);
             }
         }
     }
 
     /// Violation of the bound of limit k with the limits of its `shares` at theirs (m); 0 within round-off.
-    fn beyond(&self, k: usize, shares: &[(usize, f64)]) -> f64 {
+    fn violation(&self, k: usize, shares: &[(usize, f64)]) -> f64 {
         let way = shares.iter().map(|&(i, c)| c * self.laws.bounds[i]);
-        let beyond = way.sum::<f64>() - self.laws.bounds[k];
+        let violation = way.sum::<f64>() - self.laws.bounds[k];
         let amplified: f64 = shares.iter().map(|(_, c)| c.abs()).sum();
-        match beyond.abs() <= self.no_overshoot * (1.0 + amplified) {
+        match violation.abs() <= self.no_overshoot * (1.0 + amplified) {
             true => 0.0,
-            false => beyond,
+            false => violation,
         }
     }
 
@@ -199,7 +199,7 @@ impl IndependentLimits<'_> {
         let equalities = ActiveEqualities::new(rows, &self.open);
         let way = |t: usize| {
             let shares = rows.shares_in(t, &self.open, &equalities);
-            shares.map_or(0.0, |shares| self.beyond(t, &shares))
+            shares.map_or(0.0, |shares| self.violation(t, &shares))
         };
         let slip = self.laws.points[p].tangents.map(|t| t.map_or(0.0, way));
         let size = slip[0].hypot(slip[1]);

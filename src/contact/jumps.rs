@@ -304,12 +304,13 @@ impl Jumps {
             true => self.tied.push(pivot),
             false => self.pivots.push(pivot),
         }
-        let gone = Variable::Displacement(pivot);
-        rest.terms.retain(|&v, c| v != gone && c.abs() > 1e-15);
+        let eliminated = Variable::Displacement(pivot);
+        rest.terms
+            .retain(|&v, c| v != eliminated && c.abs() > 1e-15);
         rest.terms.values_mut().for_each(|c| *c /= -coefficient);
         if elsewhere(pivot) > 0 {
             for other in self.replaced.values_mut() {
-                other.substitute(gone, &rest);
+                other.substitute(eliminated, &rest);
             }
         }
         self.replaced.insert(pivot, rest);

@@ -86,7 +86,7 @@ pub struct LawResidual {
     /// Σ λ²/r of the forces.
     pub forces: f64,
     /// The largest residual relative to the scales of forces, where these are known.
-    pub missed: f64,
+    pub largest: f64,
 }
 
 impl<'a> ContactLaws<'a> {
@@ -124,7 +124,7 @@ impl<'a> ContactLaws<'a> {
     }
 
     /// Violation of the bound of limit i, or its slip (m).
-    pub fn beyond(&self, i: usize, at: &Iterate) -> f64 {
+    pub fn violation(&self, i: usize, at: &Iterate) -> f64 {
         let m = at.jumps.len();
         let value = match at.jumps.get(i) {
             Some(t) => *t,
@@ -135,7 +135,7 @@ impl<'a> ContactLaws<'a> {
 
     /// The state of a point at an iterate with these limits `closed`.
     pub fn point(&self, point: &PointLaw, at: &Iterate, closed: &[bool]) -> PointState {
-        point.at(|i| self.beyond(i, at), &at.forces, closed)
+        point.at(|i| self.violation(i, at), &at.forces, closed)
     }
 
     /// The status of point k with a cohesion that vanishes on opening, if it parted `before` or would open once more;
@@ -270,7 +270,7 @@ impl<'a> ContactLaws<'a> {
         };
         let closed: Vec<bool> = (0..at.forces.len())
             .map(|i| {
-                let xi = at.forces[i] + self.stiffness[i] * self.beyond(i, at);
+                let xi = at.forces[i] + self.stiffness[i] * self.violation(i, at);
                 let was = before.map(|(before, _)| before.closed[i]);
                 !self.is_tangential[i] && xi > -slack(i, was)
             })
@@ -303,16 +303,16 @@ impl<'a> ContactLaws<'a> {
                 .map(|(past, (&was, &right))| past.after(was, right))
                 .collect();
         }
-        let missed = self.missed(at, &statuses);
+        let residuals = self.residuals(at, &statuses);
         let relative = before.map(|(_, scales)| {
-            let all = missed.iter().zip(scales).filter(|(x, _)| **x != 0.0);
+            let all = residuals.iter().zip(scales).filter(|(x, _)| **x != 0.0);
             all.map(|(x, scale)| x.abs() / scale).fold(0.0, f64::max)
         });
         LawResidual {
             wrong: before.map_or_else(Vec::new, |(before, _)| self.wrong(before, &statuses)),
-            squares: self.squares(&missed),
+            squares: self.squares(&residuals),
             forces: self.squares(&at.forces),
-            missed: relative.unwrap_or(f64::INFINITY),
+            largest: relative.unwrap_or(f64::INFINITY),
             statuses,
         }
     }
@@ -360,12 +360,12 @@ impl<'a> ContactLaws<'a> {
     }
 
     /// Residual of every limit's law, as a force (N/m).
-    pub fn missed(&self, at: &Iterate, statuses: &Statuses) -> Vec<f64> {
+    pub fn residuals(&self, at: &Iterate, statuses: &Statuses) -> Vec<f64> {
         let normal = |i: usize| match statuses.closed[i] {
-            true => -self.stiffness[i] * self.beyond(i, at),
+            true => -self.stiffness[i] * self.violation(i, at),
             false => at.forces[i],
         };
-        let mut missed: Vec<f64> = (0..at.forces.len()).map(normal).collect();
+        let mut residuals: Vec<f64> = (0..at.forces.len()).map(normal).collect();
         for (point, status) in self.points.iter().zip(&statuses.points) {
             let here = self.point(point, at, &statuses.closed);
             let (xi, force) = (point.reach(&here), here.force);
@@ -379,13 +379,13 @@ impl<'a> ContactLaws<'a> {
                         e[k] * (e[0] * force[0] + e[1] * force[1])
                     }
                 };
-                missed[i] = at.forces[i] - right;
+                residuals[i] = at.forces[i] - right;
             }
             if let (PointStatus::Parts { .. }, Some(n)) = (status, point.normal) {
-                missed[n] = at.forces[n];
+                residuals[n] = at.forces[n];
             }
         }
-        missed
+        residuals
     }
 }
 

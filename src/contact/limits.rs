@@ -314,11 +314,14 @@ impl Limits {
 
     /// The statuses of limits in the linear problem from those of its `conditions`.
     pub fn fixed(&self, conditions: &[FixedStatus]) -> Vec<FixedStatus> {
-        let mut jumps: Vec<f64> = conditions.iter().map(FixedStatus::lacks).collect();
+        let mut jumps: Vec<f64> = conditions
+            .iter()
+            .map(FixedStatus::distance_to_bound)
+            .collect();
         self.share_jumps(&mut jumps);
         let of_condition = |&(condition, factor): &(usize, f64)| match conditions[condition] {
             FixedStatus::Closed { .. } => FixedStatus::Closed {
-                lacks: jumps[condition] / factor,
+                distance: jumps[condition] / factor,
             },
             other => other,
         };

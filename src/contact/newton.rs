@@ -18,7 +18,7 @@ use crate::vector::larger;
 /// Smallest fraction of a step.
 const SMALLEST: f64 = 1e-3;
 /// Relative reduction of the merit function that is required per fraction of a step.
-const LESSENS: f64 = 1e-4;
+const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 /// An operator that solves the linear problem of given statuses. Its methods are collective.
 pub trait ContactOperator {
@@ -94,7 +94,7 @@ pub struct TotalResidual {
     /// Σ λ²/r of the forces, then its square root.
     pub forces: f64,
     /// The largest residual relative to the scales of forces.
-    pub missed: f64,
+    pub largest: f64,
     /// Number of closed normal jumps.
     pub active: usize,
     /// Number of wrong statuses.
@@ -108,7 +108,7 @@ impl TotalResidual {
     const UNKNOWN: Self = Self {
         merit: f64::INFINITY,
         forces: 0.0,
-        missed: f64::INFINITY,
+        largest: f64::INFINITY,
         active: 0,
         wrong: usize::MAX,
         parts: false,
@@ -118,7 +118,7 @@ impl TotalResidual {
     pub fn include(&mut self, other: Self) {
         self.merit += other.merit;
         self.forces += other.forces;
-        self.missed = larger(self.missed, other.missed);
+        self.largest = larger(self.largest, other.largest);
         self.active += other.active;
         self.wrong += other.wrong;
         self.parts |= other.parts;
@@ -162,7 +162,7 @@ pub struct Found {
     /// The statuses whose equations they fulfil.
     pub statuses: OnGroups<Statuses>,
     /// Residual of the laws, relative to the scales of forces; infinite if the method doesn't converge.
-    pub missed: f64,
+    pub residual: f64,
     /// Linear systems solved.
     pub steps: usize,
 }
@@ -181,26 +181,26 @@ pub fn newton<O: ContactOperator>(
     let (mut at, mut statuses, laws) = (start.clone(), statuses.clone(), &mut laws.clone());
     let (mut merit, mut changed) = (f64::INFINITY, None);
     let (mut least, mut patience) = (f64::INFINITY, settings.patience);
-    let (mut accuracy, mut missed) = (operator.accuracy(&TotalResidual::UNKNOWN), f64::INFINITY);
+    let (mut accuracy, mut residual) = (operator.accuracy(&TotalResidual::UNKNOWN), f64::INFINITY);
     let mut best: Option<Found> = None;
     for steps in 1..=settings.most {
         let target = operator.step(&at, &statuses, accuracy)?;
-        let (look, total) = look(operator, laws, &target, Some(&statuses), settings);
+        let (residuals, total) = evaluate_laws(operator, laws, &target, Some(&statuses), settings);
         operator.record(NewtonStep { total, changed })?;
         if total.merit.is_nan() {
             break;
         }
         if let Some(found) = &mut best
-            && total.missed > 0.5 * found.missed
+            && total.largest > 0.5 * found.residual
         {
             found.steps = steps;
             break;
         }
-        if let Some(is_last) = accepted(&total, accuracy, missed, settings) {
+        if let Some(is_last) = accepted(&total, accuracy, residual, settings) {
             best = Some(Found {
                 at: target.clone(),
                 statuses: statuses.clone(),
-                missed: total.missed,
+                residual: total.largest,
                 steps,
             });
             if is_last {
@@ -216,36 +216,36 @@ pub fn newton<O: ContactOperator>(
         }
         least = least.min(total.merit);
         accuracy = operator.accuracy(&total);
-        (missed, changed) = (total.missed, Some(total.wrong));
+        (residual, changed) = (total.largest, Some(total.wrong));
         for (&g, of_group) in laws.iter_mut().filter(|_| settings.softens) {
-            of_group.soften(&statuses[&g], &look[&g].statuses);
+            of_group.soften(&statuses[&g], &residuals[&g].statuses);
         }
         let from = (at, merit, statuses);
-        (at, merit, statuses) = advance(operator, laws, from, target, (look, total), settings);
+        (at, merit, statuses) = advance(operator, laws, from, target, (residuals, total), settings);
     }
     Ok(best.unwrap_or(Found {
         at,
         statuses,
-        missed: f64::INFINITY,
+        residual: f64::INFINITY,
         steps: settings.most,
     }))
 }
 
-/// Whether a step with this residual is accepted, where `missed` is the residual of the previous one; true if it is the
+/// Whether a step with this residual is accepted, where `previous` is the residual of the one before; true if it is the
 /// last: its accuracy is limited by round-off, or no better than that of the previous one.
 fn accepted(
     total: &TotalResidual,
     accuracy: StepAccuracy,
-    missed: f64,
+    previous: f64,
     settings: NewtonSettings,
 ) -> Option<bool> {
     if accuracy != StepAccuracy::Full {
         return None;
     }
-    let stalls = total.wrong == 0 && total.missed > 0.5 * missed;
-    match total.missed <= settings.tolerance {
-        true => Some(total.missed <= settings.round_off),
-        false => (stalls && total.missed <= settings.acceptable).then_some(true),
+    let stalls = total.wrong == 0 && total.largest > 0.5 * previous;
+    match total.largest <= settings.tolerance {
+        true => Some(total.largest <= settings.round_off),
+        false => (stalls && total.largest <= settings.acceptable).then_some(true),
     }
 }
 
@@ -263,7 +263,7 @@ fn advance<O: ContactOperator>(
         .map(|(&g, of_group)| (g, of_group.statuses.past.clone()))
         .collect();
     let (at, merit, mut statuses) =
-        part_of_way(operator, laws, (from, merit), target, whole, settings);
+        line_search(operator, laws, (from, merit), target, whole, settings);
     operator.make_independent(&at, &before, &mut statuses);
     for (g, past) in past {
         if let Some(of_group) = statuses.get_mut(&g) {
@@ -275,7 +275,7 @@ fn advance<O: ContactOperator>(
 
 /// The residual of the laws at an iterate, which within round-off keeps the statuses `before`; only the merit counts where these
 /// aren't known. Collective.
-pub fn look<O: ContactOperator>(
+pub fn evaluate_laws<O: ContactOperator>(
     operator: &O,
     laws: &OnGroups<ContactLaws<'_>>,
     at: &OnGroups<Iterate>,
@@ -297,13 +297,13 @@ pub fn look<O: ContactOperator>(
     let residuals = laws.iter().map(of_group).collect();
     let mut total = operator.total(&residuals);
     if total.merit > settings.law * (total.forces + operator.acting()) {
-        total.missed = f64::INFINITY;
+        total.largest = f64::INFINITY;
     }
     (residuals, total)
 }
 
 /// The fraction of a step to `target` that reduces the merit, or else the one with the least merit. Collective.
-fn part_of_way<O: ContactOperator>(
+fn line_search<O: ContactOperator>(
     operator: &O,
     laws: &OnGroups<ContactLaws<'_>>,
     (from, merit): (OnGroups<Iterate>, f64),
@@ -311,7 +311,8 @@ fn part_of_way<O: ContactOperator>(
     (whole, of_whole): (OnGroups<LawResidual>, TotalResidual),
     settings: NewtonSettings,
 ) -> (OnGroups<Iterate>, f64, OnGroups<Statuses>) {
-    let lessens = |total: TotalResidual, part: f64| total.merit <= (1.0 - LESSENS * part) * merit;
+    let lessens =
+        |total: TotalResidual, part: f64| total.merit <= (1.0 - SUFFICIENT_DECREASE * part) * merit;
     let statuses = |residuals: OnGroups<LawResidual>| {
         let all = residuals.into_iter();
         all.map(|(g, residual)| (g, residual.statuses)).collect()
@@ -323,7 +324,7 @@ fn part_of_way<O: ContactOperator>(
     let mut part = 0.5;
     while part >= SMALLEST {
         let there = operator.between(&from, &target, part);
-        let (residuals, total) = look(operator, laws, &there, None, settings);
+        let (residuals, total) = evaluate_laws(operator, laws, &there, None, settings);
         if lessens(total, part) {
             return (there, total.merit, statuses(residuals));
         }
@@ -344,7 +345,7 @@ impl LawResidual {
         TotalResidual {
             merit: self.squares,
             forces: self.forces,
-            missed: self.missed,
+            largest: self.largest,
             active: closed.iter().filter(|closed| **closed).count(),
             wrong: self.wrong.len(),
             parts: points.iter().any(parts),

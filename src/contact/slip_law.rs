@@ -75,19 +75,19 @@ impl SlipLaw {
         limits.tangents.iter().filter_map(law).collect()
     }
 
-    /// Adds to `missed` the law's residual for these `forces` and slips of limits, for a change without the constant.
-    pub fn add_missed(
+    /// Adds to `residuals` the law's residual for these `forces` and slips of limits, for a change without the constant.
+    pub fn add_residual(
         &self,
         forces: &[f64],
         slip: impl Fn(usize) -> f64,
         is_change: bool,
-        missed: &mut [f64],
+        residuals: &mut [f64],
     ) {
         for law in &self.laws {
             let of_forces: f64 = law.forces.iter().map(|&(i, c)| c * forces[i]).sum();
             let of_slips: f64 = law.slips.iter().map(|&(i, c)| c * slip(i)).sum();
             let constant = if is_change { 0.0 } else { law.constant };
-            missed[law.limit] += of_forces + of_slips - constant;
+            residuals[law.limit] += of_forces + of_slips - constant;
         }
     }
 
@@ -198,7 +198,7 @@ mod tests {
             unit[direction] = 1.0;
             let mut change = [0.0; 3];
             let slip = |t: usize| unit[2 + t];
-            law.add_missed(&unit[..3], slip, true, &mut change);
+            law.add_residual(&unit[..3], slip, true, &mut change);
             let moved = |by: f64| {
                 let forces = [0, 1, 2].map(|i| forces[i] + by * unit[i]);
                 natural_map(forces, [0, 1].map(|k| slips[k] + by * unit[3 + k]))

@@ -61,7 +61,7 @@ pub enum FixedStatus {
     /// Closed: the jump changes by its distance to the bound.
     Closed {
         /// The distance to the bound (m).
-        lacks: f64,
+        distance: f64,
     },
     /// Slipping: the force changes with the bound of its point and turns with the slip.
     Slips {
@@ -86,7 +86,7 @@ impl FixedStatus {
     pub fn new(open: bool) -> Self {
         match open {
             true => Self::Open,
-            false => Self::Closed { lacks: 0.0 },
+            false => Self::Closed { distance: 0.0 },
         }
     }
 
@@ -96,9 +96,9 @@ impl FixedStatus {
     }
 
     /// Distance to the bound if it is closed (m), else 0.
-    pub fn lacks(&self) -> f64 {
+    pub fn distance_to_bound(&self) -> f64 {
         match *self {
-            Self::Closed { lacks } => lacks,
+            Self::Closed { distance } => distance,
             _ => 0.0,
         }
     }

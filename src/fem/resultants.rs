@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 1e-6;
 
 /// Penetration over the largest displacement above which a warning is given: where two curved bodies approach each
 /// other by the largest displacement, facets as long as a third of the contact penetrate that far.
-const SEEN: f64 = 0.05;
+const WARNED_PENETRATION: f64 = 0.05;
 
 /// A force and its moment about the origin (N and N m, per metre of thickness in the plane; around an axis the force
 /// along it).
@@ -160,7 +160,7 @@ impl ContactResultant {
         };
         let mut warnings = Vec::new();
         let (own, other) = if self.on_b { ('b', 'a') } else { ('a', 'b') };
-        if probed.relative > SEEN {
+        if probed.relative > WARNED_PENETRATION {
             warnings.push(format!(
                 "contact '{}': at node {} of side {other} the sides penetrate by {} {}, {} of the largest displacement: the \
                  nodes of side {own} hold them apart, and its facets are too large there; expected smaller ones",

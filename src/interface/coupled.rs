@@ -55,7 +55,7 @@ pub struct CoupledStep {
     /// The solution of the contact problem of all pairs.
     pub contact: ContactSolution,
     /// The constraints of every pair with wrong status, if friction kept the iteration from converging.
-    pub unsettled: Vec<Vec<usize>>,
+    pub violated_limits: Vec<Vec<usize>>,
 }
 
 /// A change of U and of all pairs.
@@ -122,11 +122,11 @@ impl<'a> CoupledContact<'a> {
             last_patch: &self.interface.last_patch,
         };
         let contact = problem.solve(&mut status);
-        let mut unsettled = Vec::new();
+        let mut violated_limits = Vec::new();
         if !contact.converged && self.has_friction() {
             let mut wrong = vec![false; status.len()];
             problem
-                .unsettled(&status)
+                .violated_limits(&status)
                 .into_iter()
                 .for_each(|i| wrong[i] = true);
             let of_pair = |(law, wrong): (&CondensedContact, Vec<bool>)| {
@@ -137,7 +137,7 @@ impl<'a> CoupledContact<'a> {
                     .collect()
             };
             let by_pair = self.by_pair(&wrong);
-            unsettled = self
+            violated_limits = self
                 .interface
                 .laws
                 .iter()
@@ -150,7 +150,7 @@ impl<'a> CoupledContact<'a> {
             u: self.change_of_u(r, &condensed, &contact.jumps),
             expected: statuses.zip(self.by_pair(&contact.jumps)).collect(),
             contact,
-            unsettled,
+            violated_limits,
         }
     }
 
@@ -189,7 +189,7 @@ impl<'a> CoupledContact<'a> {
         let scale = loads.iter().map(|x| x.abs()).collect();
         let condensed = self.condense(r, loads, scale);
         let fixed = self.side_by_side(statuses.iter().map(Vec::as_slice));
-        let bounds: Vec<f64> = fixed.iter().map(FixedStatus::lacks).collect();
+        let bounds: Vec<f64> = fixed.iter().map(FixedStatus::distance_to_bound).collect();
         let problem = FrictionProblem {
             contact: ContactProblem {
                 scale: match moves {

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Time without output after which a line of progress is added to a log.
-const SILENCE: Duration = Duration::from_secs(10);
+const LOG_INTERVAL: Duration = Duration::from_secs(10);
 
 /// Interval at which the bar is redrawn without progress.
 const TICK: Duration = Duration::from_millis(100);
@@ -22,7 +22,7 @@ pub struct Bar {
     phase: Cell<&'static str>,
     part: Cell<Part>,
     /// Time of the last line in the log; `None` without one.
-    told: Option<Cell<Instant>>,
+    last_line: Option<Cell<Instant>>,
     began: Instant,
 }
 
@@ -61,15 +61,15 @@ impl Bar {
             bar,
             phase: Cell::new(""),
             part: Cell::new(Part::new()),
-            told: (!quiet && !shown).then(|| Cell::new(now)),
+            last_line: (!quiet && !shown).then(|| Cell::new(now)),
             began: now,
         };
         // Nothing is shown before the first phase.
-        bar.look("");
+        bar.set_template("");
         bar
     }
 
-    fn look(&self, template: &str) {
+    fn set_template(&self, template: &str) {
         // The templates are constants; with a wrong one, the default bar would be used.
         if let Ok(style) = ProgressStyle::with_template(template) {
             self.bar.set_style(style.progress_chars("=> "));
@@ -80,8 +80,8 @@ impl Bar {
     pub fn begin(&self, phase: &'static str) {
         self.phase.set(phase);
         self.part.set(Part::new());
-        self.tell(|| phase.to_owned());
-        self.look("{msg} {spinner} {elapsed}");
+        self.log_progress(|| phase.to_owned());
+        self.set_template("{msg} {spinner} {elapsed}");
         self.bar.reset();
         self.bar.set_message(phase);
         self.bar.unset_length();
@@ -95,7 +95,7 @@ impl Bar {
         let mut part = self.part.get();
         if share == 0.0 {
             part = Part::new();
-            self.look("{msg} [{bar:32}] {percent} %{prefix}, {elapsed} so far");
+            self.set_template("{msg} [{bar:32}] {percent} %{prefix}, {elapsed} so far");
             self.bar.set_length(STEPS);
         }
         part.share = share;
@@ -108,7 +108,7 @@ impl Bar {
             self.bar.set_position((share * STEPS as f64) as u64);
             self.bar.set_prefix(left());
         }
-        self.tell(|| format!("{}, {:.0} %{}", self.phase.get(), 100.0 * share, left()));
+        self.log_progress(|| format!("{}, {:.0} %{}", self.phase.get(), 100.0 * share, left()));
     }
 
     /// The phase of the run.
@@ -123,10 +123,12 @@ impl Bar {
     }
 
     /// Writes a line to the log, unless it has had one recently.
-    fn tell(&self, doing: impl FnOnce() -> String) {
-        let Some(told) = &self.told else { return };
-        if told.get().elapsed() > SILENCE {
-            told.set(Instant::now());
+    fn log_progress(&self, doing: impl FnOnce() -> String) {
+        let Some(last_line) = &self.last_line else {
+            return;
+        };
+        if last_line.get().elapsed() > LOG_INTERVAL {
+            last_line.set(Instant::now());
             let seconds = self.began.elapsed().as_secs_f64();
             // A closed pipe must not stop a run that writes its results to a file.
             let _ = writeln!(stdout(), "  after {seconds:.0} s: {}", doing());
@@ -134,7 +136,7 @@ impl Bar {
     }
 
     /// Prints with the bar temporarily removed.
-    pub fn aside(&self, print: impl FnOnce()) {
+    pub fn suspend(&self, print: impl FnOnce()) {
         self.bar.suspend(print);
     }
 

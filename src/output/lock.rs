@@ -13,7 +13,8 @@ use std::{fmt, process, thread};
 
 use contact_dd_partition::destination::{beside, failure};
 use contact_dd_partition::error::OutputError;
-use rustix::system::uname;
+
+use crate::comm::host_name;
 
 /// Time to wait for a lock: the lock of a killed run holds until the system has released its memory.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -126,7 +127,7 @@ impl Holder {
         Self {
             process,
             began: beginning(process).unwrap_or(0),
-            host: this_host(),
+            host: host_name(),
         }
     }
 
@@ -150,7 +151,7 @@ impl Holder {
 
     /// True if the process may still run; processes of other hosts can't be checked.
     fn may_live(&self) -> bool {
-        self.host != this_host() || beginning(self.process) == Some(self.began)
+        self.host != host_name() || beginning(self.process) == Some(self.began)
     }
 }
 
@@ -158,10 +159,6 @@ impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "process {} on host '{}'", self.process, self.host)
     }
-}
-
-fn this_host() -> String {
-    uname().nodename().to_string_lossy().into_owned()
 }
 
 /// Start time of a process of this host; `None` if there is none.
@@ -182,7 +179,7 @@ mod tests {
         let output = folder.path().join("result.vtkhdf");
         let held = OutputLock::take(&output).unwrap();
         let refused = OutputLock::take(&output).unwrap_err().to_string();
-        let process = format!("process {} on host '{}'", process::id(), this_host());
+        let process = format!("process {} on host '{}'", process::id(), host_name());
         for words in ["result.vtkhdf", "another run writes it", &process] {
             assert!(refused.contains(words), "{refused}");
         }

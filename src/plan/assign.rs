@@ -122,21 +122,21 @@ fn share(
     of_subtree: &Costs,
     ranks: usize,
 ) -> Share {
-    const NOBODY: usize = usize::MAX;
-    let mut owner = tree.nodes.like(NOBODY);
+    const NO_OWNER: usize = usize::MAX;
+    let mut owner = tree.nodes.like(NO_OWNER);
     let mut busy = vec![0.0f64; ranks];
     for (task, rank) in owners {
         busy[rank] += of_subtree[task];
         owner[task] = rank;
     }
     let mut done: Costs = (owner.iter())
-        .map(|&owner| if owner == NOBODY { 0.0 } else { busy[owner] })
+        .map(|&owner| if owner == NO_OWNER { 0.0 } else { busy[owner] })
         .collect();
     let mut end = done.iter().copied().fold(0.0, f64::max);
     for (v, node) in tree.nodes.each() {
-        let above_tasks = owner[v] == NOBODY
+        let above_tasks = owner[v] == NO_OWNER
             && !node.children.is_empty()
-            && node.children.iter().all(|&child| owner[child] != NOBODY);
+            && node.children.iter().all(|&child| owner[child] != NO_OWNER);
         if !above_tasks {
             continue;
         }
@@ -153,7 +153,7 @@ fn share(
     }
     // Nodes below a task belong to its owner.
     for v in tree.nodes.ids().rev() {
-        if owner[v] == NOBODY {
+        if owner[v] == NO_OWNER {
             owner[v] = tree.nodes[v].parent.map_or(0, |parent| owner[parent]);
         }
     }

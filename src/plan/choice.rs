@@ -7,13 +7,13 @@ use contact_dd_partition::solver::Method;
 use super::Plan;
 use super::cluster::Merging;
 use super::cost::CostEstimate;
-use super::memory::{CERTAIN, LIKELY, afford};
+use super::memory::{CERTAIN_SHARE, LIKELY_SHARE, check_memory};
 use crate::comm::Comm;
 use crate::error::Failure;
 
 /// The user's choices.
 #[derive(Clone, Copy, Debug)]
-pub struct Wishes {
+pub struct SolverRequest {
     /// The method of the sweeps.
     pub method: Method,
     /// True for the iterative interface solver, false for the direct one; `None` if not chosen.
@@ -64,35 +64,35 @@ impl Choice {
     ///
     /// # Errors
     /// The iterative solver is requested, but the problem file has no clusters.
-    pub fn all(catalog: &Catalog, wishes: Wishes) -> Result<Vec<Self>, Failure> {
+    pub fn all(catalog: &Catalog, request: SolverRequest) -> Result<Vec<Self>, Failure> {
         let only = |merging, why: &str| Ok(vec![Self::new(merging, why)]);
-        match wishes.method {
+        match request.method {
             Method::Picard => return only(Merging::Linear, "picard inverts S_0 alone"),
             Method::Anderson => {
                 return only(Merging::Groups, "anderson sweeps over contact groups");
             }
             Method::Newton => {}
         }
-        if wishes.iterative == Some(true) && catalog.hierarchy.clusters.is_empty() {
+        if request.iterative == Some(true) && catalog.hierarchy.clusters.is_empty() {
             return Err(Failure::input(
                 "dataset /hierarchy/cluster is missing, which --interface iterative needs; make the problem file \
                  anew, or use --interface direct",
             ));
         }
-        if catalog.has_friction() && wishes.second_start {
+        if catalog.has_friction() && request.second_start {
             return only(
                 Merging::All,
                 "--second-start solves for all conditions at once",
             );
         }
-        if wishes.iterative == Some(true) {
+        if request.iterative == Some(true) {
             return only(
                 Merging::Clusters,
                 "conjugate gradients between clusters, as --interface iterative demands",
             );
         }
         let times = OperatorTimes::new(catalog);
-        let operators: Vec<Operator> = match wishes.iterative {
+        let operators: Vec<Operator> = match request.iterative {
             Some(_) => times.direct().collect(),
             None => times.operators().collect(),
         };
@@ -120,7 +120,7 @@ impl Choice {
         let plan = Plan::new(catalog, comm.size(), self.merging);
         let costs = plan.cost_estimates(catalog, comm.size());
         let needed = CostEstimate::sum(&costs).bytes;
-        match afford(comm, &costs, share) {
+        match check_memory(comm, &costs, share) {
             Ok(available) => Ok(ChosenPlan {
                 choice: self,
                 plan,
@@ -146,7 +146,7 @@ impl ChosenPlan {
     /// Too little memory for any of them.
     pub fn new(comm: &Comm, catalog: &Catalog, choices: &[Choice]) -> Result<Self, Failure> {
         let mut least: Option<Refusal> = None;
-        for share in [LIKELY, CERTAIN] {
+        for share in [LIKELY_SHARE, CERTAIN_SHARE] {
             let mut refused = String::new();
             for choice in choices {
                 match choice.clone().plan(comm, catalog, share) {

@@ -13,18 +13,18 @@ use crate::comm::Comm;
 
 impl Plan {
     /// Sends data of nodes from their blocks to the groups that use them: for every group of this rank, node by node.
-    /// Collective; `say` returns the data of some nodes of a block, on the owner of the block.
+    /// Collective; `data_of` returns the data of some nodes of a block, on the owner of the block.
     pub fn nodes_to_groups<T: Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
-        say: impl Fn(BlockId, &[(SubdomainNode, u32)]) -> Vec<T>,
+        data_of: impl Fn(BlockId, &[(SubdomainNode, u32)]) -> Vec<T>,
     ) -> OnGroups<Vec<T>> {
         let links = self.links();
         let mut arrived: OnGroups<Vec<T>> = BTreeMap::new();
         comm.route(
             links.iter().map(|link| self.ends(link)),
-            |i| say(links[i].block, links[i].nodes),
-            |i, said| arrived.entry(links[i].group).or_default().extend(said),
+            |i| data_of(links[i].block, links[i].nodes),
+            |i, data| arrived.entry(links[i].group).or_default().extend(data),
         );
         arrived
     }
@@ -34,17 +34,17 @@ impl Plan {
     pub fn nodes_to_blocks<T: Clone + Serialize + DeserializeOwned>(
         &self,
         comm: &Comm,
-        said: &OnGroups<Vec<T>>,
+        data: &OnGroups<Vec<T>>,
     ) -> OnBlocks<Vec<(u32, T)>> {
         let links = self.links();
         let mut arrived: OnBlocks<Vec<(u32, T)>> = BTreeMap::new();
         comm.route(
             (links.iter().map(|link| self.ends(link))).map(|(block, group)| (group, block)),
-            |i| said[&links[i].group][links[i].first..][..links[i].nodes.len()].to_vec(),
-            |i, said| {
+            |i| data[&links[i].group][links[i].first..][..links[i].nodes.len()].to_vec(),
+            |i, data| {
                 let nodes = links[i].nodes.iter().map(|(node, _)| node.node);
                 let of_block = arrived.entry(links[i].block).or_default();
-                of_block.extend(nodes.zip(said));
+                of_block.extend(nodes.zip(data));
             },
         );
         arrived

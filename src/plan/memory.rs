@@ -5,7 +5,7 @@ use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
 use super::cost::CostEstimate;
-use crate::comm::Comm;
+use crate::comm::{Comm, host_name};
 use crate::error::Failure;
 
 /// Peak resident memory of this process (bytes); 0 if the system doesn't report it.
@@ -75,9 +75,9 @@ fn kibibytes(list: &str, name: &str) -> Option<u64> {
 }
 
 /// Fraction of the estimate that is certainly needed.
-pub const CERTAIN: f64 = 0.8;
+pub const CERTAIN_SHARE: f64 = 0.8;
 /// Fraction of the estimate that is most likely needed.
-pub const LIKELY: f64 = 1.0;
+pub const LIKELY_SHARE: f64 = 1.0;
 
 /// The memory of a host, and the need of its ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -92,11 +92,11 @@ struct Host {
 ///
 /// # Errors
 /// The first host with too little memory.
-pub fn afford(comm: &Comm, costs: &[CostEstimate], share: f64) -> Result<f64, Failure> {
+pub fn check_memory(comm: &Comm, costs: &[CostEstimate], share: f64) -> Result<f64, Failure> {
     // If the system doesn't report memory, nothing is refused.
     let available = available_memory_bytes().map_or(f64::INFINITY, |bytes| bytes as f64);
     let mut hosts: BTreeMap<String, Host> = BTreeMap::new();
-    let ranks = comm.collect(&(comm.host_name(), available));
+    let ranks = comm.collect(&(host_name(), available));
     for ((name, available), cost) in ranks.into_iter().zip(costs) {
         let host = hosts.entry(name).or_default();
         host.available = available;
@@ -190,7 +190,7 @@ mod tests {
             let all = [("first", host(8e9, 6e9)), ("second", second)];
             check(
                 &all.map(|(name, host)| (name.to_string(), host)).into(),
-                CERTAIN,
+                CERTAIN_SHARE,
             )
         };
         assert!(of(host(8e9, 9e9)).is_ok());

@@ -54,13 +54,13 @@ const REFINEMENTS: usize = 3;
 /// The quantities that the scene requests, if this load point is the end of a load step; with derivatives if the slips
 /// with which it began are known. Collective.
 pub fn quantities_at(
-    moment: LoadPoint,
+    load_point: LoadPoint,
     fixed: &FixedActiveSet<'_>,
     solution: &Solution,
     before: Option<&OnGroups<Vec<f64>>>,
 ) -> Quantities {
     let catalog = fixed.context.catalog;
-    if moment.part < 1.0 || catalog.quantities.is_empty() {
+    if load_point.part < 1.0 || catalog.quantities.is_empty() {
         return Quantities::default();
     }
     let slips = before.into_iter().flat_map(BTreeMap::values).flatten();
@@ -78,7 +78,7 @@ pub fn quantities_at(
     let solved = Solved {
         fixed,
         solution,
-        step: moment.step,
+        step: load_point.step,
     };
     quantities(solved, without.map(Into::into))
 }

@@ -41,27 +41,27 @@ fn points_against_law(context: &Context<'_>, solution: &DiscreteSolution) -> Vec
         &plan.group_owners(),
         |g| match solution.groups.get(&g) {
             Some(of_group) => {
-                let mut missed = missed(&context.groups[&g], of_group);
-                missed.sort_by(|a, b| b.1.total_cmp(&a.1));
-                missed.truncate(MOST);
-                (missed, largest(&of_group.forces))
+                let mut residuals = residuals(&context.groups[&g], of_group);
+                residuals.sort_by(|a, b| b.1.total_cmp(&a.1));
+                residuals.truncate(MOST);
+                (residuals, largest(&of_group.forces))
             }
             None => (Vec::new(), 0.0),
         },
-        |g, (missed, largest): (Vec<(usize, f64)>, f64)| {
+        |g, (residuals, largest): (Vec<(usize, f64)>, f64)| {
             force = force.max(largest);
             let points = &plan.tree.nodes[plan.groups[g].node].points;
-            all.extend(missed.into_iter().map(|(point, x)| (points[point], x)));
+            all.extend(residuals.into_iter().map(|(point, x)| (points[point], x)));
         },
     );
-    all.retain(|(_, missed)| *missed > ROUND_OFF * force);
+    all.retain(|(_, residual)| *residual > ROUND_OFF * force);
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     all.into_iter().map(|(point, _)| point).collect()
 }
 
 /// Violations of the laws by the points of a group, as forces (N/m): λ − max(0, λ − r gap), and along the tangents λ_t
 /// − ξ min(1, b/|ξ|) with ξ = λ_t + r s.
-fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
+fn residuals(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
     let (gaps, forces) = (&solution.gaps, &solution.forces);
     let normal = |j: usize| {
         if group.points[j].law.is_tied() {
@@ -70,7 +70,8 @@ fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
         let r = group.stiffness_at(j);
         (forces[j] - (forces[j] - r * gaps[j]).max(0.0)).abs()
     };
-    let mut missed: Vec<(usize, f64)> = (0..group.points.len()).map(|j| (j, normal(j))).collect();
+    let mut residuals: Vec<(usize, f64)> =
+        (0..group.points.len()).map(|j| (j, normal(j))).collect();
     for point in group.point_laws() {
         let here = solution.point(&point);
         let xi = point.reach(&here);
@@ -81,8 +82,8 @@ fn missed(group: &ContactGroup, solution: &GroupSolution) -> Vec<(usize, f64)> {
         };
         let off = [0, 1].map(|k| here.force[k] - part * xi[k]);
         if let Some(n) = point.normal {
-            missed[n].1 = missed[n].1.max(off[0].hypot(off[1]));
+            residuals[n].1 = residuals[n].1.max(off[0].hypot(off[1]));
         }
     }
-    missed
+    residuals
 }

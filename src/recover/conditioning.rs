@@ -82,7 +82,7 @@ fn statuses_of(
     let mut aligned = of_group.clone();
     let statuses = conditions(&context.groups[&g], &mut aligned, &prescribed(context, g));
     let at_rest = |status: FixedStatus| match status {
-        FixedStatus::Closed { .. } => FixedStatus::Closed { lacks: 0.0 },
+        FixedStatus::Closed { .. } => FixedStatus::Closed { distance: 0.0 },
         other => other,
     };
     statuses.into_iter().map(at_rest).collect()

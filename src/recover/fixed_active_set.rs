@@ -21,7 +21,7 @@ use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
 use crate::interface::problem::InterfaceProblem;
 use crate::recover::BlockSolution;
-use crate::recover::motions::Motions;
+use crate::recover::motions::{Field, Motions};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::step::StepProblem;
 use crate::sweep::{SweepOutcome, SweepStatus};
@@ -143,6 +143,20 @@ impl<'a> FixedActiveSet<'a> {
         ))
     }
 
+    /// Forces at the nodes of this rank's blocks as loads on their unknowns, without the part along free motions.
+    /// Collective.
+    pub fn on_unknowns(&self, mut forces: OnBlocks<Vec<f64>>) -> OnBlocks<Vec<f64>> {
+        let fields = forces.iter_mut().map(|(&b, r)| (b, r)).collect();
+        self.free.project(&self.context, Field::Summed, fields);
+        let of_block = |(b, forces): (BlockId, Vec<f64>)| {
+            let dofs = &self.condensed.blocks.get(&b)?.dofs;
+            let mut load = vec![0.0; dofs.len()];
+            dofs.add_load(&forces, &mut load);
+            Some((b, load))
+        };
+        forces.into_iter().filter_map(of_block).collect()
+    }
+
     /// The change due to `loads` on the unknowns of this rank's blocks, and of the others', if `conditions` keep their
     /// statuses; friction of points that slip under these `forces` of conditions, by contact group, follows the
     /// pressure in its direction; `tolerance` is that of an iterative solver. Collective.
@@ -187,8 +201,8 @@ impl<'a> FixedActiveSet<'a> {
     /// Missing jumps of ties, where their conditions have these statuses.
     pub fn missing_of_ties(&self, conditions: &FixedStatuses) -> TiedJumps {
         let of_group = |(&g, tied): (&GroupId, &Vec<(usize, f64)>)| {
-            let lacks = |&(j, _): &(usize, f64)| (j, conditions[&g][j].lacks());
-            (g, tied.iter().map(lacks).collect())
+            let distance = |&(j, _): &(usize, f64)| (j, conditions[&g][j].distance_to_bound());
+            (g, tied.iter().map(distance).collect())
         };
         self.step.tied.iter().map(of_group).collect()
     }
@@ -215,9 +229,9 @@ impl<'a> FixedActiveSet<'a> {
                 let of_slipping = SlipLaw::of_slipping(&limits[&g], stiffness, &fixed, forces);
                 laws.insert(g, of_slipping);
             }
-            let lacks = fixed.iter().map(FixedStatus::lacks);
+            let distances = fixed.iter().map(FixedStatus::distance_to_bound);
             let of_ties = tied[&g].iter().map(|&(_, jump)| jump);
-            missing.insert(g, lacks.chain(of_ties).collect());
+            missing.insert(g, distances.chain(of_ties).collect());
             open.insert(g, fixed.iter().map(|s| !s.is_closed()).collect());
         }
         let mut fronts = fronts.borrow_mut();

@@ -14,7 +14,7 @@ use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
 
 /// Approximate angle between force and slip beyond which the slip is too small to determine its direction.
-const TOLD: f64 = 0.1;
+const RELIABLE_ANGLE: f64 = 0.1;
 
 /// The conditions of a group in the linear problem; forces of points that slip in a plane are aligned with their slips.
 pub fn conditions(
@@ -22,12 +22,7 @@ pub fn conditions(
     solution: &mut GroupSolution,
     prescribed: &[bool],
 ) -> Vec<FixedStatus> {
-    let both = solution.closed.iter().zip(&solution.gaps);
-    let fixed = |(&closed, &lacks): (&bool, &f64)| match closed {
-        true => FixedStatus::Closed { lacks },
-        false => FixedStatus::Open,
-    };
-    let mut conditions: Vec<FixedStatus> = both.map(fixed).collect();
+    let mut conditions = solution.fixed_statuses();
     for point in group.point_laws() {
         let here = solution.point(&point);
         let size = here.size();
@@ -70,7 +65,7 @@ fn turned(solution: &mut GroupSolution, point: &PointLaw, here: PointState) -> (
     {
         let along = slip[0] * e[0] + slip[1] * e[1];
         let across = [0, 1].map(|k| slip[k] - along * e[k]);
-        if turning > 0.0 && turning * across[0].hypot(across[1]) <= TOLD * bound {
+        if turning > 0.0 && turning * across[0].hypot(across[1]) <= RELIABLE_ANGLE * bound {
             for (k, j) in point.limits().enumerate() {
                 solution.forces[j] = bound * e[k] + turning * across[k];
             }
@@ -123,7 +118,7 @@ mod tests {
         let (group, slip) = (group(COULOMB), [-3e-3, -4e-3]);
         let mut solution = pressed([1.2, 1.6], slip, false);
         let fixed = conditions(&group, &mut solution, &[false; 3]);
-        assert_eq!(fixed[0], FixedStatus::Closed { lacks: 0.0 });
+        assert_eq!(fixed[0], FixedStatus::Closed { distance: 0.0 });
         for (fixed, (share, force)) in fixed[1..].iter().zip([(0.6, 1.2), (0.8, 1.6)]) {
             let [e, turning] = fixed.slip().unwrap();
             assert!((e - share).abs() < 1e-13, "{e}");

@@ -2,7 +2,7 @@
 
 use crate::contact::law::{PointLaw, PointState};
 use crate::contact::slip_law::AT_BOUND;
-use crate::contact::status::{LimitState, Status};
+use crate::contact::status::{FixedStatus, LimitState, Status};
 use crate::fem::contact_group::ContactGroup;
 
 /// The solution at the conditions of a contact group.
@@ -49,6 +49,16 @@ impl GroupSolution {
             }
         }
         states
+    }
+
+    /// Statuses that close the closed conditions at their bounds and leave the others open.
+    pub fn fixed_statuses(&self) -> Vec<FixedStatus> {
+        let both = self.closed.iter().zip(&self.gaps);
+        let fixed = |(&closed, &distance): (&bool, &f64)| match closed {
+            true => FixedStatus::Closed { distance },
+            false => FixedStatus::Open,
+        };
+        both.map(fixed).collect()
     }
 
     /// Sets forces and closed flags of all conditions but ties.
@@ -105,7 +115,7 @@ impl GroupSolution {
     /// Changes sticking points beyond their bound to slipping, and slipping points whose force drives the slip to
     /// sticking. A slipping point without a force, lost with its pressure, gets that of its law. Returns whether any
     /// changed.
-    pub fn stick_or_slip(&mut self, group: &ContactGroup) -> bool {
+    pub fn correct_statuses(&mut self, group: &ContactGroup) -> bool {
         let mut changed = false;
         for point in group.point_laws() {
             let here = self.point(&point);

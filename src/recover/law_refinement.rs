@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::id::{OnBlocks, OnPairs, PairId};
 
-use crate::contact::status::{FixedStatus, LimitState};
+use crate::contact::status::LimitState;
 use crate::interface::coupled::{CoupledContact, PairChange};
+use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses, put_tied};
-use crate::recover::{DiscreteSolution, GroupSolution};
 
 /// Vectors on all unknowns of every block of this rank.
 type OnUnknowns = OnBlocks<Vec<f64>>;
@@ -96,7 +96,7 @@ impl FixedActiveSet<'_> {
 
     /// Undoes slips: closed points return to their positions of stick, with the forces that this takes, as the solution
     /// moves under these `loads`. Collective.
-    pub fn hold_slips(&self, solution: &mut DiscreteSolution, loads: OnUnknowns) {
+    pub fn undo_slips(&self, solution: &mut DiscreteSolution, loads: OnUnknowns) {
         for (&g, of_group) in &mut solution.groups {
             for point in self.context.groups[&g].point_laws() {
                 let holds = !point.has_opened(&of_group.closed);
@@ -119,14 +119,8 @@ impl FixedActiveSet<'_> {
 
 /// The statuses of all conditions with the closed ones held at their bounds.
 fn held(solution: &DiscreteSolution) -> FixedStatuses {
-    let of_group = |of_group: &GroupSolution| {
-        let status = |(&lacks, &closed): (&f64, &bool)| match closed {
-            true => FixedStatus::Closed { lacks },
-            false => FixedStatus::Open,
-        };
-        let all = of_group.gaps.iter().zip(&of_group.closed);
-        all.map(status).collect()
-    };
     let groups = solution.groups.iter();
-    groups.map(|(&g, own)| (g, of_group(own))).collect()
+    groups
+        .map(|(&g, of_group)| (g, of_group.fixed_statuses()))
+        .collect()
 }

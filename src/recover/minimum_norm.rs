@@ -22,7 +22,7 @@ use crate::vector::largest as largest_entry;
 /// Contact force, relative to the terms of the equilibrium at its nodes, below which it is round-off.
 const ROUND_OFF: f64 = 1e-14;
 /// Gap, relative to the largest displacement before and after the move of bodies, above which it is open.
-const OPENED: f64 = 1e-13;
+const OPEN_GAP: f64 = 1e-13;
 
 /// Most corrections of the round-off that a move leaves unbalanced; each moves bodies again, by less.
 const CORRECTIONS: usize = 2;
@@ -80,7 +80,7 @@ pub fn take_minimum_norm(
         return MinimumNorm::default();
     }
     let mut nearer = solution.clone();
-    let (mut released, mut minimum_norm) = move_nearer(fixed, analysis, &mut nearer);
+    let (mut released, mut minimum_norm) = move_to_least_displacement(fixed, analysis, &mut nearer);
     certificate.is_driven = minimum_norm.is_driven;
     if !minimum_norm.has_released_modes {
         *solution = nearer;
@@ -102,7 +102,7 @@ pub fn take_minimum_norm(
         };
         correct_once(&of_released, &mut nearer);
         let moved;
-        (released, moved) = move_nearer(fixed, analysis, &mut nearer);
+        (released, moved) = move_to_least_displacement(fixed, analysis, &mut nearer);
         minimum_norm.opened += moved.opened;
         minimum_norm.is_driven |= moved.is_driven;
     }
@@ -115,7 +115,7 @@ pub fn take_minimum_norm(
 
 /// Moves the bodies to the position of least displacement, even if that worsens the certificate, and returns the
 /// motions free in it. Collective.
-fn move_nearer(
+fn move_to_least_displacement(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,
     solution: &mut DiscreteSolution,
@@ -163,7 +163,7 @@ fn move_nearer(
         ..MinimumNorm::default()
     };
     let largest = before.max(largest_displacement(fixed, solution));
-    minimum_norm.opened = open_all(fixed, solution, OPENED * largest);
+    minimum_norm.opened = open_all(fixed, solution, OPEN_GAP * largest);
     solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
     (list, minimum_norm)

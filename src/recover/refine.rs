@@ -1,7 +1,7 @@
 //! Iterative refinement with the available factors: the full discrete problem's residual is solved for with the active
 //! set fixed, wherever the certificate falls short.
 
-use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
+use contact_dd_partition::id::{GroupId, OnBlocks, OnGroups};
 
 use crate::certificate::Certificate;
 use crate::contact::jumps::JumpOf;
@@ -10,7 +10,6 @@ use crate::context::hierarchy::jumps;
 use crate::recover::DiscreteSolution;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
 use crate::recover::fixed_conditions::{change_forces, conditions};
-use crate::recover::motions::Field;
 use crate::recover::solution_check::check;
 use crate::sweep::AGAINST_FRICTION;
 
@@ -23,7 +22,7 @@ const LIMIT_OF_LOAD: f64 = 1e-11;
 const LIMIT_OF_FRICTION: f64 = 1e-14;
 /// Violation of the law of friction above which sticking and slipping are corrected: well above round-off, well below
 /// the error that is rejected.
-const ASTRAY: f64 = 1e-12;
+const CORRECTED_ABOVE: f64 = 1e-12;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
 /// Accuracy of a correction by an iterative solver.
@@ -77,24 +76,24 @@ pub fn refine_laws(
     certificate: Certificate,
 ) -> Certificate {
     let mut best = certificate;
-    if !decide(fixed, breaks_laws(&best)) {
+    if !decide(fixed, violates_laws(&best)) {
         return best;
     }
     laws_from(fixed, solution, &mut best);
     // A cycle from the present state recurs from other ones, too.
-    let tries_again = fixed.root.is_some_and(|root| !root.cycles) && breaks_laws(&best);
+    let tries_again = fixed.root.is_some_and(|root| !root.cycles) && violates_laws(&best);
     if fixed.context.catalog.has_friction() && decide(fixed, tries_again) {
         let mut stuck = solution.clone();
         for _ in 0..MAX_REFINEMENTS {
             let loads = unbalanced(fixed, &stuck);
-            fixed.hold_slips(&mut stuck, loads);
+            fixed.undo_slips(&mut stuck, loads);
         }
         let mut of_stuck = Certificate {
             equilibrium: f64::INFINITY,
             ..best
         };
         laws_from(fixed, &mut stuck, &mut of_stuck);
-        if decide(fixed, short_of_laws(&of_stuck) < short_of_laws(&best)) {
+        if decide(fixed, law_violation(&of_stuck) < law_violation(&best)) {
             *solution = stuck;
             best = of_stuck;
         }
@@ -105,7 +104,7 @@ pub fn refine_laws(
 /// Solves the laws of contact anew, and refines, as long as the certificate falls short and improves. Collective.
 fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: &mut Certificate) {
     for _ in 0..MAX_REFINEMENTS_OF_LAWS {
-        if !decide(fixed, breaks_laws(best)) {
+        if !decide(fixed, violates_laws(best)) {
             break;
         }
         let residuals = unbalanced(fixed, solution);
@@ -113,7 +112,7 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
             break;
         };
         let after = refine(fixed, &mut refined);
-        if !decide(fixed, short_of_laws(&after) < short_of_laws(best)) {
+        if !decide(fixed, law_violation(&after) < law_violation(best)) {
             break;
         }
         *solution = refined;
@@ -122,13 +121,13 @@ fn laws_from(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, best: 
 }
 
 /// True if a solution violates balance or the laws of contact by more than is good enough.
-fn breaks_laws(certificate: &Certificate) -> bool {
-    short_of_laws(certificate) > GOOD
+fn violates_laws(certificate: &Certificate) -> bool {
+    law_violation(certificate) > GOOD
 }
 
 /// Violation of balance and of the laws of contact by a solution, on the scale of equilibrium.
-fn short_of_laws(certificate: &Certificate) -> f64 {
-    worst(certificate).max(certificate.friction * (GOOD / ASTRAY))
+fn law_violation(certificate: &Certificate) -> f64 {
+    worst(certificate).max(certificate.friction * (GOOD / CORRECTED_ABOVE))
 }
 
 /// Corrects statuses against the laws of contact, as forces are more accurate after refinement than in the sweeps, and
@@ -142,7 +141,7 @@ pub fn correct_statuses(
 ) -> Certificate {
     let (mut corrected, mut after) = (None, certificate);
     for _ in 0..MAX_CORRECTIONS {
-        let is_astray = decide(fixed, after.friction > ASTRAY);
+        let is_violated = decide(fixed, after.friction > CORRECTED_ABOVE);
         let is_short = decide(fixed, worst(&after) > GOOD);
         let next: &mut DiscreteSolution = corrected.get_or_insert_with(|| solution.clone());
         let mut changed = decide(fixed, after.friction > AGAINST_FRICTION);
@@ -151,8 +150,8 @@ pub fn correct_statuses(
             if is_short {
                 changed |= of_group.open_or_close(group);
             }
-            if is_astray {
-                changed |= of_group.stick_or_slip(group);
+            if is_violated {
+                changed |= of_group.correct_statuses(group);
             }
         }
         let changed = fixed.context.comm.collect(&changed).contains(&true);
@@ -172,7 +171,10 @@ pub fn correct_statuses(
         next.share(&fixed.context, &fixed.step.loads);
         after = check(fixed, next);
     }
-    let is_right = after.friction <= certificate.friction.clamp(ASTRAY, AGAINST_FRICTION);
+    let is_right = after.friction
+        <= certificate
+            .friction
+            .clamp(CORRECTED_ABOVE, AGAINST_FRICTION);
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
     match corrected {
         Some(corrected) if decide(fixed, is_right && as_good) => {
@@ -265,16 +267,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
 /// The unbalanced forces of a solution on this rank's unknowns, without those along free motions. Collective.
 fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBlocks<Vec<f64>> {
     let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
-    let mut residuals: OnBlocks<Vec<f64>> = solution.blocks.iter().filter_map(residual).collect();
-    let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
-    fixed.free.project(&fixed.context, Field::Summed, fields);
-    let on_unknowns = |(b, residual): (BlockId, Vec<f64>)| {
-        let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
-        let mut load = vec![0.0; dofs.len()];
-        dofs.add_load(&residual, &mut load);
-        Some((b, load))
-    };
-    residuals.into_iter().filter_map(on_unknowns).collect()
+    fixed.on_unknowns(solution.blocks.iter().filter_map(residual).collect())
 }
 
 /// Flags of contact group g's conditions whose jumps supports prescribe; in the plane friction doesn't need them.

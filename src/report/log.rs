@@ -28,7 +28,7 @@ use crate::sweep::SweepRecord;
 const NOT_CONVERGED: u8 = 3;
 
 /// Time between progress events for programs.
-const PULSE: Duration = Duration::from_secs(1);
+const PROGRESS_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Result of validating the load steps of a stage, in which the same bodies and contacts are present.
 #[derive(Debug)]
@@ -49,24 +49,24 @@ pub struct Checked {
 pub struct RunLog<'a> {
     comm: &'a Comm,
     settings: &'a Settings,
-    voice: Option<LogFormat>,
+    format: Option<LogFormat>,
     began: Instant,
     /// Progress bar of a phase.
     bar: Bar,
     /// Time of the last progress event.
-    heard: Cell<Instant>,
+    last_progress: Cell<Instant>,
     /// The first load step of this run, and when it began.
     first_step: Cell<Option<(usize, Instant)>>,
     /// Error of the first event that couldn't be written. It doesn't end the run, because the results go to a file.
-    unheard: OnceCell<OutputError>,
+    write_error: OnceCell<OutputError>,
 }
 
 impl Listener for RunLog<'_> {
     fn done(&self, share: f64) {
         self.bar.done(share);
-        if self.heard.get().elapsed() > PULSE {
-            self.heard.set(Instant::now());
-            self.tell(&Event::Progress {
+        if self.last_progress.get().elapsed() > PROGRESS_INTERVAL {
+            self.last_progress.set(Instant::now());
+            self.print_event(&Event::Progress {
                 phase: self.bar.phase(),
                 done: share,
                 seconds: self.began.elapsed().as_secs_f64(),
@@ -79,42 +79,44 @@ impl Listener for RunLog<'_> {
 impl<'a> RunLog<'a> {
     /// The log of a run that started at `began`; silent on other ranks than the root and if `settings` are quiet.
     pub fn new(comm: &'a Comm, settings: &'a Settings, began: Instant) -> Self {
-        let voice = (comm.is_root() && !settings.quiet).then_some(settings.log);
+        let format = (comm.is_root() && !settings.quiet).then_some(settings.log);
         Self {
             comm,
             settings,
-            voice,
+            format,
             began,
-            bar: Bar::new(voice != Some(LogFormat::Text)),
-            heard: Cell::new(began),
+            bar: Bar::new(format != Some(LogFormat::Text)),
+            last_progress: Cell::new(began),
             first_step: Cell::new(None),
-            unheard: OnceCell::new(),
+            write_error: OnceCell::new(),
         }
     }
 
     /// Prints lines if the format of the log is text.
-    fn say(&self, text: &str) {
-        if self.voice == Some(LogFormat::Text) {
-            (self.bar).aside(|| self.remember(message::say(&format!("{text}\n"))));
+    fn print_text(&self, text: &str) {
+        if self.format == Some(LogFormat::Text) {
+            (self.bar).suspend(|| self.keep_error(message::print(&format!("{text}\n"))));
         }
     }
 
     /// Prints an event in the format of the log.
-    fn tell(&self, event: &Event<'_>) {
-        match self.voice {
+    fn print_event(&self, event: &Event<'_>) {
+        match self.format {
             None => {}
-            Some(LogFormat::Json) => self.remember(message::heard(event.write(stdout()))),
+            Some(LogFormat::Json) => {
+                self.keep_error(message::ignoring_closed_pipe(event.write(stdout())))
+            }
             Some(LogFormat::Text) => {
                 if let Some(text) = terminal::text(event) {
-                    self.say(&text);
+                    self.print_text(&text);
                 }
             }
         }
     }
 
-    fn remember(&self, said: Result<(), OutputError>) {
-        if let Err(error) = said {
-            let _ = self.unheard.set(error);
+    fn keep_error(&self, written: Result<(), OutputError>) {
+        if let Err(error) = written {
+            let _ = self.write_error.set(error);
         }
     }
 
@@ -122,8 +124,8 @@ impl<'a> RunLog<'a> {
     ///
     /// # Errors
     /// The error of the first such event.
-    pub fn heard(&self) -> Result<(), Failure> {
-        match self.unheard.get() {
+    pub fn check_written(&self) -> Result<(), Failure> {
+        match self.write_error.get() {
             None => Ok(()),
             Some(error) => Err(error.clone().into()),
         }
@@ -133,7 +135,7 @@ impl<'a> RunLog<'a> {
     pub fn phase(&self, phase: &'static str, steps: Option<usize>) {
         comm::phase(phase);
         self.bar.begin(phase);
-        self.tell(&Event::Phase {
+        self.print_event(&Event::Phase {
             phase,
             steps,
             seconds: self.began.elapsed().as_secs_f64(),
@@ -156,9 +158,9 @@ impl<'a> RunLog<'a> {
             threads: usize::from(self.settings.threads),
             interface_choice: why,
         };
-        self.tell(&Event::Problem(&summary));
+        self.print_event(&Event::Problem(&summary));
         if !self.settings.check {
-            self.tell(&Event::Settings {
+            self.print_event(&Event::Settings {
                 settings: self.settings,
                 settings_from: &self.settings.from,
             });
@@ -187,7 +189,7 @@ impl<'a> RunLog<'a> {
             return;
         };
         let (all, most) = (CostEstimate::sum(costs), CostEstimate::largest(costs));
-        self.tell(&Event::Check(&Costs {
+        self.print_event(&Event::Check(&Costs {
             memory_bytes: all.bytes,
             largest_rank_memory_bytes: most.bytes,
             available_bytes: *available,
@@ -209,7 +211,7 @@ impl<'a> RunLog<'a> {
         // The steps to come take as long as those of this run.
         let of_one = began.elapsed().as_secs_f64() / (k - first) as f64;
         let seconds_left = (k > first).then_some(of_one * (all - k) as f64);
-        self.tell(&Event::Step(&Step {
+        self.print_event(&Event::Step(&Step {
             step: k + 1,
             steps: all,
             name: &step.name,
@@ -222,13 +224,13 @@ impl<'a> RunLog<'a> {
     /// Prints the header of the table of sweeps if anything is in contact.
     pub fn sweeps(&self, in_contact: bool) {
         if in_contact {
-            self.say(terminal::SWEEP_HEADER);
+            self.print_text(terminal::SWEEP_HEADER);
         }
     }
 
     /// Prints a sweep.
     pub fn sweep(&self, record: &SweepRecord) {
-        self.tell(&Event::Sweep(record));
+        self.print_event(&Event::Sweep(record));
     }
 
     /// Makes the report, writes it with the results, and prints how the run ended. On the root.
@@ -244,10 +246,10 @@ impl<'a> RunLog<'a> {
         write(&report)?;
         self.bar.finish();
         for warning in &report.warnings {
-            match self.voice {
+            match self.format {
                 None => event::warning(self.settings.log, warning),
                 // People read them at the end of all.
-                Some(_) => self.tell(&Event::Warning { message: warning }),
+                Some(_) => self.print_event(&Event::Warning { message: warning }),
             }
         }
         let failures = failures(totals);
@@ -256,7 +258,7 @@ impl<'a> RunLog<'a> {
         } else {
             NOT_CONVERGED
         };
-        self.tell(&Event::Finished(&Finished {
+        self.print_event(&Event::Finished(&Finished {
             exit_code,
             result: self.settings.output.display().to_string(),
             reason: &reason(totals),
@@ -267,6 +269,6 @@ impl<'a> RunLog<'a> {
             let why = format!("not converged: {}", failures.join("; "));
             event::error(self.settings.log, exit_code, &why);
         }
-        self.heard()
+        self.check_written()
     }
 }

@@ -21,7 +21,7 @@ const LOAD_TOLERANCE: f64 = 1e-10;
 /// Load that contact can't balance, relative to all loads, that counts as zero.
 const BALANCE_TOLERANCE: f64 = 1e-9;
 /// Unbalanced load, relative to all loads, that may be more than round-off and leads to a warning.
-const UNDECIDED: f64 = 1e-12;
+const WARNED_IMBALANCE: f64 = 1e-12;
 /// Load that friction can't balance, relative to all loads, up to which it is round-off of their sum. It is small
 /// because a body on a slope slides just beyond a known angle.
 const SLIDING: f64 = 2e-14;
@@ -74,7 +74,7 @@ impl Scene {
     /// The load drives a motion that neither supports nor contact restrain; the message names body and motion.
     pub fn analyse(&self) -> Result<RigidMotions, Failure> {
         let Self { bodies, names, .. } = self;
-        let rows = &self.both_ways();
+        let rows = &self.two_sided_rows();
         let kinematics = Kinematics::new(self.dim, bodies);
         if kinematics.len == 0 {
             return Ok(RigidMotions::default());
@@ -98,7 +98,7 @@ impl Scene {
         let mut forces = Forces::new(rows, |_| true);
         let nothing = match forces.has_friction {
             true => SLIDING,
-            false => UNDECIDED,
+            false => WARNED_IMBALANCE,
         };
         let is_nothing = |left: &DVector<f64>| left.norm() <= nothing * scale;
         let loaded = Loaded {
@@ -125,7 +125,12 @@ impl Scene {
         let fixing_dofs = kinematics.fixing_dofs(bodies, &free);
         let mut motions = kinematics.fix(bodies, names, list.collect(), fixing_dofs);
         if !is_nothing(&unbalanced) && found.proof.is_some() {
-            (motions.warnings).push(kinematics.nearly_held(bodies, names, &unbalanced, scale));
+            (motions.warnings).push(kinematics.round_off_warning(
+                bodies,
+                names,
+                &unbalanced,
+                scale,
+            ));
         }
         Ok(motions)
     }
@@ -133,7 +138,7 @@ impl Scene {
     /// The failure of a scene whose bodies only friction could restrain, for use when the solver finds that it doesn't:
     /// elastic bodies may be pressed together less than rigid ones could be.
     pub fn unheld(&self) -> Option<Failure> {
-        let normals = self.both_ways().into_iter();
+        let normals = self.two_sided_rows().into_iter();
         let normals: Vec<RigidRow> = normals.filter(|row| row.friction.is_none()).collect();
         let kinematics = Kinematics::new(self.dim, &self.bodies);
         let load = kinematics.load(&self.bodies);
@@ -141,7 +146,7 @@ impl Scene {
         let sliding =
             |unbalanced: &DVector<f64>| kinematics.sliding(&self.bodies, &self.names, unbalanced);
         if kinematics.len >= MANY {
-            let unbalanced = self.unpressed_many(&kinematics, scale);
+            let unbalanced = self.unbalanced_part_many(&kinematics, scale);
             return unbalanced.as_ref().map(sliding);
         }
         let b = kinematics.rows(&normals);
@@ -154,7 +159,7 @@ impl Scene {
             load: &held,
             scale,
         };
-        let found = Forces::new(&normals, |_| true).unbalanced(&loaded, UNDECIDED * scale);
+        let found = Forces::new(&normals, |_| true).unbalanced(&loaded, WARNED_IMBALANCE * scale);
         let unbalanced = driven + found.left;
         (unbalanced.norm() > BALANCE_TOLERANCE * scale).then(|| sliding(&unbalanced))
     }
@@ -190,7 +195,7 @@ impl Kinematics {
     }
 
     /// The warning of an unbalanced load that is taken for round-off of all loads.
-    fn nearly_held(
+    fn round_off_warning(
         &self,
         bodies: &[BodyState],
         names: &[String],

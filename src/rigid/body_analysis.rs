@@ -80,7 +80,7 @@ pub fn analyse_bodies(
                 closing_motions: closing_motions(
                     scene.dim,
                     &scene.bodies,
-                    &scene.both_ways(),
+                    &scene.two_sided_rows(),
                     before,
                 ),
                 motions,

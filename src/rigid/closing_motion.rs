@@ -27,7 +27,7 @@ const TOUCHING: f64 = 1e-12;
 /// Cosine between a motion and a constraint's row below which the motion doesn't close the contact.
 const ALONG: f64 = 1e-12;
 /// Weight, relative to the heaviest body, down to which bodies fall at the same speed.
-const LIGHTEST: f64 = 1e-4;
+const LEAST_WEIGHT: f64 = 1e-4;
 
 /// The rigid motion of each of `bodies` until contact `rows` balance the load: first the displacement that its supports
 /// prescribe, as far as no gap closes, then descent along the load until a gap closes, and so on. Initially closed gaps
@@ -172,7 +172,7 @@ fn speeds(kinematics: &Kinematics, bodies: &[BodyState]) -> DVector<f64> {
     let mut speed = DVector::from_element(kinematics.len, 1.0);
     for (b, body) in bodies.iter().enumerate().filter(|_| heaviest > 0.0) {
         let weight = if body.load_scale > 0.0 {
-            body.load_scale.max(LIGHTEST * heaviest)
+            body.load_scale.max(LEAST_WEIGHT * heaviest)
         } else {
             heaviest
         };

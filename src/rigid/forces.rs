@@ -15,12 +15,12 @@ const SLIPS: f64 = 0.1;
 /// Remaining load, relative to the whole, that is round-off.
 const NOTHING: f64 = 1e-15;
 /// Ratio of the remaining load after a refinement to that before it, above which refinement ends.
-const WORTH_IT: f64 = 0.9;
+const STALLED: f64 = 0.9;
 /// Coefficient of friction from which on cones are nearly half spaces.
 const STEEP: f64 = 1e3;
 /// Ratio of the work of the load along successive motions, each proof that no forces balance it, above which refinement
 /// continues: the reported motion should be the one with the most work.
-const WORTH_TURNING: f64 = 1.0 + 1e-10;
+const LEAST_WORK_RATIO: f64 = 1.0 + 1e-10;
 /// Most refinements of the polygons that approximate the cones.
 const REFINEMENTS: usize = 40;
 /// Half the number of initial directions in a tangential plane.
@@ -208,7 +208,7 @@ impl Forces {
             found = nearest(&self.actions(b), load, &self.largest());
             let next = loaded.proof(&found.left, &self.normal(&found.lambda, b));
             let work = |z: &Option<DVector<f64>>| z.as_ref().map_or(0.0, |z| load.dot(z));
-            let is_better = work(&next) > WORTH_TURNING * work(&proven);
+            let is_better = work(&next) > LEAST_WORK_RATIO * work(&proven);
             if proven.is_some() && !is_better {
                 break;
             }
@@ -274,7 +274,7 @@ impl Forces {
             );
             self.refine(&(b * &found.left), f64::EPSILON * found.left.norm());
             let nearer = nearest(&self.actions(b), load, &self.largest());
-            let enough = nearer.left.norm() > WORTH_IT * found.left.norm();
+            let enough = nearer.left.norm() > STALLED * found.left.norm();
             found = nearer;
             if enough {
                 break;

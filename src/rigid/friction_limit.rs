@@ -95,7 +95,9 @@ impl Scene {
             let bound = friction.bound.at(pressed.force, pressed.closed);
             let squares = tangents.iter().map(|&j| conditions[j].force.powi(2));
             let size = squares.sum::<f64>().sqrt();
-            if bound <= 0.0 || !(pressed.carrying || friction.holds_unpressed(pressed.closed)) {
+            if bound <= 0.0
+                || !(pressed.carrying || friction.holds_without_pressure(pressed.closed))
+            {
                 continue;
             }
             if size < AT_LIMIT * bound {

@@ -20,7 +20,7 @@ pub(super) const MANY: usize = 100;
 const SPRING: f64 = 1e-9;
 /// Largest residuals of load and of gaps, and largest product of gap and force; as these products vanish, the round-off
 /// in the load residual grows.
-const ENOUGH: [f64; 3] = [1e-10, 1e-12, 1e-13];
+const TOLERANCES: [f64; 3] = [1e-10, 1e-12, 1e-13];
 /// Most iterations; 6 to 20 are usual.
 const MOST_STEPS: usize = 60;
 /// Steps of iterative refinement of a Newton step: the matrices of high towers are ill-conditioned.
@@ -184,7 +184,7 @@ impl ManyBodies {
             ];
             if size
                 .iter()
-                .zip(ENOUGH)
+                .zip(TOLERANCES)
                 .all(|(size, enough)| *size <= enough)
             {
                 return Some(self.at_rest(&point, &f, force, length));

@@ -123,7 +123,7 @@ pub struct InSpan {
 
 /// Fraction of the step of some columns from λ to `trial` at which the first of them reaches a bound; infinite if none
 /// does.
-fn way_to_bound(numbers: &[usize], trial: &[f64], lambda: &[f64], largest: &[f64]) -> f64 {
+fn step_to_bound(numbers: &[usize], trial: &[f64], lambda: &[f64], largest: &[f64]) -> f64 {
     let reached = |(&j, t): (&usize, &f64)| {
         if *t <= 0.0 {
             Some(lambda[j] / (lambda[j] - t))
@@ -178,7 +178,7 @@ impl Iterate {
         } = &mut point;
         loop {
             let trial = passive.solve(b);
-            let blocking = way_to_bound(&passive.numbers, &trial, lambda, largest);
+            let blocking = step_to_bound(&passive.numbers, &trial, lambda, largest);
             if blocking.is_infinite() {
                 for (&j, t) in passive.numbers.iter().zip(&trial) {
                     lambda[j] = *t;

@@ -24,7 +24,7 @@ const TURNS: usize = 5;
 /// Force, relative to the largest, that counts as zero.
 const NO_FORCE: f64 = 1e-9;
 /// Slip, relative to the largest jump, up to which a point sticks.
-const STUCK: f64 = 1e-9;
+const STICKING_SLIP: f64 = 1e-9;
 /// Slip, relative to the largest jump, from which on a point slides, and tolerance of its limit.
 const SLIDES: f64 = 1e-6;
 /// Singular value, relative to the largest, that counts as zero.
@@ -212,7 +212,8 @@ impl Loaded<'_> {
         let row = |i: usize| b.row(i).transpose();
         for point in points.iter().filter(|p| forces[p.normal] > NO_FORCE * most) {
             let (slip, coefficient) = (point.slip(jumps), point.bound.coefficient);
-            if slip <= STUCK * jumps.iter().fold(0.0, |far: f64, jump| far.max(jump.abs())) {
+            if slip <= STICKING_SLIP * jumps.iter().fold(0.0, |far: f64, jump| far.max(jump.abs()))
+            {
                 limits.push((row(point.normal), jumps[point.normal]));
                 limits.extend(point.tangents.iter().map(|&i| (row(i), jumps[i])));
                 continue;

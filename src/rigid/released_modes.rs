@@ -12,7 +12,7 @@ use super::scene::{Friction, RigidRow, Scene};
 use crate::vector::largest;
 
 /// Largest contact force that counts as round-off, over the residual of a body's equilibrium.
-const IN_DOUBT: f64 = 4.0;
+const ROUND_OFF_FORCE: f64 = 4.0;
 
 /// Work of loads along a motion, relative to the sum of the magnitudes, that is more than round-off.
 const DRIVEN: f64 = 1e-7;
@@ -132,7 +132,7 @@ impl Scene {
             bodies.clone().map(|b| size(b).sqrt()).collect()
         };
         let before = of_bodies(&missing);
-        let in_doubt = IN_DOUBT * largest(&before);
+        let in_doubt = ROUND_OFF_FORCE * largest(&before);
         let is_in_doubt = |&(j, ref row): &(usize, SparseRow)| {
             let size = row.iter().map(|(_, b)| b * b).sum::<f64>().sqrt();
             let presses = self.rows[j].friction.is_none() && !self.rows[j].is_tied;
@@ -162,7 +162,7 @@ impl Scene {
             let ConditionState {
                 carrying, closed, ..
             } = conditions[friction.normal];
-            friction.bound.coefficient > 0.0 && carrying || friction.holds_unpressed(closed)
+            friction.bound.coefficient > 0.0 && carrying || friction.holds_without_pressure(closed)
         };
         conditions[j].carrying || self.rows[j].friction.as_ref().is_some_and(can_resist)
     }

@@ -75,7 +75,7 @@ pub struct Friction {
 
 impl Friction {
     /// True if it can carry a force without normal force, where the contact is closed or not as in `closed`.
-    pub(super) fn holds_unpressed(&self, closed: bool) -> bool {
+    pub(super) fn holds_without_pressure(&self, closed: bool) -> bool {
         self.bound.at(0.0, closed) > 0.0
     }
 }

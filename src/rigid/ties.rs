@@ -11,7 +11,7 @@ const ROUND_OFF: f64 = 1e-12;
 
 impl Scene {
     /// The constraints of contacts, then the fewest constraints equivalent to the ties, each in both directions.
-    pub(super) fn both_ways(&self) -> Vec<RigidRow> {
+    pub(super) fn two_sided_rows(&self) -> Vec<RigidRow> {
         let mut place = 0;
         let places: Vec<usize> = (self.rows.iter())
             .map(|row| {

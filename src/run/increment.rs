@@ -1,9 +1,9 @@
 //! Load increment: from the state before it to the state after it.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use contact_dd_partition::id::{OnBlocks, OnGroups, OnPairs, OnTreeNodes};
+use contact_dd_partition::id::{OnBlocks, OnGroups, OnPairs};
 
 use crate::certificate::energy::{BlockEnergy, EnergyBalance};
 use crate::certificate::scales::Scales;
@@ -14,27 +14,25 @@ use crate::contact::limits::Limits;
 use crate::contact::pair::ContactPair;
 use crate::context::{Context, LoadPoint};
 use crate::error::Failure;
-use crate::interface::s_con::SCon;
+use crate::recover::Slips;
 use crate::recover::adjoint::quantities_at;
 use crate::recover::against_law::names_against_law;
 use crate::recover::energy::energies;
 use crate::recover::fixed_active_set::FixedActiveSet;
 use crate::recover::solution::Solution;
-use crate::recover::{DiscreteSolution, Slips, recover, substitute_back};
 use crate::report::log::RunLog;
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::scene::Scene;
 use crate::run::operators::Operators;
+use crate::run::swept::Swept;
 use crate::settings::Settings;
 use crate::step::StepProblem;
 use crate::step::halving::StepHalving;
-use crate::step::state::{StepState, analyse, go_on};
-use crate::sweep::{Method, Start, SweepOutcome, SweepRecord, SweepStatus, Sweeps};
-use crate::tree::contact;
-use crate::tree::fronts::ActiveSetFronts;
+use crate::step::state::{StepState, analyse, check_interrupt};
+use crate::sweep::{Method, SweepOutcome, SweepStatus};
 
 /// Ratio of closing motions to displacements from which on the digits that their difference loses matter.
-const FAR: f64 = 1e3;
+const LARGE_CLOSING_MOTION: f64 = 1e3;
 
 /// Data common to all increments, including all factorized matrices.
 #[derive(Clone, Copy)]
@@ -120,12 +118,12 @@ impl Increments<'_> {
         let mut work = BTreeMap::new();
         let mut energy = EnergyBalance::default();
         loop {
-            let moment = LoadPoint {
+            let load_point = LoadPoint {
                 step: k,
                 part: halving.next(),
             };
-            let analysis = analyse(&self.context, moment, earlier)?;
-            let mut solved = self.solve(moment, &analysis, state.clone(), seconds)?;
+            let analysis = analyse(&self.context, load_point, earlier)?;
+            let mut solved = self.solve(load_point, &analysis, state.clone(), seconds)?;
             if !self.is_converged(&solved) {
                 match halving.halve() {
                     true => continue,
@@ -175,26 +173,28 @@ impl Increments<'_> {
     /// stopped the run.
     fn solve(
         &self,
-        moment: LoadPoint,
+        load_point: LoadPoint,
         analysis: &RigidBodyAnalysis,
         before: StepState,
         seconds: &mut RankSeconds,
     ) -> Result<Increment, Failure> {
         let closing = analysis.longest_closing_motion();
         if closing == 0.0 {
-            return self.solve_after(moment, analysis, before, seconds);
+            return self.solve_after(load_point, analysis, before, seconds);
         }
-        let found = self.solve_after(moment, analysis, before.clone(), seconds)?;
+        let found = self.solve_after(load_point, analysis, before.clone(), seconds)?;
         let moved = found.solution.displacement.values().flatten();
-        if closing <= FAR * self.context.comm.largest(moved) {
+        if closing <= LARGE_CLOSING_MOTION * self.context.comm.largest(moved) {
             return Ok(found);
         }
         let stays = analysis.without_closing_motions();
         // Without them the contacts that hold the bodies may not be found at all.
-        Ok(match self.solve_after(moment, &stays, before, seconds) {
-            Ok(again) if self.is_converged(&again) => again,
-            _ => found,
-        })
+        Ok(
+            match self.solve_after(load_point, &stays, before, seconds) {
+                Ok(again) if self.is_converged(&again) => again,
+                _ => found,
+            },
+        )
     }
 
     /// Solves for these loads after the closing motions of an `analysis`. Collective.
@@ -203,7 +203,7 @@ impl Increments<'_> {
     /// As [`solve`](Self::solve).
     fn solve_after(
         &self,
-        moment: LoadPoint,
+        load_point: LoadPoint,
         analysis: &RigidBodyAnalysis,
         mut before: StepState,
         seconds: &mut RankSeconds,
@@ -216,7 +216,7 @@ impl Increments<'_> {
         let (start, held_at) = (before.start(), before.slips.clone());
         let energies_before = std::mem::take(&mut before.energies);
         let statuses = std::mem::take(&mut before.statuses);
-        let loads = before.loads(&context, moment, analysis);
+        let loads = before.loads(&context, load_point, analysis);
         let mut problem = self
             .operators
             .loading(context, analysis)
@@ -226,32 +226,36 @@ impl Increments<'_> {
             None => BTreeMap::new(),
         };
         seconds.add(|s| &mut s.interface, comm.times() - lap);
-        go_on(&context)?;
+        check_interrupt(&context)?;
 
         // S_0 U + S_CON(U) = F, (14), from the bilateral start (16)-(17) or from the state before.
         log.phase("sweeping", None);
         let lap = comm.times();
         let swept = match &self.operators.fronts {
-            Some(fronts) => self.sweep_active_sets(fronts, &problem, &limits, &statuses),
-            None => self.sweep(&mut problem, start),
+            Some(fronts) => {
+                let constraints = (&limits, &statuses);
+                Swept::in_tree(&context, log, self.settings, fronts, &problem, constraints)
+            }
+            None => Swept::on_interface(&context, log, self.settings, &mut problem, start),
         };
         let mut swept = swept.map_err(|failure| context.of_pivot(failure))?;
+        self.count(swept.linear_solves);
         seconds.add(|s| &mut s.sweeps, comm.times() - lap);
         if let Some(outcome) = &mut swept.outcome {
             outcome.is_settled &= self.settings.max_sweeps.is_none();
         }
         // From here on the load step is finished before the run stops, so that its solution is kept.
-        go_on(&context)?;
+        check_interrupt(&context)?;
 
         // Back-substitution, and the check of the full discrete problem.
         log.phase("recovering", None);
         let lap = comm.times();
         let fixed = self.fixed(&problem, analysis, &limits, swept.outcome.as_ref());
-        let discrete = self.discrete(&mut swept, &fixed, &problem);
-        let stress_of = (!self.settings.no_stress).then_some(moment.step);
+        let discrete = swept.substituted_back(&fixed, &problem, self.operators);
+        let stress_of = (!self.settings.no_stress).then_some(load_point.step);
         let mut solution = Solution::new(&fixed, analysis, discrete, stress_of);
         let slips_before = self.has_derivatives.then_some(&held_at);
-        solution.quantities = quantities_at(moment, &fixed, &solution, slips_before);
+        solution.quantities = quantities_at(load_point, &fixed, &solution, slips_before);
         let (energies, energy) = energies(&fixed, &solution, &energies_before);
         let scales = self.accept(&mut swept.outcome, &solution, &energy, problem.earlier);
         seconds.add(|s| &mut s.recover, comm.times() - lap);
@@ -264,75 +268,6 @@ impl Increments<'_> {
             energies,
             energy,
             scales,
-        })
-    }
-
-    /// Solves S_0 U + S_CON(U) = F, (14), from the `start` and logs every sweep: the root solves for U, the other ranks
-    /// evaluate S_CON on request. Collective.
-    ///
-    /// # Errors
-    /// A signal stopped the sweeps.
-    fn sweep(&self, step: &mut StepProblem<'_>, start: Start) -> Result<Swept, Failure> {
-        let (context, log) = (&self.context, self.log);
-        let owners = context.plan.pair_owners();
-        let mut s_con = SCon::new(context.comm, owners.values(), &mut step.pairs);
-        let solved = match &step.interface {
-            None => {
-                s_con.serve();
-                None
-            }
-            Some(problem) => {
-                let in_contact = !problem.interface.pair_interface_dofs.is_empty();
-                log.sweeps(in_contact);
-                let mut observer = |record: &SweepRecord| {
-                    if in_contact {
-                        log.sweep(record);
-                    }
-                };
-                let start = match problem.is_unloaded() {
-                    true => Start::Bilateral,
-                    false => start,
-                };
-                let settings = self.settings.sweeps();
-                let solved = Sweeps::solve(problem, &mut s_con, settings, start, &mut observer);
-                s_con.stop();
-                Some(solved)
-            }
-        };
-        let outcome = context.comm.agree(solved.transpose())?;
-        self.count(outcome.as_ref().map_or(0, |o| o.active_set_iterations));
-        Ok(Swept {
-            outcome,
-            ..Swept::default()
-        })
-    }
-
-    /// Active-set iteration of the tree solver, which logs every iteration; the first active set has the statuses of
-    /// the load step `before`. Collective.
-    ///
-    /// # Errors
-    /// A part of the scene has a free rigid-body motion.
-    fn sweep_active_sets(
-        &self,
-        fronts: &RefCell<ActiveSetFronts>,
-        step: &StepProblem<'_>,
-        limits: &OnGroups<Limits>,
-        before: &OnGroups<Statuses>,
-    ) -> Result<Swept, Failure> {
-        let (context, log, mut fronts) = (&self.context, self.log, fronts.borrow_mut());
-        log.sweeps(true);
-        let solves = fronts.solves;
-        let loads = step.condensed.iter();
-        let loads = loads.map(|(&v, load)| (v, load.boundary().to_vec()));
-        let (loads, most) = (loads.collect(), self.settings.max_sweeps);
-        let mut observer = |record: &SweepRecord| log.sweep(record);
-        let (fronts, loads) = (&mut *fronts, (&loads, before));
-        let found = contact::solve(context, fronts, limits, loads, most, &mut observer)?;
-        self.count(fronts.solves - solves);
-        Ok(Swept {
-            outcome: context.comm.is_root().then_some(found.outcome),
-            statuses: found.statuses,
-            in_tree: Some((found.boundaries, found.conditions)),
         })
     }
 
@@ -360,22 +295,6 @@ impl Increments<'_> {
         )
     }
 
-    /// Back-substitution: from the result of the sweeps to the full discrete solution. Collective.
-    fn discrete(
-        &self,
-        swept: &mut Swept,
-        fixed: &FixedActiveSet<'_>,
-        step: &StepProblem<'_>,
-    ) -> DiscreteSolution {
-        if let Some((boundaries, conditions)) = swept.in_tree.take() {
-            return substitute_back(fixed.factors(), step, boundaries, conditions);
-        }
-        let u = swept.outcome.as_ref().map(|outcome| &outcome.u[..]);
-        let interface = self.operators.interface.as_ref();
-        let numbers = interface.map(|(n, _)| &n.interface_dofs[..]);
-        recover(fixed.factors(), step, u.zip(numbers))
-    }
-
     /// Checks the `outcome` of the sweeps against the certificate of the `solution`; returns the scales of this
     /// increment and the `earlier` ones, as far as they converged; on the root. Collective.
     fn accept(
@@ -399,19 +318,6 @@ impl Increments<'_> {
         }
         earlier
     }
-}
-
-/// Boundaries of clusters, and force and status of every contact constraint, from the tree solver.
-type InTree = (OnTreeNodes<Vec<f64>>, OnGroups<Vec<(f64, bool)>>);
-
-/// Result of the sweeps on this rank.
-#[derive(Default)]
-struct Swept {
-    /// The outcome; on the root.
-    outcome: Option<SweepOutcome>,
-    /// The statuses of the contact groups, if the tree solver was used.
-    statuses: OnGroups<Statuses>,
-    in_tree: Option<InTree>,
 }
 
 impl Increment {

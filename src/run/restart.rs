@@ -201,13 +201,15 @@ impl Finished {
 }
 
 fn read(settings: &Settings) -> Result<Option<(file::Kept, KeptState)>, Failure> {
-    let unread = |error: InputError| Failure::input(format!("--restart: {error}"));
-    let Some(mut file) = file::Kept::read(&settings.output).map_err(unread)? else {
+    let refused = |error: InputError| Failure::input(format!("--restart: {error}"));
+    let Some(mut file) = file::Kept::read(&settings.output).map_err(refused)? else {
         return Ok(None);
     };
     let state = take(&mut file.state);
-    let kept: KeptState = ciborium::from_reader(&state[..])
-        .map_err(|error| unread(file::unread(&file::state_of(&settings.output), &error)))?;
+    let kept: KeptState = ciborium::from_reader(&state[..]).map_err(|error| {
+        let state = file::state_of(&settings.output);
+        refused(file::unreadable_state(&state, &error))
+    })?;
     let run = Identity::new(settings)?;
     let why = match &kept.run {
         kept if kept.problem != run.problem => "it is of another problem file",

@@ -85,7 +85,7 @@ impl Stages<'_> {
     ) -> Result<Vec<Choice>, Failure> {
         match handover.map(|handover| &handover.to) {
             Some(Successor::Solver { choice, .. }) => Ok(vec![choice.clone()]),
-            _ => (self.comm).agree(Choice::all(catalog, self.settings.wishes())),
+            _ => (self.comm).agree(Choice::all(catalog, self.settings.solver_request())),
         }
     }
 

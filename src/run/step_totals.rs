@@ -15,7 +15,7 @@ use crate::sweep::{SweepOutcome, SweepStatus};
 
 /// Fraction of the bodies' measure with large strains above which a warning is given: at edges and crack tips strains
 /// grow without bound as cells become smaller.
-const SEEN: f64 = 1e-3;
+const WARNED_SHARE: f64 = 1e-3;
 
 impl StepTotals {
     /// The totals of a load step with this `solution` and `outcome` of the sweeps, after this number of
@@ -63,7 +63,7 @@ impl StepTotals {
 
 /// A warning of the largest strain of any block, if it isn't small.
 fn large_strain((block, largest): (BlockId, LargestStrain), catalog: &Catalog) -> Option<String> {
-    if largest.large <= SEEN * largest.whole {
+    if largest.large <= WARNED_SHARE * largest.whole {
         return None;
     }
     let body = &catalog.bodies[catalog.body_of(block)].name;

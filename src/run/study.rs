@@ -89,7 +89,7 @@ impl Stages<'_> {
             written.map_err(Failure::from)
         };
         (self.comm).agree(self.comm.is_root().then(write).transpose())?;
-        self.comm.agree(self.log.heard())?;
+        self.comm.agree(self.log.check_written())?;
         Ok(self.comm.decide(all_converged))
     }
 
@@ -104,9 +104,9 @@ impl Stages<'_> {
         let choices = self.choices(&stage.catalog, None)?;
         let parts = self.parts(stage, &choices, true)?;
         let context = self.context(stage, &parts);
-        let moment = LoadPoint::end_of(0);
-        let analysis = analyse(&context, moment, &[])?;
-        let loads = StepState::default().loads(&context, moment, &analysis);
+        let load_point = LoadPoint::end_of(0);
+        let analysis = analyse(&context, load_point, &[])?;
+        let loads = StepState::default().loads(&context, load_point, &analysis);
         let seconds = &mut RankSeconds::default();
         let mut operators = Operators::new(context, self.log, &loads, &analysis, seconds)?;
         let count = asked.cases.len();
@@ -120,9 +120,9 @@ impl Stages<'_> {
                 listener: log,
                 ..varied.context(context)
             };
-            let analysis = analyse(&context, moment, &[]);
+            let analysis = analyse(&context, load_point, &[]);
             let begun = analysis.and_then(|analysis| {
-                let loads = StepState::default().loads(&context, moment, &analysis);
+                let loads = StepState::default().loads(&context, load_point, &analysis);
                 operators.begin_anew(&context, &loads)?;
                 Ok(analysis)
             });

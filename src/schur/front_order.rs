@@ -32,7 +32,7 @@ impl OwnJumps<'_> {
 /// The unknowns of a front in their order.
 pub(super) struct FrontOrder {
     /// The eliminated displacements, ascending; they come first.
-    pub gone: Vec<InterfaceDof>,
+    pub eliminated: Vec<InterfaceDof>,
     /// The numbers of the open jumps of the front's own contact points, which are eliminated after these.
     open: Vec<usize>,
     /// Number of kept jumps: those of the children, then the front's own ones that aren't open.
@@ -46,21 +46,21 @@ pub(super) struct FrontOrder {
 }
 
 impl FrontOrder {
-    /// The order of the front of `children` with its `own` jumps; displacements at the `eliminated` nodes of Γ,
+    /// The order of the front of `children` with its `own` jumps; displacements at the `eliminated_nodes` of Γ,
     /// ascending, are eliminated unless jumps replace them.
-    pub fn new(children: &[&Condensed], eliminated: &[u32], own: OwnJumps<'_>) -> Self {
-        let (mut gone, mut kept) = union_of_interface_dofs(children, eliminated);
+    pub fn new(children: &[&Condensed], eliminated_nodes: &[u32], own: OwnJumps<'_>) -> Self {
+        let (mut eliminated, mut kept) = union_of_interface_dofs(children, eliminated_nodes);
         let count = own.unknowns();
         let numbers = 0..count;
         let (open, closed): (Vec<usize>, Vec<usize>) = numbers.partition(|&j| own.is_open(j));
         let replaced: BTreeSet<InterfaceDof> = own.replaced.iter().map(|r| r.dof).collect();
-        gone.retain(|dof| !replaced.contains(dof));
+        eliminated.retain(|dof| !replaced.contains(dof));
         kept.retain(|dof| !replaced.contains(dof));
-        let e = gone.len() + open.len();
+        let e = eliminated.len() + open.len();
         let of_children: usize = children.iter().map(|c| c.jumps).sum();
         let jumps = of_children + closed.len();
         let places_of_own =
-            (open.iter().zip(gone.len()..)).chain(closed.iter().zip(e + of_children..));
+            (open.iter().zip(eliminated.len()..)).chain(closed.iter().zip(e + of_children..));
         let pivots = places_of_own.map(|(&j, place)| (own.replaced[j].dof, place));
         let k = jumps + kept.len();
         let tied = own.replaced[count..].iter().zip(e + k..);
@@ -68,7 +68,7 @@ impl FrontOrder {
         Self {
             pivots: pivots.chain(tied).collect(),
             known: own.replaced.len() - count,
-            gone,
+            eliminated,
             open,
             jumps,
             kept,
@@ -77,7 +77,7 @@ impl FrontOrder {
 
     /// Number of eliminated unknowns, of kept ones, and of all including the known jumps.
     pub fn sizes(&self) -> (usize, usize, usize) {
-        let e = self.gone.len() + self.open.len();
+        let e = self.eliminated.len() + self.open.len();
         let k = self.jumps + self.kept.len();
         (e, k, e + k + self.known)
     }
@@ -85,26 +85,29 @@ impl FrontOrder {
     /// Place of an unknown of Γ: among the eliminated ones, that of the jump that replaces it, or among the kept ones.
     pub fn place(&self, dof: &InterfaceDof) -> usize {
         // Every unknown is in exactly one of the three lists.
-        match (self.gone.binary_search(dof), self.kept.binary_search(dof)) {
+        match (
+            self.eliminated.binary_search(dof),
+            self.kept.binary_search(dof),
+        ) {
             (Ok(place), _) => place,
-            (_, Ok(place)) => self.gone.len() + self.open.len() + self.jumps + place,
+            (_, Ok(place)) => self.eliminated.len() + self.open.len() + self.jumps + place,
             _ => self.pivots.get(dof).copied().unwrap_or_default(),
         }
     }
 
     /// The unknown of Γ that is eliminated at a place, or that the jump there replaces.
     pub fn dof(&self, place: usize, own: OwnJumps<'_>) -> InterfaceDof {
-        match self.gone.get(place) {
+        match self.eliminated.get(place) {
             Some(dof) => *dof,
-            None => own.replaced[self.open[place - self.gone.len()]].dof,
+            None => own.replaced[self.open[place - self.eliminated.len()]].dof,
         }
     }
 }
 
-/// The traces of all children, each once, ascending: those at `eliminated` nodes, and the others.
+/// The traces of all children, each once, ascending: those at `eliminated_nodes`, and the others.
 fn union_of_interface_dofs(
     children: &[&Condensed],
-    eliminated: &[u32],
+    eliminated_nodes: &[u32],
 ) -> (Vec<InterfaceDof>, Vec<InterfaceDof>) {
     let mut all: Vec<InterfaceDof> = children
         .iter()
@@ -112,7 +115,7 @@ fn union_of_interface_dofs(
         .collect();
     all.sort_unstable();
     all.dedup();
-    let mut next = eliminated.iter().peekable();
+    let mut next = eliminated_nodes.iter().peekable();
     all.into_iter().partition(|dof| {
         while next.next_if(|&&node| node < dof.node).is_some() {}
         next.peek().is_some_and(|&&node| node == dof.node)

@@ -37,7 +37,7 @@ pub struct Merge {
 
 /// Square matrices for reuse: new memory costs a page fault every 4 KiB, more than the arithmetic on it.
 #[derive(Debug, Default)]
-pub struct Spare(Vec<Mat<f64>>);
+pub struct MatrixPool(Vec<Mat<f64>>);
 
 /// Most matrices kept, about as many as are in use at once in a deep hierarchy.
 const MOST_SPARE: usize = 8;
@@ -45,7 +45,7 @@ const MOST_SPARE: usize = 8;
 /// of them would take most of the memory of a run.
 const MOST_SPARE_ENTRIES: usize = 1 << 25;
 
-impl Spare {
+impl MatrixPool {
     /// Zeros in the smallest kept matrix that is large enough, else in a new one.
     fn zeros(&mut self, n: usize) -> Mat<f64> {
         let fitting = (0..self.0.len()).filter(|&i| self.0[i].nrows() >= n);
@@ -94,7 +94,7 @@ impl Merge {
         children: Vec<Condensed>,
         eliminated: &[u32],
         replaced: &[Replaced],
-        spare: &mut Spare,
+        spare: &mut MatrixPool,
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
         let own = OwnJumps {
@@ -120,7 +120,7 @@ impl Merge {
         children: &[&Condensed],
         eliminated: &[u32],
         own: OwnJumps<'_>,
-        spare: &mut Spare,
+        spare: &mut MatrixPool,
         par: Par,
     ) -> Result<(Self, Condensed), FreeInterfaceDof> {
         let order = FrontOrder::new(children, eliminated, own);
@@ -146,7 +146,7 @@ impl Merge {
         });
         substitution.transform_diagonal(&mut diagonal);
         let tied = known_columns(&mut columns, &mut s, e + k);
-        for j in order.gone.len()..e {
+        for j in order.eliminated.len()..e {
             columns[(j, j)] += own.spring * diagonal[j];
         }
         let mut merge = Self {

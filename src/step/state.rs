@@ -69,10 +69,10 @@ impl StepState {
     pub fn loads(
         &self,
         context: &Context<'_>,
-        moment: LoadPoint,
+        load_point: LoadPoint,
         analysis: &RigidBodyAnalysis,
     ) -> Loads {
-        let mut loads = context.loads(moment);
+        let mut loads = context.loads(load_point);
         for (g, loads) in &mut loads.groups {
             let slips = self.slips.get(g).map_or(&[][..], Vec::as_slice);
             let first = loads.gaps.len() - slips.len();
@@ -149,10 +149,10 @@ pub fn analyse_steps(
 /// Prescribed displacements that contradict obstacles at a node, or a load that drives a free rigid-body motion.
 pub fn analyse(
     context: &Context<'_>,
-    moment: LoadPoint,
+    load_point: LoadPoint,
     before: &[Vec<f64>],
 ) -> Result<RigidBodyAnalysis, Failure> {
-    let loads = context.loads(moment);
+    let loads = context.loads(load_point);
     let mut groups = context.groups.values().zip(loads.groups.values());
     let checked = groups
         .try_for_each(|(group, loads)| infeasible_nodes::check(group, loads, context.catalog));
@@ -174,14 +174,14 @@ pub fn finished(failure: Failure, context: &Context<'_>, settings: &Settings, k:
 /// # Errors
 /// A signal has asked the run to stop.
 pub fn stop_if_asked(context: &Context<'_>, settings: &Settings, k: usize) -> Result<(), Failure> {
-    go_on(context).map_err(|failure| finished(failure, context, settings, k))
+    check_interrupt(context).map_err(|failure| finished(failure, context, settings, k))
 }
 
 /// Returns an error if a signal has asked the run to stop. Collective.
 ///
 /// # Errors
 /// A signal has asked the run to stop.
-pub fn go_on(context: &Context<'_>) -> Result<(), Failure> {
+pub fn check_interrupt(context: &Context<'_>) -> Result<(), Failure> {
     match context.comm.is_any_asked_to_stop() {
         false => Ok(()),
         true => Err(Failure::interrupted("interrupted")),

@@ -21,9 +21,9 @@ use crate::step::transfer::jumps_of;
 /// Number of constraints, tangential ones included, up to which all points are solved for at once.
 const FEW: usize = 3000;
 /// Smallest fraction of points with an initial gap: where sides touch initially, most points stay closed.
-const APART: f64 = 0.5;
+const LEAST_OPEN_SHARE: f64 = 0.5;
 /// Largest fraction of all points in a set: a larger one saves less than it costs.
-const WORTH: f64 = 0.7;
+const LARGEST_SHARE: f64 = 0.7;
 
 /// A working set, and the jumps of the points outside it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -63,7 +63,7 @@ pub enum Outside {
 
 /// True if a working set may pay for a problem: friction at many points, most of them with an initial gap.
 pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
-    let wishes = settings.wishes();
+    let request = settings.solver_request();
     let of_point = |point: &ContactPoint<SubdomainNode>| 1 + point.tangents(catalog.dim).len();
     let conditions: usize = catalog.points.iter().map(of_point).sum();
     let apart = catalog
@@ -73,13 +73,13 @@ pub fn pays(catalog: &Catalog, settings: &Settings) -> bool {
         .count();
     catalog.has_friction()
         && conditions > FEW
-        && apart as f64 >= APART * catalog.points.len() as f64
+        && apart as f64 >= LEAST_OPEN_SHARE * catalog.points.len() as f64
         // Quantities may refer to any point, and added or removed bodies have a state of their own.
         && catalog.quantities.is_empty()
         && !catalog.has_stages()
-        && wishes.method == Method::Newton
-        && wishes.iterative != Some(true)
-        && !wishes.second_start
+        && request.method == Method::Newton
+        && request.iterative != Some(true)
+        && !request.second_start
         && settings.max_sweeps.is_none()
 }
 
@@ -101,12 +101,12 @@ impl WorkingSet {
         let ClosestApproaches { closed, gaps } = approaches;
         let always = |j: &usize| closed[*j] || !can_wait(&catalog.points[*j]);
         let set = Self::default().with(catalog, (0..closed.len()).filter(always), gaps);
-        set.is_worth(catalog).then_some(set)
+        set.is_small_enough(catalog).then_some(set)
     }
 
     /// True if the set is small enough to pay.
-    fn is_worth(&self, catalog: &Catalog) -> bool {
-        self.points.len() as f64 <= WORTH * catalog.points.len() as f64
+    fn is_small_enough(&self, catalog: &Catalog) -> bool {
+        self.points.len() as f64 <= LARGEST_SHARE * catalog.points.len() as f64
     }
 
     /// The set of all points.
@@ -120,9 +120,9 @@ impl WorkingSet {
     /// The set enlarged by the points `join` and as many more with the smallest `gaps`, which may close as well; all
     /// points if the enlarged set doesn't pay.
     #[must_use]
-    fn grown(&self, catalog: &Catalog, join: &[usize], gaps: &[f64]) -> Self {
+    fn enlarged(&self, catalog: &Catalog, join: &[usize], gaps: &[f64]) -> Self {
         let grown = self.with(catalog, join.iter().copied(), gaps);
-        match grown.is_worth(catalog) {
+        match grown.is_small_enough(catalog) {
             true => grown,
             false => Self::all(catalog),
         }
@@ -162,7 +162,7 @@ impl WorkingSet {
         let gaps = gaps_left(whole, &jumps);
         let overlap: Vec<usize> = (0..gaps.len()).filter(|&j| gaps[j] < 0.0).collect();
         if !overlap.is_empty() {
-            return Outside::Overlaps(self.grown(whole, &overlap, &gaps));
+            return Outside::Overlaps(self.enlarged(whole, &overlap, &gaps));
         }
         let rows = open_rows(whole, &jumps);
         self.outside = jumps;

@@ -50,7 +50,7 @@ impl Sweeps<'_, '_> {
         let limit = self.settings.max_sweeps.unwrap_or(most);
         let mut chords = Chords::default();
         let mut failures = 0;
-        while self.goes_on(&residual)? {
+        while self.needs_sweep(&residual)? {
             failures += usize::from(residual.relative <= ROUND_OFF);
             let hopeless = !residual.relative.is_finite()
                 || self.problem.interface.len == 0

@@ -24,7 +24,7 @@ impl Sweeps<'_, '_> {
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
         // Successive sweeps without progress.
         let mut stalls = 0;
-        while self.goes_on(&residual)? {
+        while self.needs_sweep(&residual)? {
             let Some(coupled) = CoupledContact::new(self.problem) else {
                 return self.fall_back(residual, "the pairs have too many conditions for newton");
             };
@@ -43,7 +43,7 @@ impl Sweeps<'_, '_> {
                 );
             }
             if !step.contact.converged && coupled.has_friction() {
-                self.outcome.unsettled = step.unsettled;
+                self.outcome.unsettled = step.violated_limits;
                 self.outcome.slides = step.contact.slides;
                 self.outcome.is_settled = true;
                 return Ok(self.gave_up(&residual, "statuses of contacts with friction cycle"));
@@ -78,7 +78,7 @@ impl Sweeps<'_, '_> {
     }
 
     /// Searches for another solution with friction.
-    pub(super) fn look_for_another(&mut self) {
+    pub(super) fn find_second_solution(&mut self) {
         let residual = self.residual(None);
         let coupled = CoupledContact::new(self.problem);
         let Some(coupled) = coupled.filter(CoupledContact::has_friction) else {

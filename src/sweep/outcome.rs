@@ -12,19 +12,19 @@ const ROUND_OFF_OF_TERMS: f64 = 1e-12;
 /// Ratio of loads to the forces on nodes above which these aren't round-off of a scene without load.
 const LOADED: f64 = 1e-2;
 /// Ratio of displacements to the causes of motion above which forces aren't round-off of a scene without load.
-const TOO_FAR: f64 = 1e3;
+const LARGE_DISPLACEMENT: f64 = 1e3;
 /// Violation of the friction law above which there is no solution.
 pub const AGAINST_FRICTION: f64 = 1e-9;
 /// Slip of sticking points, over the largest displacement, above which there is no solution; like penetration it is an
 /// error of displacements, which round-off of forces doesn't explain.
-const DRIFT: f64 = 1e-13;
+const STICKING_SLIP: f64 = 1e-13;
 /// Tension, or product of force and gap, above which there is no solution.
 const AGAINST_CONTACT: f64 = 1e-11;
 /// Residual of equilibrium relative to the load above which the result is meaningless.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 
 /// The same limit if the unbalanced part may be a body with a free motion.
-const MOVES: f64 = 1e-2;
+const NOT_BALANCED_OF_MOTION: f64 = 1e-2;
 
 /// Most contact points that are named.
 const MOST_NAMES: usize = 5;
@@ -204,17 +204,17 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         is_driven,
         ..
     } = *certificate;
-    if friction > AGAINST_FRICTION || drift > DRIFT {
+    if friction > AGAINST_FRICTION || drift > STICKING_SLIP {
         return Some(format!(
             "contacts break the law of friction by {friction:.1e} of the largest force or displacement"
         ));
     }
     let not_round_off =
-        equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED || farther > TOO_FAR;
+        equilibrium > ROUND_OFF_OF_TERMS || load_share > LOADED || farther > LARGE_DISPLACEMENT;
     let unbalanced =
         equilibrium > NOT_BALANCED || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
     if unbalanced || is_driven || penetration > NOT_BALANCED || !certificate.is_a_number() {
-        let moves = match is_driven || equilibrium_of_load > MOVES {
+        let moves = match is_driven || equilibrium_of_load > NOT_BALANCED_OF_MOTION {
             true => ", or something slides or parts on and on",
             false => "",
         };

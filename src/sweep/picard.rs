@@ -19,7 +19,7 @@ const DIVERGED: f64 = 1e8;
 
 impl Sweeps<'_, '_> {
     pub(super) fn picard(&mut self, mut residual: Residual) -> Result<SweepStatus, Failure> {
-        if !self.goes_on(&residual)? {
+        if !self.needs_sweep(&residual)? {
             return Ok(SweepStatus::Converged);
         }
         let Some((s_0, share)) = self.problem.interface.factor_s_0() else {
@@ -40,7 +40,7 @@ impl Sweeps<'_, '_> {
         let first_residual = residual.relative;
         let start = largest(&self.outcome.u).max(f64::MIN_POSITIVE);
         let limit = self.settings.max_sweeps.unwrap_or(MAX_SWEEPS);
-        while self.goes_on(&residual)? {
+        while self.needs_sweep(&residual)? {
             let growth = largest(&self.outcome.u) / start;
             if !residual.relative.is_finite() || growth > DIVERGED {
                 let why = format!(

@@ -31,7 +31,7 @@ struct Faults {
 }
 
 /// Flags of open conditions, and the solution with them.
-pub(super) struct Settled {
+pub(super) struct FoundActiveSet {
     pub open: OnGroups<Vec<bool>>,
     pub solution: ActiveSetSolution,
     /// True if no status is wrong.
@@ -43,12 +43,12 @@ pub(super) struct Settled {
 ///
 /// # Errors
 /// Some part of the scene moves freely, or a signal has asked the run to stop.
-pub(super) fn settle(
+pub(super) fn find_active_set(
     problem: &TreeProblem<'_>,
     fronts: &mut ActiveSetFronts,
     steps: &mut Steps<'_>,
     (mut open, most): (OnGroups<Vec<bool>>, usize),
-) -> Result<Settled, Failure> {
+) -> Result<FoundActiveSet, Failure> {
     let context = problem.context;
     let (mut update, mut descent) = (ActiveSetUpdate::default(), Descent::default());
     let mut changed = None;
@@ -69,13 +69,13 @@ pub(super) fn settle(
         let residual = (faults.largest, faults.active, changed);
         steps.record(residual, search.fronts, solution.iterations);
         if faults.count == 0 || made >= most || !solution.is_finite(context.comm) {
-            return Ok(Settled {
+            return Ok(FoundActiveSet {
                 open,
                 solution,
                 is_right: faults.count == 0,
             });
         }
-        steps.go_on(context)?;
+        steps.check_interrupt(context)?;
         changed = match update.is_of_all(faults.count) {
             true => {
                 descent = Descent::default();
@@ -89,7 +89,7 @@ pub(super) fn settle(
             false => descent.update(problem, &faults.wrong, &solution.at, &mut open),
         };
         if changed.is_none() {
-            return Ok(Settled {
+            return Ok(FoundActiveSet {
                 open,
                 solution,
                 is_right: false,

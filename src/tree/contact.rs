@@ -17,7 +17,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::s_con::ConTotals;
 use crate::sweep::{SweepOutcome, SweepRecord, SweepStatus};
-use crate::tree::active_set::settle;
+use crate::tree::active_set::find_active_set;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::operator::{ROUND_OFF, TreeOperator};
 use crate::tree::problem::{Steps, TreeProblem};
@@ -102,14 +102,18 @@ fn without_friction(
             *open = known.closed.iter().map(|closed| !closed).collect();
         }
     }
-    let settled = settle(problem, fronts, steps, (open, most))?;
+    let active_set = find_active_set(problem, fronts, steps, (open, most))?;
     let found = Found {
-        at: settled.solution.at.clone(),
-        statuses: begin(&problem.laws, &settled.open).1,
-        missed: if settled.is_right { 0.0 } else { f64::INFINITY },
+        at: active_set.solution.at.clone(),
+        statuses: begin(&problem.laws, &active_set.open).1,
+        residual: if active_set.is_right {
+            0.0
+        } else {
+            f64::INFINITY
+        },
         steps: steps.count(),
     };
-    Ok((found, settled.solution))
+    Ok((found, active_set.solution))
 }
 
 /// The solution with friction, by Newton's method. If that stalls, it starts again with the conditions closed that are
@@ -147,13 +151,13 @@ fn with_friction(
         let found = newton(&mut operator, laws, &start, &statuses, settings)?;
         let solution = operator.solution.unwrap_or_default();
         settings.most = settings.most.saturating_sub(steps.count() - 1);
-        if found.missed.is_finite() || is_anew || settings.most == 0 {
+        if found.residual.is_finite() || is_anew || settings.most == 0 {
             return Ok((found, solution));
         }
         is_anew = true;
         let first = (problem.all_closed(), settings.most);
-        let settled = settle(problem, fronts, steps, first)?;
-        (start, statuses) = begin(laws, &settled.open);
+        let active_set = find_active_set(problem, fronts, steps, first)?;
+        (start, statuses) = begin(laws, &active_set.open);
     }
 }
 
@@ -166,7 +170,7 @@ fn conclude(
 ) -> Result<TreeContact, Failure> {
     let sweep = outcome.records.len() - 1;
     let is_finite = solution.is_finite(problem.context.comm);
-    outcome.status = match found.missed.is_finite() {
+    outcome.status = match found.residual.is_finite() {
         _ if !is_finite => not_finite(sweep),
         true => SweepStatus::Converged,
         false => SweepStatus::NotConverged(format!(

@@ -16,7 +16,7 @@ use crate::context::Context;
 use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
 use crate::schur::condensed::Condensed;
-use crate::schur::merge::{Merge, Spare};
+use crate::schur::merge::{MatrixPool, Merge};
 use crate::schur::substitution::Replaced;
 use crate::tree::front_jumps::FrontJumps;
 
@@ -51,7 +51,7 @@ pub struct ActiveSetFronts {
     /// The dependent rows of every contact group of this rank.
     rows: OnGroups<DependentConstraints>,
     spring: f64,
-    spare: Spare,
+    spare: MatrixPool,
     /// The smallest pivot of the last factorization, relative to its diagonal entry.
     pub smallest_pivot: f64,
     /// Number of solves.
@@ -97,7 +97,7 @@ impl ActiveSetFronts {
             replaced,
             rows: context.comm.agree(rows.collect())?,
             spring: 0.0,
-            spare: Spare::default(),
+            spare: MatrixPool::default(),
             smallest_pivot: f64::INFINITY,
             solves: 0,
             bddc: None,
@@ -110,7 +110,7 @@ impl ActiveSetFronts {
 
     /// True if slipping points have to be held: springs restrain motions that the contacts leave free, and friction in
     /// space depends on the length of these motions.
-    pub fn has_to_hold(&self, context: &Context<'_>) -> bool {
+    pub fn must_hold_slipping(&self, context: &Context<'_>) -> bool {
         self.spring > 0.0 && context.catalog.dim == 3 && context.catalog.has_friction()
     }
 
@@ -140,7 +140,7 @@ impl ActiveSetFronts {
         open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         let is_known = self.fronts_known(context);
-        self.make(context, open, is_known, false)
+        self.factorize_definite(context, open, is_known, false)
     }
 
     /// Renews a preconditioner of an earlier active set for the present one. Collective.
@@ -153,7 +153,7 @@ impl ActiveSetFronts {
         open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         match self.bddc.as_ref().is_some_and(Bddc::is_stale) {
-            true => self.make(context, open, true, true),
+            true => self.factorize_definite(context, open, true, true),
             false => Ok(()),
         }
     }
@@ -162,18 +162,18 @@ impl ActiveSetFronts {
     ///
     /// # Errors
     /// Some part of the scene moves freely even where open contacts have springs.
-    pub fn make_better(
+    pub fn improve_preconditioner(
         &mut self,
         context: &Context<'_>,
         open: &OnGroups<Vec<bool>>,
     ) -> Result<(), Failure> {
         if let Some(bddc) = self.bddc.as_mut().filter(|bddc| !bddc.is_stale()) {
-            bddc.look_deeper();
+            bddc.raise_level();
         }
-        self.make(context, open, true, true)
+        self.factorize_definite(context, open, true, true)
     }
 
-    fn make(
+    fn factorize_definite(
         &mut self,
         context: &Context<'_>,
         open: &OnGroups<Vec<bool>>,
@@ -200,7 +200,7 @@ impl ActiveSetFronts {
             return Ok(false);
         }
         self.spring = 0.0;
-        self.make(context, open, false, true)?;
+        self.factorize_definite(context, open, false, true)?;
         Ok(self.spring == 0.0)
     }
 
@@ -242,7 +242,7 @@ impl ActiveSetFronts {
             open,
             (self.spring, renewed),
         );
-        while fixed.is_err() && (bddc.is_judged() || is_sound) && bddc.look_deeper() {
+        while fixed.is_err() && (bddc.is_provisional() || is_sound) && bddc.raise_level() {
             fixed = bddc.fix(
                 context,
                 &self.merge_roots,
@@ -252,7 +252,7 @@ impl ActiveSetFronts {
             );
         }
         fixed?;
-        let pivot = bddc.coarse_pivot();
+        let pivot = bddc.smallest_coarse_pivot();
         self.bddc = Some(bddc);
         self.smallest_pivot = self.smallest_pivot.min(pivot);
         Ok(())

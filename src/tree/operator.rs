@@ -14,13 +14,13 @@ use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::problem::{Steps, TreeProblem};
 use crate::tree::slip_problem::{Laws, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
-use crate::tree::update::LOOSE;
+use crate::tree::update::FORCING_TERM;
 use crate::vector::between;
 
 /// Round-off, relative to the largest force or displacement.
 pub(super) const ROUND_OFF: f64 = 1e-12;
 /// Residual, relative to the scales of forces, below which the next step is exact although slip directions turn.
-const NEARLY: f64 = 1e-5;
+const NEARLY_CONVERGED: f64 = 1e-5;
 /// Share of a point's stiffness times displacements in the scale of forces, whose round-off is relative to it.
 const STIFFNESS_SHARE: f64 = 1e-3;
 
@@ -80,7 +80,7 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         accuracy: StepAccuracy,
     ) -> Result<OnGroups<Iterate>, Failure> {
         let (context, all_laws) = (self.problem.context, &self.problem.laws);
-        self.steps.go_on(context)?;
+        self.steps.check_interrupt(context)?;
         let laws: Laws = (statuses.iter())
             .map(|(&g, statuses)| (g, slip_laws(&all_laws[&g], statuses)))
             .collect();
@@ -96,8 +96,8 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
             None => 0.0,
         };
         let tolerance = match accuracy {
-            StepAccuracy::Rough(missed) => {
-                self.accuracy = (LOOSE * missed.min(1.0)).max(ROUND_OFF);
+            StepAccuracy::Rough(residual) => {
+                self.accuracy = (FORCING_TERM * residual.min(1.0)).max(ROUND_OFF);
                 self.accuracy.max(finest)
             }
             StepAccuracy::Full => {
@@ -195,20 +195,22 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
     }
 
     fn accuracy(&self, total: &TotalResidual) -> StepAccuracy {
-        let missed = total.missed;
+        let residual = total.largest;
         match total.wrong {
-            0 if self.turns && missed > NEARLY => {
-                StepAccuracy::Rough(missed.min(missed * missed / LOOSE))
+            0 if self.turns && residual > NEARLY_CONVERGED => {
+                StepAccuracy::Rough(residual.min(residual * residual / FORCING_TERM))
             }
             0 => StepAccuracy::Full,
-            _ => StepAccuracy::Rough(missed),
+            _ => StepAccuracy::Rough(residual),
         }
     }
 
     fn record(&mut self, step: NewtonStep) -> Result<(), Failure> {
-        let TotalResidual { missed, active, .. } = step.total;
+        let TotalResidual {
+            largest, active, ..
+        } = step.total;
         let iterations = self.solution.as_ref().map_or(0, |last| last.iterations);
-        (self.steps).record((missed, active, step.changed), self.fronts, iterations);
+        (self.steps).record((largest, active, step.changed), self.fronts, iterations);
         Ok(())
     }
 }

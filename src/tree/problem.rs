@@ -128,7 +128,7 @@ impl<'o> Steps<'o> {
     ///
     /// # Errors
     /// A signal has.
-    pub fn go_on(&self, context: &Context<'_>) -> Result<(), Failure> {
+    pub fn check_interrupt(&self, context: &Context<'_>) -> Result<(), Failure> {
         match context.comm.is_any_asked_to_stop() {
             false => Ok(()),
             true => Err(Failure::interrupted(format!(

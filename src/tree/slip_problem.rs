@@ -21,7 +21,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::solution::ActiveSetSolution;
-use crate::vector::{axpy, dot};
+use crate::vector::{add_multiple, axpy, dot, multiple};
 
 /// Most rounds.
 const ROUNDS: usize = 2;
@@ -69,7 +69,7 @@ pub fn fix(
         hold(fronts, open);
     }
     fronts.fix(context, open)?;
-    if was_held || !fronts.has_to_hold(context) {
+    if was_held || !fronts.must_hold_slipping(context) {
         return Ok(was_held);
     }
     hold(fronts, open);
@@ -117,7 +117,7 @@ impl SlipProblem<'_> {
         let (mut held, of_open) = (prescribed.clone(), self.on_open(forces));
         loads.forces = &of_open;
         if self.is_held {
-            add(&mut held, &self.slips(forces));
+            add_multiple(1.0, &self.slips(forces), &mut held);
             loads.prescribed = &held;
         }
         let mut solution = fronts.solve(self.context, self.open, loads, accuracy)?;
@@ -146,7 +146,7 @@ impl SlipProblem<'_> {
             let mut holding = forces.clone();
             for law in &self.laws[&g] {
                 law.set_force(&from.forces, &mut forces);
-                law.set_holding(|t| laws[&g].beyond(t, from), &mut holding);
+                law.set_holding(|t| laws[&g].violation(t, from), &mut holding);
             }
             for ((force, holding), open) in forces.iter_mut().zip(holding).zip(&self.open[&g]) {
                 *force = if *open { *force } else { holding };
@@ -204,8 +204,8 @@ impl SlipProblem<'_> {
         let mut last = f64::INFINITY;
         for round in 0..ROUNDS + usize::from(is_coupled) {
             let slip = |g: GroupId, i: usize| solution.at[&g].jumps[i] - self.prescribed[&g][i];
-            let missed = self.missed(&solution, slip, false);
-            let size = self.context.comm.largest(missed.values().flatten());
+            let residual = self.residual(&solution, slip, false);
+            let size = self.context.comm.largest(residual.values().flatten());
             let all = solution.at.values().flat_map(|at| &at.forces);
             let enough = accuracy * self.context.comm.largest(all);
             if size <= enough || size.is_nan() || size > STALLS * last {
@@ -221,8 +221,8 @@ impl SlipProblem<'_> {
                 continue;
             }
             last = size;
-            let (change, iterations) = self.gmres(fronts, &missed, reduction)?;
-            add(&mut forces, &change);
+            let (change, iterations) = self.gmres(fronts, &residual, reduction)?;
+            add_multiple(1.0, &change, &mut forces);
             solution.iterations += iterations;
             solution = respond(fronts, (&forces, None), tolerance, Some(&solution))?;
         }
@@ -230,23 +230,23 @@ impl SlipProblem<'_> {
     }
 
     /// The residual of the laws at the forces of a solution with the slips `slip` of each group's jumps.
-    fn missed(
+    fn residual(
         &self,
         solution: &ActiveSetSolution,
         slip: impl Fn(GroupId, usize) -> f64,
         is_change: bool,
     ) -> OnJumps {
         let of_group = |(&g, at): (&GroupId, &Iterate)| {
-            let mut missed = vec![0.0; at.forces.len()];
+            let mut residual = vec![0.0; at.forces.len()];
             for law in self.laws.get(&g).into_iter().flatten() {
-                law.add_missed(&at.forces, |i| slip(g, i), is_change, &mut missed);
+                law.add_residual(&at.forces, |i| slip(g, i), is_change, &mut residual);
             }
-            (g, missed)
+            (g, residual)
         };
         solution.at.iter().map(of_group).collect()
     }
 
-    /// The change of forces that cancels the residual `missed` of the laws to a relative accuracy `reduction`, and the
+    /// The change of forces that cancels the `residual` of the laws to a relative accuracy `reduction`, and the
     /// number of iterations. Collective.
     ///
     /// # Errors
@@ -254,19 +254,19 @@ impl SlipProblem<'_> {
     fn gmres(
         &self,
         fronts: &mut ActiveSetFronts,
-        missed: &OnJumps,
+        residual: &OnJumps,
         reduction: f64,
     ) -> Result<(OnJumps, usize), Failure> {
-        let mut sum: OnJumps = missed
+        let mut sum: OnJumps = residual
             .iter()
             .map(|(&g, m)| (g, vec![0.0; m.len()]))
             .collect();
-        let size = self.dot(missed, missed).sqrt();
+        let size = self.dot(residual, residual).sqrt();
         let mut iterations = 0;
         if size == 0.0 {
             return Ok((sum, iterations));
         }
-        let mut basis = vec![scaled(missed, -1.0 / size)];
+        let mut basis = vec![multiple(-1.0 / size, residual)];
         let mut h = Mat::<f64>::zeros(PRODUCTS + 1, PRODUCTS);
         let mut weights = Vec::new();
         let mut tolerance = PRODUCT * reduction;
@@ -291,7 +291,7 @@ impl SlipProblem<'_> {
             if left <= reduction * size || rest <= f64::EPSILON * size {
                 break;
             }
-            basis.push(scaled(&next, 1.0 / rest));
+            basis.push(multiple(1.0 / rest, &next));
         }
         for (known, weight) in basis.iter().zip(weights) {
             for (g, sum) in &mut sum {
@@ -330,7 +330,7 @@ impl SlipProblem<'_> {
             (forces, None),
             accuracy,
         )?;
-        let product = self.missed(&response, |g, i| response.at[&g].jumps[i], true);
+        let product = self.residual(&response, |g, i| response.at[&g].jumps[i], true);
         Ok((product, response.iterations))
     }
 
@@ -348,24 +348,9 @@ impl SlipProblem<'_> {
     }
 }
 
-/// Adds another vector on jumps.
-fn add(to: &mut OnJumps, others: &OnJumps) {
-    for (g, to) in to {
-        if let Some(others) = others.get(g) {
-            axpy(1.0, others, to);
-        }
-    }
-}
-
 /// Vectors of the same lengths, all 0.
 fn zeros<K: Copy + Ord>(of: &BTreeMap<K, Vec<f64>>) -> BTreeMap<K, Vec<f64>> {
     let all = of.iter();
     all.map(|(&k, values)| (k, vec![0.0; values.len()]))
-        .collect()
-}
-
-fn scaled(of_jumps: &OnJumps, factor: f64) -> OnJumps {
-    let all = of_jumps.iter();
-    all.map(|(&g, own)| (g, own.iter().map(|x| factor * x).collect()))
         .collect()
 }

@@ -76,7 +76,7 @@ impl ActiveSetFronts {
             if !solution.is_too_far {
                 break;
             }
-            self.make_better(context, open)?;
+            self.improve_preconditioner(context, open)?;
             let from_there = Accuracy {
                 start: Some(&solution.merge_roots),
                 ..accuracy
@@ -116,7 +116,7 @@ impl ActiveSetFronts {
                     ..loads
                 };
                 let between = bddc.solve(context, &self.merge_roots, on_roots, accuracy);
-                let is_rough = bddc.is_stale() || bddc.is_judged();
+                let is_rough = bddc.is_stale() || bddc.is_provisional();
                 solution.is_too_far = is_rough && !between.is_solved;
                 solution.merge_roots = between.clusters.clone();
                 solution.iterations = between.iterations;

@@ -15,7 +15,7 @@ use crate::context::Context;
 use crate::tree::problem::TreeProblem;
 
 /// Tolerance of an iterative solver relative to the previous error of the active set.
-pub(super) const LOOSE: f64 = 0.01;
+pub(super) const FORCING_TERM: f64 = 0.01;
 /// Steps without fewer wrong conditions after which the energy descends.
 const PATIENCE: usize = 8;
 
@@ -36,7 +36,7 @@ impl Default for ActiveSetUpdate {
         Self {
             fewest: usize::MAX,
             patience: PATIENCE,
-            tolerance: LOOSE,
+            tolerance: FORCING_TERM,
         }
     }
 }
@@ -49,7 +49,7 @@ impl ActiveSetUpdate {
             (self.fewest, self.patience) = (count, PATIENCE);
         } else {
             self.patience = self.patience.saturating_sub(1);
-            self.tolerance *= LOOSE;
+            self.tolerance *= FORCING_TERM;
         }
         all
     }

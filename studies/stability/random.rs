@@ -81,13 +81,13 @@ impl Runs {
             println!("{}", ran.line());
         }
         if told {
-            tell(&drawn, &ran);
+            print_details(&drawn, &ran);
         }
         Some(ran)
     }
 }
 
-fn tell(drawn: &Drawn, ran: &Ran) {
+fn print_details(drawn: &Drawn, ran: &Ran) {
     println!("{}", drawn.described());
     if let Some(report) = &ran.trial.report {
         println!("{report:#}");

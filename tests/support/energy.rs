@@ -79,11 +79,11 @@ pub fn works(model: &Model, solutions: &[Solution]) -> Vec<Works> {
     let mut before = State::default();
     let one = |(k, solution): (usize, &Solution)| {
         let after = State::new(model, solution, &Assembled::new(&at_step(model, k)));
-        let ways = [&before.u[..], &after.u];
+        let displacements = [&before.u[..], &after.u];
         let slips = [&before.slips[..], &after.slips];
         let works = Works {
-            loads: work([&before.of_loads, &after.of_loads], ways),
-            supports: work([&before.of_supports, &after.of_supports], ways),
+            loads: work([&before.of_loads, &after.of_loads], displacements),
+            supports: work([&before.of_supports, &after.of_supports], displacements),
             elastic: after.elastic - before.elastic,
             energy: after.elastic,
             pressure: work(

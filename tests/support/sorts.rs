@@ -83,12 +83,12 @@ impl Sort {
                 halves.iter().for_each(|half| cells.push(Triangle3, half));
                 continue;
             }
-            // The corner of a triangle that the other one lacks lies between the two shared ones.
-            let lacks = |half: &[u32], node: &u32| !half.contains(node);
-            let own = halves[0].iter().position(|n| lacks(halves[1], n)).unwrap();
+            // The corner of a triangle that the other one misses lies between the two shared ones.
+            let misses = |half: &[u32], node: &u32| !half.contains(node);
+            let own = halves[0].iter().position(|n| misses(halves[1], n)).unwrap();
             let mut corners = halves[0].to_vec();
             corners.rotate_left(own);
-            let other = halves[1].iter().find(|n| lacks(halves[0], n)).unwrap();
+            let other = halves[1].iter().find(|n| misses(halves[0], n)).unwrap();
             corners.insert(2, *other);
             cells.push(Quad4, &corners);
         }

@@ -15,7 +15,7 @@ pub(super) struct Amplitude {
 
 /// A point in time, as step time and total time.
 #[derive(Clone, Copy)]
-pub(super) struct Moment {
+pub(super) struct DeckTime {
     pub(super) in_step: f64,
     pub(super) total: f64,
 }
@@ -65,12 +65,8 @@ impl Amplitude {
     }
 
     /// The value at a time; constant before the first and after the last point.
-    pub(super) fn at(&self, moment: Moment) -> f64 {
-        let time = if self.is_total {
-            moment.total
-        } else {
-            moment.in_step
-        };
+    pub(super) fn at(&self, at: DeckTime) -> f64 {
+        let time = if self.is_total { at.total } else { at.in_step };
         let next = self.points.partition_point(|(at, _)| *at <= time);
         match (
             next.checked_sub(1).map(|last| self.points[last]),
@@ -83,13 +79,9 @@ impl Amplitude {
     }
 
     /// True if it isn't linear between two times of the same step.
-    pub(super) fn bends(&self, from: Moment, to: Moment) -> bool {
-        let time = |moment: Moment| {
-            if self.is_total {
-                moment.total
-            } else {
-                moment.in_step
-            }
+    pub(super) fn bends(&self, from: DeckTime, to: DeckTime) -> bool {
+        let time = |at: DeckTime| {
+            if self.is_total { at.total } else { at.in_step }
         };
         let (start, end) = (self.at(from), self.at(to));
         let (from, to) = (time(from), time(to));

@@ -1,18 +1,9 @@
 //! `*FRICTION`: Coulomb's law.
 
 use super::loads::item;
+use super::parameters;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
-
-/// Parameters that change the law.
-const REFUSED: [&str; 6] = [
-    "ROUGH",
-    "TAUMAX",
-    "EXPONENTIAL DECAY",
-    "USER",
-    "LAGRANGE",
-    "ANISOTROPIC",
-];
 
 /// The numbers of a block.
 #[derive(Default)]
@@ -28,8 +19,7 @@ impl Friction {
     /// # Errors
     /// Parameters that change the law, a negative coefficient, or several ones.
     pub(super) fn read(source: &Source, block: &Block) -> Result<Self, InputError> {
-        let refused = REFUSED.iter().find(|key| block.parameter(key).is_some());
-        if let Some(key) = refused {
+        if let Some(key) = parameters::refused(block) {
             let message =
                 format!("*FRICTION with {key} isn't read; expected a coefficient of Coulomb's law");
             return Err(source.error(block.place, message));

@@ -9,14 +9,14 @@ use crate::error::InputError;
 use crate::mesh::abaqus::Source;
 
 /// The values of a load in all steps, as bits, by which loads with equal values are grouped.
-type Course<V> = Vec<Option<V>>;
+type LoadHistory<V> = Vec<Option<V>>;
 
 /// A load on a group of the mesh: its table, the group, its key, and its value in each step.
 pub(super) struct OnGroup {
     pub(super) list: &'static str,
     on: String,
     /// Key and value.
-    pub(super) values: Course<Vec<(&'static str, String)>>,
+    pub(super) values: LoadHistory<Vec<(&'static str, String)>>,
 }
 
 impl OnGroup {
@@ -175,7 +175,10 @@ fn number(value: f64) -> Option<String> {
     (value != 0.0).then(|| format!("{value:?}"))
 }
 
-fn of_key(course: Course<String>, key: &'static str) -> Course<Vec<(&'static str, String)>> {
+fn of_key(
+    course: LoadHistory<String>,
+    key: &'static str,
+) -> LoadHistory<Vec<(&'static str, String)>> {
     let values = course.into_iter();
     values
         .map(|value| value.map(|value| vec![(key, value)]))
@@ -187,11 +190,11 @@ fn of_key(course: Course<String>, key: &'static str) -> Course<Vec<(&'static str
 fn together<'a, K: Ord + Clone + 'a, V: 'a, T: Ord>(
     steps: impl Iterator<Item = &'a BTreeMap<K, V>> + Clone,
     shown: impl Fn(&V) -> Option<T>,
-) -> Vec<(Vec<K>, Course<T>)> {
+) -> Vec<(Vec<K>, LoadHistory<T>)> {
     let keys: BTreeSet<&K> = steps.clone().flat_map(|step| step.keys()).collect();
-    let mut found: BTreeMap<Course<T>, Vec<K>> = BTreeMap::new();
+    let mut found: BTreeMap<LoadHistory<T>, Vec<K>> = BTreeMap::new();
     for key in keys {
-        let course: Course<T> = steps
+        let course: LoadHistory<T> = steps
             .clone()
             .map(|step| step.get(key).and_then(&shown))
             .collect();
@@ -199,7 +202,7 @@ fn together<'a, K: Ord + Clone + 'a, V: 'a, T: Ord>(
             found.entry(course).or_default().push(key.clone());
         }
     }
-    let mut classes: Vec<(Vec<K>, Course<T>)> = found
+    let mut classes: Vec<(Vec<K>, LoadHistory<T>)> = found
         .into_iter()
         .map(|(course, keys)| (keys, course))
         .collect();

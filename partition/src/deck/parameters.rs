@@ -4,7 +4,7 @@ use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Source};
 use crate::name;
 
-/// Parameters that are read, or refused by the reader of the block.
+/// Parameters that are read.
 const PARAMETERS: [(&str, &[&str]); 50] = [
     ("NODE", &["NSET", "INPUT", "SYSTEM"]),
     ("ELEMENT", &["TYPE", "ELSET", "INPUT"]),
@@ -43,50 +43,18 @@ const PARAMETERS: [(&str, &[&str]); 50] = [
         &["NAME", "TIME", "VALUE", "DEFINITION", "USER"],
     ),
     ("INITIAL CONDITIONS", &["TYPE"]),
-    (
-        "BOUNDARY",
-        &[
-            "OP",
-            "AMPLITUDE",
-            "TYPE",
-            "FIXED",
-            "USER",
-            "SUBMODEL",
-            "LOAD CASE",
-            "STEP",
-            "DATA SET",
-            "REGION TYPE",
-        ],
-    ),
+    ("BOUNDARY", &["OP", "AMPLITUDE", "TYPE", "FIXED"]),
     ("CLOAD", &["OP", "AMPLITUDE"]),
     ("DLOAD", &["OP", "AMPLITUDE"]),
     ("DSLOAD", &["OP", "AMPLITUDE"]),
     ("TEMPERATURE", &["OP", "AMPLITUDE"]),
     ("SURFACE INTERACTION", &["NAME"]),
     ("SURFACE BEHAVIOR", &["PRESSURE-OVERCLOSURE"]),
-    (
-        "FRICTION",
-        &[
-            "ROUGH",
-            "TAUMAX",
-            "EXPONENTIAL DECAY",
-            "USER",
-            "LAGRANGE",
-            "ANISOTROPIC",
-        ],
-    ),
+    ("FRICTION", &[]),
     ("CONTACT PAIR", &["INTERACTION", "TYPE", "ADJUST", "TIED"]),
     (
         "TIE",
-        &[
-            "NAME",
-            "POSITION TOLERANCE",
-            "ADJUST",
-            "CYCLIC SYMMETRY",
-            "MULTISTAGE",
-            "FLUID PERIODIC",
-            "FLUID CYCLIC",
-        ],
+        &["NAME", "POSITION TOLERANCE", "ADJUST", "CYCLIC SYMMETRY"],
     ),
     ("EQUATION", &[]),
     ("MPC", &[]),
@@ -95,10 +63,7 @@ const PARAMETERS: [(&str, &[&str]); 50] = [
         &["CONSTRAINT NAME", "REF NODE", "SURFACE", "ORIENTATION"],
     ),
     ("KINEMATIC", &[]),
-    (
-        "SPRING",
-        &["ELSET", "NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"],
-    ),
+    ("SPRING", &["ELSET"]),
     ("DISTRIBUTING", &["COUPLING", "WEIGHTING METHOD"]),
     (
         "RIGID BODY",
@@ -114,6 +79,38 @@ const PARAMETERS: [(&str, &[&str]); 50] = [
     ("CONTACT PROPERTY ASSIGNMENT", &[]),
     ("STEP", &["NAME", "NLGEOM", "PERTURBATION"]),
     ("STATIC", &["RIKS"]),
+];
+
+/// Parameters of these keywords for other than what their blocks mean here; readers refuse them with what they expect.
+const REFUSED: [(&str, &[&str]); 4] = [
+    // Other than displacements of nodes.
+    (
+        "BOUNDARY",
+        &[
+            "USER",
+            "SUBMODEL",
+            "LOAD CASE",
+            "STEP",
+            "DATA SET",
+            "REGION TYPE",
+        ],
+    ),
+    // Other laws than Coulomb's.
+    (
+        "FRICTION",
+        &[
+            "ROUGH",
+            "TAUMAX",
+            "EXPONENTIAL DECAY",
+            "USER",
+            "LAGRANGE",
+            "ANISOTROPIC",
+        ],
+    ),
+    // Other than a tie of two sides.
+    ("TIE", &["MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"]),
+    // Other than a constant stiffness along an axis.
+    ("SPRING", &["NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"]),
 ];
 
 /// Parameters of these keywords without effect here, as they steer what other programs do on the way to the answer; those
@@ -180,15 +177,27 @@ const PAIRS: [&str; 5] = [
     "PGLINMORTAR",
 ];
 
+/// The parameters of a keyword in a table.
+fn of_keyword(
+    table: &[(&str, &'static [&'static str])],
+    keyword: &str,
+) -> Option<&'static [&'static str]> {
+    let found = table.iter().find(|(name, _)| *name == keyword);
+    found.map(|(_, names)| *names)
+}
+
 /// The parameters of a keyword that are known; `None` where parameters don't matter, as of output.
 fn known(keyword: &str) -> Option<Vec<&'static str>> {
-    let of = |table: &[(&str, &'static [&'static str])]| {
-        let found = table.iter().find(|(name, _)| *name == keyword);
-        found.map(|(_, names)| names.to_vec())
-    };
-    let mut names = of(&PARAMETERS)?;
-    names.extend(of(&HARMLESS).unwrap_or_default());
+    let mut names = of_keyword(&PARAMETERS, keyword)?.to_vec();
+    names.extend(of_keyword(&REFUSED, keyword).unwrap_or_default());
+    names.extend(of_keyword(&HARMLESS, keyword).unwrap_or_default());
     Some(names)
+}
+
+/// The first parameter of a block that its reader refuses.
+pub(super) fn refused(block: &Block) -> Option<&'static str> {
+    let names = of_keyword(&REFUSED, &block.keyword).unwrap_or_default();
+    (names.iter().copied()).find(|name| block.parameter(name).is_some())
 }
 
 /// A word without blanks, which are insignificant.

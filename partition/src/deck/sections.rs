@@ -176,7 +176,7 @@ pub(super) fn bodies(
             };
             if expands(section) {
                 of_step[element as usize] =
-                    warmth_of(places, element, step, &initial.temperatures)?;
+                    temperature_rise(places, element, step, &initial.temperatures)?;
             }
         }
         classes.refine(|element| of_step[element as usize].to_bits());
@@ -243,7 +243,7 @@ fn sections_of_elements(
 }
 
 /// The temperature of an element relative to the initial one.
-fn warmth_of(
+fn temperature_rise(
     places: &Places,
     element: u32,
     step: &LoadStep,

@@ -7,6 +7,7 @@ use super::axes::System;
 use super::document::{Document, Names, quoted, vector};
 use super::groups::Groups;
 use super::loads::item;
+use super::parameters;
 use super::place::Places;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, LinePlace, Of};
@@ -20,9 +21,6 @@ const ALONG_AXIS: &str = "SPRING2";
 
 /// The type of springs between two nodes along their line.
 const ALONG_LINE: &str = "SPRINGA";
-
-/// Parameters of `*SPRING` for other than a constant stiffness along an axis.
-const REFUSED: [&str; 3] = ["NONLINEAR", "ORIENTATION", "COMPLEX STIFFNESS"];
 
 /// Spring elements of one block.
 struct Elements {
@@ -116,7 +114,7 @@ impl Springs {
     /// `*SPRING`: a degree of freedom, followed by a stiffness.
     pub(super) fn property(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
-        if let Some(key) = REFUSED.iter().find(|key| block.parameter(key).is_some()) {
+        if let Some(key) = parameters::refused(block) {
             let message =
                 format!("*SPRING with {key} isn't read; expected one stiffness along x, y or z");
             return Err(source.error(block.place, message));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::amplitude::Moment;
+use super::amplitude::DeckTime;
 use super::axes::{System, numbers};
 use super::loads::Loads;
 use super::place::Places;
@@ -229,7 +229,7 @@ impl Steps {
                 .source
                 .error(open.place, "the step has no *STATIC; expected it"));
         }
-        let at = |in_step: f64| Moment {
+        let at = |in_step: f64| DeckTime {
             in_step,
             total: self.total_time + in_step,
         };

@@ -1,6 +1,7 @@
 //! `*BOUNDARY`, and concentrated forces, `*CLOAD`, which have the same syntax.
 
 use super::loads::{Loads, NodeLine, item};
+use super::parameters;
 use super::place::Places;
 use super::reference::{NodeAxis, Reference};
 use super::table::Origin;
@@ -20,16 +21,6 @@ const WORDS: [(&str, &[usize]); 8] = [
     ("ZASYMM", &[0, 1, 5]),
 ];
 
-/// Parameters of `*BOUNDARY` for other than displacements of nodes.
-const REFUSED: [&str; 6] = [
-    "USER",
-    "SUBMODEL",
-    "LOAD CASE",
-    "STEP",
-    "DATA SET",
-    "REGION TYPE",
-];
-
 /// Number of the degrees of freedom that are displacements, and the last that is a rotation.
 const SPACE: usize = 3;
 const ROTATIONS: i64 = 6;
@@ -47,9 +38,9 @@ impl Loads {
     ) -> Result<(), InputError> {
         let source = places.source;
         let kind = block.parameter("TYPE").unwrap_or("DISPLACEMENT");
-        let refused = REFUSED.iter().find(|key| block.parameter(key).is_some());
+        let refused = parameters::refused(block);
         if refused.is_some() || !kind.eq_ignore_ascii_case("DISPLACEMENT") {
-            let what = refused.map_or(name::shown(kind), |key| (*key).to_owned());
+            let what = refused.map_or(name::shown(kind), str::to_owned);
             let message =
                 format!("*BOUNDARY with {what} isn't read; expected displacements of nodes");
             return Err(source.error(block.place, message));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::amplitude::{Amplitude, Moment};
+use super::amplitude::{Amplitude, DeckTime};
 use crate::mesh::abaqus::LinePlace;
 
 /// Amplitudes by name in capitals.
@@ -63,13 +63,13 @@ impl<K: Ord + Clone> Table<K> {
     }
 
     /// The values at a time.
-    pub(super) fn at(&self, amplitudes: &Amplitudes, moment: Moment) -> BTreeMap<K, f64> {
+    pub(super) fn at(&self, amplitudes: &Amplitudes, time: DeckTime) -> BTreeMap<K, f64> {
         let values = self.0.iter();
         values
             .map(|(key, entry)| {
                 let parts = entry.values.iter().map(|(value, amplitude)| {
                     let amplitude = amplitude.as_ref().and_then(|name| amplitudes.get(name));
-                    value * amplitude.map_or(1.0, |amplitude| amplitude.at(moment))
+                    value * amplitude.map_or(1.0, |amplitude| amplitude.at(time))
                 });
                 (key.clone(), parts.sum())
             })
@@ -80,8 +80,8 @@ impl<K: Ord + Clone> Table<K> {
     pub(super) fn bend(
         &self,
         amplitudes: &Amplitudes,
-        from: Moment,
-        to: Moment,
+        from: DeckTime,
+        to: DeckTime,
     ) -> Option<LinePlace> {
         let bends = |name: &Option<String>| {
             let amplitude = name.as_ref().and_then(|name| amplitudes.get(name));
@@ -93,7 +93,7 @@ impl<K: Ord + Clone> Table<K> {
     }
 
     /// Freezes amplitudes in step time at their value at the end of the step.
-    pub(super) fn hold(&mut self, amplitudes: &Amplitudes, end: Moment) {
+    pub(super) fn hold(&mut self, amplitudes: &Amplitudes, end: DeckTime) {
         for entry in self.0.values_mut() {
             for (value, name) in &mut entry.values {
                 let amplitude = name.as_ref().and_then(|name| amplitudes.get(name));

@@ -3,12 +3,10 @@
 use super::document::{Document, quoted};
 use super::groups::Groups;
 use super::loads::item;
+use super::parameters;
 use super::place::Places;
 use crate::error::InputError;
 use crate::mesh::abaqus::Block;
-
-/// Parameters of `*TIE` for other than a tie of two sides.
-const REFUSED: [&str; 3] = ["MULTISTAGE", "FLUID PERIODIC", "FLUID CYCLIC"];
 
 /// A tie of two surfaces, by name in capitals.
 struct Tie {
@@ -35,7 +33,7 @@ impl Ties {
     /// Reads a block.
     pub(super) fn read(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
-        if let Some(key) = REFUSED.iter().find(|key| block.parameter(key).is_some()) {
+        if let Some(key) = parameters::refused(block) {
             let message = format!("*TIE with {key} isn't read; expected a tie of two sides");
             return Err(source.error(block.place, message));
         }

@@ -41,7 +41,7 @@ const PARALLEL: f64 = 50_000.0;
 
 /// Number of vertices below which fragments that a cut disconnects from a side move to the other side; in larger sets
 /// later cuts take care of them.
-const TIDIED: usize = 50_000;
+const FRAGMENTS_MOVE_BELOW: usize = 50_000;
 
 /// The condition at which a dissection ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ impl Branch {
     /// become separate roots.
     pub fn hierarchy(&self, mut number: impl FnMut(&[u32]) -> u32) -> Hierarchy {
         let mut parent = vec![None; self.leaves()];
-        self.hang(true, &mut number, &mut parent);
+        self.add_to_hierarchy(true, &mut number, &mut parent);
         Hierarchy {
             parent,
             clusters: Vec::new(),
@@ -82,7 +82,7 @@ impl Branch {
     }
 
     /// Numbers the descendants, and returns the children of the next node above: the branch itself, or its sides.
-    fn hang(
+    fn add_to_hierarchy(
         &self,
         is_top: bool,
         number: &mut impl FnMut(&[u32]) -> u32,
@@ -95,7 +95,7 @@ impl Branch {
         let is_left_out = is_top && !is_joined;
         let under = sides
             .iter()
-            .map(|side| side.hang(is_left_out, number, parent));
+            .map(|side| side.add_to_hierarchy(is_left_out, number, parent));
         let under: Vec<u32> = under.collect::<Vec<_>>().concat();
         if is_left_out {
             return under;
@@ -221,7 +221,7 @@ fn wanted_of_halves(wanted: Wanted, of_a: &Graph, of_b: &Graph) -> [Wanted; 2] {
     match wanted {
         Wanted::Sets(count) => {
             let (in_a, in_b) = (of_a.sizes_of_pieces(), of_b.sizes_of_pieces());
-            let shares = allotted(&[&in_a[..], &in_b].concat(), count);
+            let shares = sets_of_pieces(&[&in_a[..], &in_b].concat(), count);
             let share = shares[..in_a.len()].iter().sum::<usize>();
             let least = in_a.len().max(count.saturating_sub(of_b.len()));
             let most = of_a.len().min(count - in_b.len());
@@ -258,12 +258,12 @@ fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     }
     let mut left = bisect(graph, aim);
     let Wanted::Sets(sets) = wanted else {
-        return match graph.len() < TIDIED {
-            true => tidied(graph, left),
+        return match graph.len() < FRAGMENTS_MOVE_BELOW {
+            true => with_connected_pieces(graph, left),
             false => left,
         };
     };
-    left = tidied(graph, left);
+    left = with_connected_pieces(graph, left);
     let (piece, count) = graph.pieces();
     if count == 1 {
         return left;
@@ -272,7 +272,7 @@ fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
     let (part, parts) = graph.parts(|vertex, edge| edge.is_facet() && together(vertex, edge.to));
     let largest = |labels: &[u32], count: usize| {
         let sizes = graph.sizes_of(labels, count);
-        let shares = allotted(&sizes, sets);
+        let shares = sets_of_pieces(&sizes, sets);
         let means = sizes.iter().zip(shares);
         means.fold(0.0, |most: f64, (size, share)| {
             most.max(size / share as f64)
@@ -285,7 +285,7 @@ fn sides(graph: &Graph, aim: Aim, wanted: Wanted) -> Vec<bool> {
 }
 
 /// Distribution of `count` sets among pieces: one each, and every further one to the piece with the largest sets.
-fn allotted(sizes: &[f64], count: usize) -> Vec<usize> {
+fn sets_of_pieces(sizes: &[f64], count: usize) -> Vec<usize> {
     let mut shares = vec![1; sizes.len()];
     for _ in sizes.len()..count {
         let size = |i: usize| sizes[i] / shares[i] as f64;
@@ -304,7 +304,7 @@ fn whole(graph: &Graph, labels: &[u32], count: usize, aim: Aim) -> Vec<bool> {
 }
 
 /// The cut, changed so that each piece of the graph stays connected on either side.
-fn tidied(graph: &Graph, mut left: Vec<bool>) -> Vec<bool> {
+fn with_connected_pieces(graph: &Graph, mut left: Vec<bool>) -> Vec<bool> {
     let (piece, count) = graph.pieces();
     for side in [true, false] {
         let together = |vertex: usize, to: u32| left[vertex] == left[to as usize];

@@ -95,7 +95,7 @@ impl fmt::Display for Summary<'_> {
             fronts.len(),
             work.of_fronts(),
             fronts.max().unwrap_or(0),
-            work.uneven_halves
+            work.imbalance
         )?;
         writeln!(f, "clusters      {}", catalog.hierarchy.clusters.len())?;
         writeln!(

@@ -190,7 +190,7 @@ impl ReferenceElement {
         };
         let mut ahead = dot(difference(self.position(at, xi), x), direction);
         for _ in 0..NEWTON_STEPS {
-            let missed = difference(self.position(at, xi), advance(x, ahead, direction));
+            let offset = difference(self.position(at, xi), advance(x, ahead, direction));
             let [r, s, _] = tangents(&self.gradients(xi), at);
             let normal = cross(r, s);
             // x(ξ + δ) = x + (s + δ_s) direction by Cramer's rule.
@@ -199,11 +199,11 @@ impl ReferenceElement {
                 return None;
             }
             let change = [
-                dot(cross(s, missed), direction) / across,
-                dot(cross(missed, r), direction) / across,
+                dot(cross(s, offset), direction) / across,
+                dot(cross(offset, r), direction) / across,
             ];
             xi = [xi[0] + change[0], xi[1] + change[1], 0.0];
-            ahead += dot(normal, missed) / across;
+            ahead += dot(normal, offset) / across;
             if change.iter().all(|c| c.abs() <= BORDER) {
                 let [s, t, _] = xi;
                 let is_inside = match self.domain() {

@@ -147,12 +147,12 @@ impl Interface {
                 }
             }
         }
-        systems.extend(self.stuck(&users, &is_waiting));
+        systems.extend(self.cyclic_systems(&users, &is_waiting));
         systems
     }
 
     /// The systems of the points that depend on each other in a cycle.
-    fn stuck(&self, users: &Lists<u32>, is_waiting: &[bool]) -> Vec<System> {
+    fn cyclic_systems(&self, users: &Lists<u32>, is_waiting: &[bool]) -> Vec<System> {
         let mut sets = DisjointSets::new(self.of_points.len());
         for users in users.iter() {
             let mut stuck = users.iter().copied().filter(|&j| is_waiting[j as usize]);

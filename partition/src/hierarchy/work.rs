@@ -14,7 +14,7 @@ pub struct Work {
     pub fronts: Vec<Front>,
     /// Load imbalance at the top: estimated work under the heaviest child of the heaviest root over the average of its
     /// children; 1 without children.
-    pub uneven_halves: f64,
+    pub imbalance: f64,
     /// Best possible speed-up: estimated time of all nodes over that of the critical path from a leaf to a root.
     pub speed_up: f64,
 }
@@ -48,7 +48,7 @@ impl Work {
         let inner = tree.nodes.ids().skip(tree.subdomains);
         Self {
             fronts: inner.map(front).collect(),
-            uneven_halves: uneven_halves(&tree, &tree.sums(&costs)),
+            imbalance: imbalance(&tree, &tree.sums(&costs)),
             speed_up: speed_up(&tree, &times, coarse),
         }
     }
@@ -100,7 +100,7 @@ fn speed_up(tree: &Tree, times: &Numbered<TreeNodeId, f64>, coarse: f64) -> f64 
 }
 
 /// The load imbalance from `below`, the work of every node including its subtree.
-fn uneven_halves(tree: &Tree, below: &Numbered<TreeNodeId, f64>) -> f64 {
+fn imbalance(tree: &Tree, below: &Numbered<TreeNodeId, f64>) -> f64 {
     let heaviest = tree.roots().max_by(|&a, &b| below[a].total_cmp(&below[b]));
     let children = heaviest.map_or(&[][..], |root| &tree.nodes[root].children);
     let work = children.iter().map(|&child| below[child]);

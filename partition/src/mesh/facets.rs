@@ -36,7 +36,7 @@ impl CellFacet {
 
 /// The identifying nodes of a facet: in the plane its corners and the middle node, in space only its corners, as all
 /// nodes of an edge are shared with its neighbours.
-pub(super) fn telling(facet: &[u32]) -> &[u32] {
+pub(super) fn identifying_nodes(facet: &[u32]) -> &[u32] {
     match facet.len() {
         6 => &facet[..3],
         8 | 9 => &facet[..4],
@@ -63,7 +63,7 @@ impl Entry {
 
 /// A line or a face shared by cells that differ in its inner nodes.
 #[derive(Debug)]
-pub struct Tear {
+pub struct NonconformingFacet {
     /// Two cells at the facet.
     pub cells: [u32; 2],
     /// Corners.
@@ -139,13 +139,13 @@ impl Facets {
             .iter()
             .any(|(kind, _)| kind.dim() == 3 && !kind.is_linear())
         {
-            facets.tell_sheets(cells);
+            facets.distinguish_sheets(cells);
         }
         facets
     }
 
     /// Distinguishes facets with the same corners but different inner nodes.
-    fn tell_sheets(&mut self, cells: &Elements) {
+    fn distinguish_sheets(&mut self, cells: &Elements) {
         let sorted = |entry: &Entry| {
             let mut nodes = entry.facet.nodes(cells);
             nodes.sort_unstable();
@@ -177,7 +177,7 @@ impl Facets {
 
     /// True if two facets lead from one node to the same other node; several times faster than finding all facets. If
     /// not, no two cells lie on the same side of an edge. Always true in space.
-    pub fn repeat_themselves(cells: &Elements, nodes: usize) -> bool {
+    pub fn repeat_edges(cells: &Elements, nodes: usize) -> bool {
         if cells.iter().next().is_some_and(|(kind, _)| kind.dim() == 3) {
             return true;
         }
@@ -256,7 +256,7 @@ impl Facets {
 
     /// A line or a face whose corners cells share, but not its inner nodes, if any; preferably one with a hanging
     /// middle node, which one of the cells lacks.
-    pub fn torn(cells: &Elements, nodes: usize) -> Option<Tear> {
+    pub fn nonconforming(cells: &Elements, nodes: usize) -> Option<NonconformingFacet> {
         if cells.iter().all(|(kind, _)| kind.is_linear()) {
             return None;
         }
@@ -271,17 +271,17 @@ impl Facets {
         });
         let mut by_node = Lists::new(nodes, all);
         by_node.sort();
-        let torn = |pair: &[(Key, Key, u32)]| {
+        let nonconforming = |pair: &[(Key, Key, u32)]| {
             let (a, b) = (pair[0], pair[1]);
             let is_empty = |within: Key| within[0] == u32::MAX;
-            (a.0 == b.0 && a.1 != b.1).then(|| Tear {
+            (a.0 == b.0 && a.1 != b.1).then(|| NonconformingFacet {
                 cells: [a.2, b.2],
                 corners: a.0.into_iter().filter(|&node| node != u32::MAX).collect(),
                 hangs: is_empty(a.1) != is_empty(b.1),
             })
         };
-        let tears = || (by_node.iter()).flat_map(|list| list.windows(2).filter_map(torn));
-        tears().find(|tear| tear.hangs).or_else(|| tears().next())
+        let found = || (by_node.iter()).flat_map(|list| list.windows(2).filter_map(nonconforming));
+        found().find(|facet| facet.hangs).or_else(|| found().next())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Mesh;
 pub use super::facets::CellFacet;
-use super::facets::{Facets, key, telling};
+use super::facets::{Facets, identifying_nodes, key};
 use crate::error::InputError;
 use crate::lists::Lists;
 
@@ -13,22 +13,22 @@ impl Mesh {
     /// # Errors
     /// Two such cells, by their tags: for example a linear cell next to a quadratic one.
     pub(crate) fn check_edges(&self) -> Result<Option<String>, InputError> {
-        let Some(tear) = Facets::torn(&self.cells, self.points.len()) else {
+        let Some(facet) = Facets::nonconforming(&self.cells, self.points.len()) else {
             return Ok(None);
         };
-        let tags = self.tags_of(&tear.corners);
-        let what = match tear.corners.len() {
+        let tags = self.tags_of(&facet.corners);
+        let what = match facet.corners.len() {
             2 => "an edge between",
             _ => "a face of",
         };
-        if !tear.hangs {
-            let [a, b] = tear.cells.map(|cell| self.cell_tags[cell as usize]);
+        if !facet.hangs {
+            let [a, b] = facet.cells.map(|cell| self.cell_tags[cell as usize]);
             return Ok(Some(format!(
                 "elements {a} and {b} share {what} the nodes {tags}, but each has a node of its own in its middle: it \
                  opens there, which is right at the front of a crack alone"
             )));
         }
-        let [a, b] = tear.cells.map(|cell| cell as usize);
+        let [a, b] = facet.cells.map(|cell| cell as usize);
         let [a_name, b_name] = [a, b].map(|cell| self.cells.kind(cell).name());
         Err(InputError::new(format!(
             "elements {} ({a_name}) and {} ({b_name}) share {what} the nodes {tags}, but not the \
@@ -91,7 +91,9 @@ impl Topology {
     /// The facets of cells with exactly these nodes, in any order, or in space with these corners; where facets with
     /// these corners differ in their inner nodes, those that agree in all nodes.
     pub fn cells_at(&self, facet_nodes: &[u32]) -> Vec<CellFacet> {
-        let found = self.facets.of(key(telling(facet_nodes).iter().copied()));
+        let found = self
+            .facets
+            .of(key(identifying_nodes(facet_nodes).iter().copied()));
         let has = |facet: &CellFacet| {
             let nodes = self.facets.nodes.get(facet);
             nodes.is_none_or(|nodes| facet_nodes.iter().all(|node| nodes.contains(node)))

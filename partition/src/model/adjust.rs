@@ -19,7 +19,7 @@ const ROUNDS: usize = 50;
 /// Distance of a node, relative to the size of facets, that is round-off.
 const NOTHING: f64 = 1e-14;
 /// Distance, relative to the size of facets, below which no one asks for where nodes are: the round-off of a mesh file.
-const UNNOTICED: f64 = 1e-9;
+const NEGLIGIBLE: f64 = 1e-9;
 
 /// Moves the nodes of ties for which the scene requests it.
 ///
@@ -53,7 +53,7 @@ pub(super) fn adjust(
             .fold((0, 0.0), |(n, most), distance| {
                 (n + 1, f64::max(most, distance))
             });
-        if farthest > UNNOTICED * size {
+        if farthest > NEGLIGIBLE * size {
             warnings.push(format!(
                 "{what}: {moved} nodes are moved by up to {} {} onto the other side",
                 short(farthest),

@@ -9,7 +9,7 @@ use crate::element::ElementKind;
 /// Share of a corner in the function of a node on an edge (Popp, Wohlmuth, Gee and Wall, SIAM J. Sci. Comput. 34,
 /// 2012). Triangles of 6 nodes admit any share below 1/2, quadrilaterals of 8 nodes only shares above 1/8; this one
 /// minimizes the average size of the dual functions.
-pub(super) const TAKEN: f64 = 0.2;
+pub(super) const CORNER_SHARE: f64 = 0.2;
 
 /// True if ∫ N ≤ 0 at corners.
 fn has_weightless_corners(kind: ElementKind) -> bool {
@@ -72,9 +72,9 @@ impl Blending {
         let mut basis = DMatrix::identity(self.nodes, self.nodes);
         for (middle, corners) in &self.takers {
             for &corner in corners {
-                basis[(corner, *middle)] += TAKEN;
+                basis[(corner, *middle)] += CORNER_SHARE;
             }
-            basis[(*middle, *middle)] = 1.0 - corners.len() as f64 * TAKEN;
+            basis[(*middle, *middle)] = 1.0 - corners.len() as f64 * CORNER_SHARE;
         }
         basis
     }

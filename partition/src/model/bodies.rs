@@ -47,8 +47,8 @@ impl Bodies {
         }
         let mut mesh = restrict(mesh, &kept, &used_groups(scene))
             .map_err(|lost| InputError::new(format!("{lost} belongs to no body{unnamed}")))?;
-        let torn = mesh.orient_cells().and_then(|()| mesh.check_edges());
-        warnings.extend(torn.map_err(|error| error.in_file(&scene.mesh))?);
+        let checked = mesh.orient_cells().and_then(|()| mesh.check_edges());
+        warnings.extend(checked.map_err(|error| error.in_file(&scene.mesh))?);
         let cell_body: Vec<u32> = owner.into_iter().flatten().collect();
         let number = |body: &Body| {
             let before = |name: &&String| name.as_str() < body.material.as_str();

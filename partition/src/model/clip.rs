@@ -78,7 +78,7 @@ pub(super) fn clip(polygon: &[PlanePoint], convex: &[PlanePoint]) -> Vec<PlanePo
 }
 
 /// A facet projected into the plane of another one.
-pub(super) struct Seen {
+pub(super) struct ProjectedFacet {
     /// Its index.
     pub facet: usize,
     /// Its visible part.
@@ -89,7 +89,7 @@ pub(super) struct Seen {
     pub is_far_side: bool,
 }
 
-impl Seen {
+impl ProjectedFacet {
     /// True if another facet of `all`, or the observing facet's own body, lies in front of its centre.
     pub fn is_hidden(&self, all: &[Self]) -> bool {
         let x = middle(&self.outline);

@@ -242,12 +242,12 @@ impl<'a> Contacts<'a> {
         let are_nodes = paired.points.iter().all(|point| point.entries.len() == 2);
         let sagitta = match are_nodes {
             true => 0.0,
-            false => side_a.stands_off_curve().max(side_b.stands_off_curve()),
+            false => side_a.sagitta_of_curve().max(side_b.sagitta_of_curve()),
         };
         Ok(Paired {
             points: paired.points,
             probes,
-            off: side_a.stands_off().max(side_b.stands_off()),
+            off: side_a.sagitta().max(side_b.sagitta()),
             sagitta,
             warnings: (corner.into_iter().chain(straight))
                 .chain(paired.warning)

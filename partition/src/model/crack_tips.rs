@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 1e-6;
 /// Distance of a face from the straight line, over that from the tip, up to which the face is straight.
 const STRAIGHT: f64 = 0.01;
 /// Radius of the disc over the distance from the tip to the nearest disturbance of its near field.
-const UNDISTURBED: f64 = 0.8;
+const DISC_RATIO: f64 = 0.8;
 /// Least number of facets of a crack face within the disc.
 const FEWEST: f64 = 3.0;
 
@@ -278,7 +278,7 @@ impl<'a> Outline<'a> {
             .faces
             .iter()
             .map(|face| self.far_end(ending, face[0]));
-        let radius = UNDISTURBED * free;
+        let radius = DISC_RATIO * free;
         (radius >= FEWEST * sizes.fold(0.0, f64::max)).then_some(radius)
     }
 

@@ -90,7 +90,7 @@ fn mismatch(mesh: &Mesh, unmatched: &[(u32, &str, &SurfaceFacet)]) -> Option<Str
 /// The contact points of a node of side a and its partners; there are several if they coincide.
 fn points_of_node(a: &SideNode, nodes: Vec<u32>, sides: &Sides) -> Vec<ContactPoint<u32>> {
     let mesh = sides.mesh;
-    let faced = faced(a, &nodes, sides);
+    let faced = opposed_facets(a, &nodes, sides);
     let normal = pressed_along(a, &faced);
     let point = |(b, area): (u32, f64)| {
         let to_b = advance(mesh.points[b as usize], -1.0, a.position);
@@ -137,20 +137,20 @@ fn cut_otherwise<'a>(sides: &Sides<'a>, points: &[ContactPoint<u32>]) -> Option<
 }
 
 /// A facet of side a around a node, and for which of the node's partners a facet of side b lies opposite.
-struct Faced<'a> {
+struct OpposedFacet<'a> {
     facet: &'a SurfaceFacet,
     partners: Vec<bool>,
 }
 
 /// The facets around node `a`, whose `partners` on side b coincide.
-fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>> {
+fn opposed_facets<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<OpposedFacet<'a>> {
     let around = sides.around_a[&a.node].iter().map(|&f| &sides.a.facets[f]);
     let faced = around.map(|facet| {
         let meets = |b: &u32| {
             let mut facets = sides.around_b[b].iter().map(|&f| &sides.b.facets[f]);
             facets.any(|other| facet.is_opposite(a.node, other, *b, a.normal))
         };
-        Faced {
+        OpposedFacet {
             facet,
             partners: partners.iter().map(meets).collect(),
         }
@@ -160,9 +160,9 @@ fn faced<'a>(a: &SideNode, partners: &[u32], sides: &Sides<'a>) -> Vec<Faced<'a>
 
 /// Direction of the contact force on node `a`: its normal, or at a corner with a facet averted from side b the normal
 /// of the other facets.
-fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
+fn pressed_along(a: &SideNode, faced: &[OpposedFacet]) -> [f64; 3] {
     let (mut facing, mut back_facing) = ([0.0; 3], Vec::new());
-    for Faced { facet, partners } in faced {
+    for OpposedFacet { facet, partners } in faced {
         match partners.contains(&true) {
             true => facing = advance(facing, facet.measure, facet.normal_at(a.node)),
             false => back_facing.push(facet.normal_at(a.node)),
@@ -181,9 +181,9 @@ fn pressed_along(a: &SideNode, faced: &[Faced]) -> [f64; 3] {
 ///
 /// Pairs of diagonally opposite bodies are left out: where corners of several bodies meet in a point, bodies across the
 /// diagonal share only that point, and a constraint between them would follow from those between neighbours.
-fn opposite(a: &SideNode, partners: Vec<u32>, faced: &[Faced]) -> Vec<(u32, f64)> {
+fn opposite(a: &SideNode, partners: Vec<u32>, faced: &[OpposedFacet]) -> Vec<(u32, f64)> {
     let mut areas: Vec<f64> = vec![0.0; partners.len()];
-    for Faced { facet, partners } in faced {
+    for OpposedFacet { facet, partners } in faced {
         let count = partners.iter().filter(|&&met| met).count();
         let area = facet.tributary_area(a.node) / count.max(1) as f64;
         (areas.iter_mut().zip(partners).filter(|(_, met)| **met)).for_each(|(sum, _)| *sum += area);

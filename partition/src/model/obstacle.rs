@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::blend::TAKEN;
+use super::blend::CORNER_SHARE;
 use super::ray_search::FACING;
 use super::sides::SideNode;
 use super::surface::Surface;
@@ -88,15 +88,15 @@ fn blend_corners(side: &Surface, points: &mut [ContactPoint<u32>], place: &HashM
                 .filter_map(at)
                 .map(|c| &plain[c])
                 .collect();
-            let left = 1.0 - TAKEN * ends.len() as f64;
+            let left = 1.0 - CORNER_SHARE * ends.len() as f64;
             let point = &mut points[middle];
             point.entries[0].1 = 1.0 / left;
             point.gap /= left;
             point.force_point = point.position.map(|x| x / left);
             for end in ends {
-                point.entries.push((end.entries[0].0, -TAKEN / left));
-                point.gap -= TAKEN / left * end.gap;
-                point.force_point = advance(point.force_point, -TAKEN / left, end.position);
+                point.entries.push((end.entries[0].0, -CORNER_SHARE / left));
+                point.gap -= CORNER_SHARE / left * end.gap;
+                point.force_point = advance(point.force_point, -CORNER_SHARE / left, end.position);
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::element::geometry::{advance, difference, dot, length};
 /// Distance from a line up to which a node lies on it, relative to the length of the facet that the node belongs to.
 /// Averaged normals of neighbouring facets of different lengths, and that of the last facet at the end of a curve,
 /// deviate from the partner by the gap times a small angle.
-const ASIDE: f64 = 1e-2;
+const ON_LINE: f64 = 1e-2;
 /// Cosine of the angle between a line and the inward normal of a facet above which they meet face to face.
 pub(super) const FACING: f64 = 0.1;
 
@@ -65,7 +65,7 @@ impl<'a> Target<'a> {
     pub fn new(surface: &'a Surface) -> Self {
         Self {
             surface,
-            tree: FacetTree::new(surface.facets.iter(), |facet| ASIDE * facet.size()),
+            tree: FacetTree::new(surface.facets.iter(), |facet| ON_LINE * facet.size()),
         }
     }
 
@@ -90,7 +90,7 @@ impl<'a> Target<'a> {
         let mut back_facing = false;
         for number in self.tree.along(start, direction) {
             let facet = &self.surface.facets[number];
-            let slack = ASIDE * facet.size();
+            let slack = ON_LINE * facet.size();
             let faces = dot(facet.normal, direction) <= -FACING;
             let mut at_node = false;
             for (&node, &at) in facet.nodes.iter().zip(&facet.at) {

@@ -50,7 +50,7 @@ pub(super) struct Turn {
     /// The larger size of the two (m).
     size: f64,
     /// Distance of the straighter facet from its chords (m).
-    sag: f64,
+    edge_sagitta: f64,
 }
 
 impl Turn {
@@ -61,7 +61,7 @@ impl Turn {
 
     /// True if the sag of the straighter facet is small compared with that sagitta.
     fn is_straight(&self) -> bool {
-        self.sag <= STRAIGHT * self.height()
+        self.edge_sagitta <= STRAIGHT * self.height()
     }
 }
 
@@ -167,7 +167,7 @@ impl Surface {
                 facets: both,
                 angle: cosine.acos(),
                 size: a.size().max(b.size()),
-                sag: a.sag().min(b.sag()),
+                edge_sagitta: a.edge_sagitta().min(b.edge_sagitta()),
             })
         };
         if self.facets.iter().any(|facet| facet.kind.dim() > 1) {
@@ -190,14 +190,14 @@ impl Surface {
     }
 
     /// Largest distance of straight facets from the curve that they approximate (m).
-    pub fn stands_off(&self) -> f64 {
+    pub fn sagitta(&self) -> f64 {
         let turns = self.turns();
         Self::largest_height(turns.iter().filter(|turn| turn.is_straight()))
     }
 
     /// Largest sagitta of straight facets of a curve that continues beyond them: such a facet has an angle at both
     /// ends, whereas a facet at a corner between two flat parts has it at one end (m).
-    pub fn stands_off_curve(&self) -> f64 {
+    pub fn sagitta_of_curve(&self) -> f64 {
         let mut heights = vec![[0.0_f64; 2]; self.facets.len()];
         for turn in self.turns() {
             if turn.is_straight() && turn.angle < CORNER {

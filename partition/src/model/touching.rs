@@ -167,7 +167,7 @@ fn search(
         let (mut touching, mut near): (Vec<Facing>, Vec<Facing>) =
             (pairs.into_iter()).partition(|pair| pair.gap.abs() <= search.tolerance(size(pair)));
         if search.between.within.is_none() {
-            go_on(&neighbours, &mut touching, &mut near);
+            continue_clearances(&neighbours, &mut touching, &mut near);
         }
         search.patches = patch::patches(skin, &neighbours, &touching);
         let what = &search.between.name;
@@ -196,7 +196,11 @@ fn search(
 
 /// Moves pairs from `near` to the adjacent `touching` ones, as long as no gap exceeds the gaps of these: a clearance
 /// continues between smaller facets.
-fn go_on(neighbours: &[Vec<usize>], touching: &mut Vec<Facing>, near: &mut Vec<Facing>) {
+fn continue_clearances(
+    neighbours: &[Vec<usize>],
+    touching: &mut Vec<Facing>,
+    near: &mut Vec<Facing>,
+) {
     let most = touching
         .iter()
         .map(|pair| pair.gap.abs())

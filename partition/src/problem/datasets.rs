@@ -39,7 +39,7 @@ impl Datasets<'_> {
         let field = field.ok_or_else(|| format!("the schema has no {path}"))?;
         let mut shape = self.counts.shape(field);
         shape[0] = values / shape[1..].iter().product::<usize>();
-        (self.counts.learn(field, &shape))
+        (self.counts.match_shape(field, &shape))
             .map_err(|expected| format!("{path} has shape {shape:?}; expected {expected}"))?;
         group(self.file, field.group())?;
         let new = self.file.new_dataset_builder().empty_as(of);

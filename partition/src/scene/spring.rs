@@ -68,7 +68,7 @@ pub enum SpringStiffness {
 struct SpringKeys {
     on: Option<Names>,
     between: Option<[Names; 2]>,
-    #[serde(default, deserialize_with = "some_name")]
+    #[serde(default, deserialize_with = "optional_name")]
     name: Option<String>,
     stiffness: Option<Vector>,
     axial: Option<Constant>,
@@ -76,7 +76,7 @@ struct SpringKeys {
     tangential: Option<Number>,
 }
 
-fn some_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
+fn optional_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
     contact_name(deserializer).map(Some)
 }
 

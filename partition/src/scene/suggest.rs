@@ -1,7 +1,7 @@
 //! Suggestions for unknown words.
 
 /// Words of other programs, the equivalent key of a scene, and advice where that key isn't valid.
-const ELSEWHERE: [(&str, Option<&str>, &str); 23] = [
+const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
     (
         "e modulus youngs emod young_modulus youngs_modulus elastic_modulus elasticity",
         Some("young"),
@@ -133,7 +133,7 @@ pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> St
     let lower = word.to_lowercase();
     let candidates: Vec<&str> = candidates.into_iter().collect();
     let elsewhere =
-        (ELSEWHERE.iter()).find(|(words, ..)| words.split(' ').any(|word| word == lower));
+        (FOREIGN_WORDS.iter()).find(|(words, ..)| words.split(' ').any(|word| word == lower));
     let meant = elsewhere.and_then(|(_, key, _)| key.filter(|key| candidates.contains(key)));
     let like = |candidate: &&str| {
         let known = candidate.to_lowercase();
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn every_word_of_other_programs_is_answered_once() {
-        let mut words: Vec<&str> = ELSEWHERE
+        let mut words: Vec<&str> = FOREIGN_WORDS
             .iter()
             .flat_map(|(words, ..)| words.split(' '))
             .collect();

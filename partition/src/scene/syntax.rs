@@ -33,19 +33,19 @@ pub(super) fn described(text: &str, start: usize, error: &Error) -> String {
             of_value(key.trim(), value.trim())
         }),
     };
-    let said = error.message();
-    let mut said = match advice {
-        Some(advice) => format!("{said}; {advice}"),
-        None if is_repeated => said.to_owned(),
-        None => format!("this isn't valid TOML: {said}"),
+    let message = error.message();
+    let mut message = match advice {
+        Some(advice) => format!("{message}; {advice}"),
+        None if is_repeated => message.to_owned(),
+        None => format!("this isn't valid TOML: {message}"),
     };
     if line.chars().count() <= LONGEST {
         let shown = error.to_string();
         for line in shown.lines().skip(1).take(3) {
-            said += &format!("\n{line}");
+            message += &format!("\n{line}");
         }
     }
-    said
+    message
 }
 
 /// Advice for a table in place of a list, or for several tables of the same name.
@@ -134,8 +134,8 @@ mod tests {
             ("on = \"top", "\n1 | on = \"top\n"),
         ] {
             let error = DeTable::parse(text).unwrap_err();
-            let said = described(text, error.span().unwrap().start, &error);
-            assert!(said.contains(expected), "{text}: {said}");
+            let message = described(text, error.span().unwrap().start, &error);
+            assert!(message.contains(expected), "{text}: {message}");
         }
     }
 }

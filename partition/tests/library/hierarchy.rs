@@ -130,8 +130,8 @@ fn every_subdomain_is_in_one_cluster_of_about_as_many_as_asked_for() {
                     && clusters.len() <= catalog.subdomains.len()
             );
             for subdomain in 0..catalog.subdomains.len() as u32 {
-                let ways = std::iter::successors(Some(subdomain), |&v| parents[v as usize]);
-                let above = ways.filter(|v| clusters.binary_search(v).is_ok());
+                let ancestors = std::iter::successors(Some(subdomain), |&v| parents[v as usize]);
+                let above = ancestors.filter(|v| clusters.binary_search(v).is_ok());
                 assert_eq!(above.count(), 1, "{clusters:?}");
             }
         }

@@ -36,7 +36,7 @@ struct FrictionCones<'a> {
 struct Found {
     place: Iterate,
     state: Statuses,
-    missed: f64,
+    residual: f64,
     steps: usize,
 }
 
@@ -49,7 +49,7 @@ enum Rest {
 
 impl Found {
     fn converged(&self) -> bool {
-        self.missed <= ACCEPTABLE
+        self.residual <= ACCEPTABLE
     }
 }
 
@@ -58,7 +58,7 @@ impl FrictionProblem<'_> {
     pub(super) fn solve_cones(&self, status: &mut [Status]) -> ContactSolution {
         let cones = FrictionCones::new(self);
         let (found, fell_back, slides) = cones.solve(self, status);
-        cones.tell(&found.state, status);
+        cones.write_statuses(&found.state, status);
         let (jumps, forces) = cones.exact(&found);
         ContactSolution {
             jumps,
@@ -116,15 +116,15 @@ impl FrictionProblem<'_> {
     }
 
     /// Limits whose law is violated one step after these statuses.
-    pub fn unsettled(&self, status: &[Status]) -> Vec<usize> {
+    pub fn violated_limits(&self, status: &[Status]) -> Vec<usize> {
         let cones = FrictionCones::new(self);
         let start = cones.start();
         let place = cones.step(&start, &cones.laws.begin(status, &start));
         let right = cones.laws.residual(&place, None, 0.0).statuses;
-        let missed = cones.laws.missed(&place, &right);
+        let residuals = cones.laws.residuals(&place, &right);
         let is_wrong =
-            |&i: &usize| missed[i].abs() > FORCE_TOLERANCE * cones.force_scale(i, &place);
-        (0..missed.len()).filter(is_wrong).collect()
+            |&i: &usize| residuals[i].abs() > FORCE_TOLERANCE * cones.force_scale(i, &place);
+        (0..residuals.len()).filter(is_wrong).collect()
     }
 }
 
@@ -160,7 +160,7 @@ impl<'a> FrictionCones<'a> {
     }
 
     /// The statuses of all limits.
-    fn tell(&self, state: &Statuses, status: &mut [Status]) {
+    fn write_statuses(&self, state: &Statuses, status: &mut [Status]) {
         for (status, &closed) in status.iter_mut().zip(&state.closed) {
             *status = Status::new(!closed);
         }

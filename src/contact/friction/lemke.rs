@@ -19,6 +19,7 @@
 mod path;
 mod polygon;
 mod responses;
+mod start;
 
 use self::path::{End, Path};
 use self::polygon::{ATTEMPTS, Polygons};

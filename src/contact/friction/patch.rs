@@ -49,8 +49,8 @@ impl FrictionProblem<'_> {
         for _ in 0..ROUNDS {
             let joins = |i: &usize| normal_of[*i].is_none_or(|n| is_in[n]);
             let patch = Patch::new(self, joins)?;
-            let (found, of_patch) = patch.ask(&now, |problem, status| problem.solve(status));
-            patch.tell(&of_patch, &mut now);
+            let (found, of_patch) = patch.on_patch(&now, |problem, status| problem.solve(status));
+            patch.write_statuses(&of_patch, &mut now);
             (steps, fell_back) = (steps + found.steps, fell_back || found.fell_back);
             let whole = ContactSolution {
                 jumps: patch.all_jumps(&found.jumps),
@@ -82,7 +82,7 @@ impl FrictionProblem<'_> {
         let normal_of = self.normals();
         let is_in = held(&normal_of, fixed, FixedStatus::Open);
         let patch = Patch::new(self, |&i| normal_of[i].is_none_or(|n| is_in[n]))?;
-        let (change, _) = patch.ask(fixed, |problem, fixed| problem.change(fixed));
+        let (change, _) = patch.on_patch(fixed, |problem, fixed| problem.change(fixed));
         Some(Iterate {
             jumps: patch.all_jumps(&change.jumps),
             forces: patch.all_forces(&change.forces),
@@ -118,7 +118,7 @@ impl FrictionProblem<'_> {
     /// Normal jumps of the first patch: those in compression, and, if these leave a body free, those that close as the
     /// loads move it against springs; `None` where no such patch is small enough.
     fn first_patch(&self, normal_of: &[Option<usize>], status: &[Status]) -> Option<Vec<bool>> {
-        let mut is_in = self.pressed(normal_of, status);
+        let mut is_in = self.in_compression(normal_of, status);
         let patch = |is_in: &[bool]| Patch::new(self, |&i| normal_of[i].is_none_or(|n| is_in[n]));
         for spring in SPRINGS {
             if patch(&is_in).is_some() {
@@ -167,7 +167,7 @@ impl FrictionProblem<'_> {
     }
 
     /// Normal jumps of closed points; if these are most, those in compression when all are closed.
-    fn pressed(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
+    fn in_compression(&self, normal_of: &[Option<usize>], status: &[Status]) -> Vec<bool> {
         let contact = &self.contact;
         let mut held = held(normal_of, status, Status::Open);
         let jumps = normal_of.iter().flatten().filter(|n| held[**n]).count();
@@ -216,7 +216,7 @@ impl<'a> Patch<'a> {
 
     /// Result of a function of the problem on the patch, whose statuses are `now` in the whole problem, and the
     /// statuses after it.
-    fn ask<S: Copy, T>(
+    fn on_patch<S: Copy, T>(
         &self,
         now: &[S],
         ask: impl FnOnce(&FrictionProblem<'_>, &mut [S]) -> T,
@@ -225,7 +225,7 @@ impl<'a> Patch<'a> {
         let CondensedPatch { jumps, open, h, .. } = &*self.condensed;
         let of_patch = |all: &[f64]| -> Vec<f64> { jumps.iter().map(|&i| all[i]).collect() };
         let (mut c, mut c_scale) = (of_patch(whole.c), of_patch(whole.c_scale));
-        let freed = self.freed(&vec![0.0; jumps.len()]);
+        let freed = self.open_jumps(&vec![0.0; jumps.len()]);
         for (&i, freed) in open.iter().zip(&freed) {
             let held = whole.h.col(i);
             for (k, &j) in jumps.iter().enumerate() {
@@ -268,7 +268,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Writes the statuses of the patch, and open ones elsewhere, to `now`.
-    fn tell(&self, of_patch: &[Status], now: &mut [Status]) {
+    fn write_statuses(&self, of_patch: &[Status], now: &mut [Status]) {
         now.fill(Status::Open);
         for (i, status) in self.limits().into_iter().zip(of_patch) {
             now[i] = *status;
@@ -276,7 +276,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Open jumps t_o for these jumps of the patch.
-    fn freed(&self, of_patch: &[f64]) -> Vec<f64> {
+    fn open_jumps(&self, of_patch: &[f64]) -> Vec<f64> {
         let contact = &self.problem.contact;
         let CondensedPatch {
             jumps,
@@ -306,7 +306,7 @@ impl<'a> Patch<'a> {
     /// All jumps for these of the patch.
     fn all_jumps(&self, of_patch: &[f64]) -> Vec<f64> {
         let mut jumps = vec![0.0; self.problem.contact.c.len()];
-        for (&i, t) in self.condensed.open.iter().zip(self.freed(of_patch)) {
+        for (&i, t) in self.condensed.open.iter().zip(self.open_jumps(of_patch)) {
             jumps[i] = t;
         }
         for (&i, t) in self.condensed.jumps.iter().zip(of_patch) {

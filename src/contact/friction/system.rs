@@ -13,8 +13,8 @@ pub(super) const SPRING: f64 = 1e-12;
 pub(super) const YIELD: f64 = 1e-6;
 /// Reduction of the springs when refinement leaves more than this part of the right-hand side: soft bodies between
 /// stiff ones carry a small part of what their rows could.
-const LESS: f64 = 1e-3;
-const BENT: f64 = 1e-12;
+const REDUCTION: f64 = 1e-3;
+const REFINED: f64 = 1e-12;
 /// Maximum number of refinements that remove the forces of the springs.
 const MAX_REFINEMENTS: usize = 40;
 
@@ -41,12 +41,12 @@ impl System {
             return vec![0.0; n];
         }
         let x = self.refine(&self.held(1.0), &b, MAX_REFINEMENTS);
-        let missed = |x: &[f64]| largest(&self.left(&b, x));
-        if missed(&x) <= BENT * largest(&b) {
+        let residual = |x: &[f64]| largest(&self.remainder(&b, x));
+        if residual(&x) <= REFINED * largest(&b) {
             return x;
         }
-        let stiffer = self.refine(&self.held(LESS), &b, MAX_REFINEMENTS);
-        match missed(&stiffer) < missed(&x) {
+        let stiffer = self.refine(&self.held(REDUCTION), &b, MAX_REFINEMENTS);
+        match residual(&stiffer) < residual(&x) {
             true => stiffer,
             false => x,
         }
@@ -63,14 +63,14 @@ impl System {
     }
 
     /// b − A x.
-    fn left(&self, b: &[f64], x: &[f64]) -> Vec<f64> {
-        let mut left = b.to_vec();
+    fn remainder(&self, b: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut remainder = b.to_vec();
         for (column, &x) in self.a.col_iter().zip(x) {
-            for (left, a) in left.iter_mut().zip(column.iter()) {
-                *left -= a * x;
+            for (remainder, a) in remainder.iter_mut().zip(column.iter()) {
+                *remainder -= a * x;
             }
         }
-        left
+        remainder
     }
 
     /// Solution A⁻¹ b by iterative refinement with approximate factors.
@@ -79,14 +79,14 @@ impl System {
         apply(lu, &mut x);
         let mut last = f64::INFINITY;
         for _ in 0..most {
-            let mut left = self.left(b, &x);
-            let size = left.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+            let mut remainder = self.remainder(b, &x);
+            let size = remainder.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
             if size == 0.0 || size > 0.9 * last || size.is_nan() {
                 break;
             }
             last = size;
-            apply(lu, &mut left);
-            for (x, dx) in x.iter_mut().zip(left) {
+            apply(lu, &mut remainder);
+            for (x, dx) in x.iter_mut().zip(remainder) {
                 *x += dx;
             }
         }

@@ -260,7 +260,7 @@ fn a_patch_has_the_solution_of_the_whole() {
             let fixed = |(i, status): (usize, &Status)| match status {
                 Status::Open => FixedStatus::Open,
                 Status::Closed => FixedStatus::Closed {
-                    lacks: points.bounds[i],
+                    distance: points.bounds[i],
                 },
                 _ => FixedStatus::Slips {
                     share: [0.6, 0.8][i % 2],

@@ -76,7 +76,8 @@ impl Kept {
             return Err(refused("it is damaged; expected what was written"));
         }
         let read = ciborium::from_reader(&content[..]);
-        read.map(Some).map_err(|error| unread(&state, &error))
+        read.map(Some)
+            .map_err(|error| unreadable_state(&state, &error))
     }
 
     /// Checks that the unfinished file of the result `path` contains the finished load steps as they were written.
@@ -111,7 +112,7 @@ impl Kept {
 }
 
 /// The error of a state with the right version and digest that can't be read.
-pub fn unread(state: &Path, error: &ciborium::de::Error<io::Error>) -> InputError {
+pub fn unreadable_state(state: &Path, error: &ciborium::de::Error<io::Error>) -> InputError {
     let why = format!("it can't be read, as where another build of the program wrote it: {error}");
     InputError::new(why).in_file(state)
 }

@@ -1,12 +1,13 @@
 //! The conditions z of slipping points in a transposed problem, z = G w(z), by generalized conjugate residuals.
 
-use super::slipping::{Direction, OnConditions, add, scaled};
+use super::slipping::{Direction, OnConditions};
 use super::transposed::TransposedProblem;
 use crate::context::Loads;
 use crate::fem::contact_group::GroupLoads;
 use crate::fem::load::BlockLoads;
 use crate::recover::BlockSolution;
 use crate::recover::fixed_active_set::FixedActiveSet;
+use crate::vector::{add_multiple, multiple};
 
 /// Most products in a round.
 const PRODUCTS: usize = 60;
@@ -42,12 +43,12 @@ impl TransposedProblem<'_> {
         };
         self.correct_by(&fixed, &loads, &mut state);
         let mut product = z.clone();
-        add(&mut product, -1.0, &self.wanted(&state));
-        self.weighed(product)
+        add_multiple(-1.0, &self.wanted(&state), &mut product);
+        self.weighted(product)
     }
 
     /// W times a vector on conditions.
-    pub(super) fn weighed(&self, mut of: OnConditions) -> OnConditions {
+    pub(super) fn weighted(&self, mut of: OnConditions) -> OnConditions {
         for (g, points) in self.slipping {
             if let Some(of) = of.get_mut(g) {
                 points.weigh(of);
@@ -77,8 +78,8 @@ impl TransposedProblem<'_> {
             }
             let (z, product) = &directions[k];
             let share = self.dot(&rest, product);
-            add(&mut sum, share, z);
-            add(&mut rest, -share, product);
+            add_multiple(share, z, &mut sum);
+            add_multiple(-share, product, &mut rest);
         }
         sum
     }
@@ -90,11 +91,11 @@ impl TransposedProblem<'_> {
         for _ in 0..2 {
             for (known, of_known) in before {
                 let share = self.dot(&product, of_known);
-                add(&mut z, -share, known);
-                add(&mut product, -share, of_known);
+                add_multiple(-share, known, &mut z);
+                add_multiple(-share, of_known, &mut product);
             }
         }
         let size = self.norm(&product);
-        (scaled(&z, 1.0 / size), scaled(&product, 1.0 / size))
+        (multiple(1.0 / size, &z), multiple(1.0 / size, &product))
     }
 }

@@ -5,7 +5,6 @@ use contact_dd_partition::id::OnGroups;
 use crate::contact::status::FixedStatus;
 use crate::fem::contact_group::ContactGroup;
 use crate::recover::GroupSolution;
-use crate::vector::axpy;
 
 /// The slipping points of a contact group.
 #[derive(Clone, Debug, Default)]
@@ -146,19 +145,3 @@ pub type OnConditions = OnGroups<Vec<f64>>;
 
 /// A change z of the conditions of slipping points, and W (I − G) z.
 pub type Direction = (OnConditions, OnConditions);
-
-/// Adds a multiple of another vector on conditions.
-pub fn add(to: &mut OnConditions, factor: f64, others: &OnConditions) {
-    for (g, to) in to {
-        if let Some(others) = others.get(g) {
-            axpy(factor, others, to);
-        }
-    }
-}
-
-/// A multiple of a vector on conditions.
-pub fn scaled(all: &OnConditions, factor: f64) -> OnConditions {
-    let all = all.iter();
-    all.map(|(&g, own)| (g, own.iter().map(|x| factor * x).collect()))
-        .collect()
-}

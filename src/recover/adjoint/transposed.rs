@@ -13,9 +13,8 @@ use contact_dd_partition::model::Support;
 use contact_dd_partition::numbered::Numbered;
 
 use super::functional::Functional;
-use super::slipping::{Direction, OnConditions, SlippingPoints, add};
+use super::slipping::{Direction, OnConditions, SlippingPoints};
 use super::solved::Solved;
-use crate::contact::status::FixedStatus;
 use crate::context::Loads;
 use crate::fem::balance::Balance;
 use crate::fem::block::Block;
@@ -23,16 +22,15 @@ use crate::fem::contact_group::GroupLoads;
 use crate::fem::load::BlockLoads;
 use crate::fem::prescribed::Prescribed;
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedStatuses};
-use crate::recover::motions::Field;
 use crate::recover::{BlockSolution, DiscreteSolution, GroupSolution};
-use crate::vector::{axpy, dot};
+use crate::vector::{add_multiple, axpy, dot};
 
 /// Accuracy of a correction by an iterative solver.
 const ACCURACY: f64 = 1e-10;
 /// Most rounds in which the conditions of slipping points are solved for.
 const ROUNDS: usize = 3;
 /// Residual to which the conditions of slipping points are solved.
-const ENOUGH: f64 = 1e-9;
+const SLIP_TOLERANCE: f64 = 1e-9;
 
 /// The transposed problem of a quantity, on this rank.
 pub struct TransposedProblem<'a> {
@@ -139,16 +137,21 @@ impl<'a> TransposedProblem<'a> {
         let mut z: OnConditions = self.zeros();
         for _ in 0..ROUNDS {
             let mut missing = self.wanted(&state);
-            let size = self.norm(&self.weighed(missing.clone()));
-            add(&mut missing, -1.0, &z);
-            missing = self.weighed(missing);
+            let size = self.norm(&self.weighted(missing.clone()));
+            add_multiple(-1.0, &z, &mut missing);
+            missing = self.weighted(missing);
             let off = self.norm(&missing);
-            if context.comm.decide(off <= ENOUGH * size || off.is_nan()) {
+            if context
+                .comm
+                .decide(off <= SLIP_TOLERANCE * size || off.is_nan())
+            {
                 break;
             }
-            let change = self
-                .conditions_of_slips(&missing, 0.1 * ENOUGH * size.max(f64::MIN_POSITIVE) / off);
-            add(&mut z, 1.0, &change);
+            let change = self.conditions_of_slips(
+                &missing,
+                0.1 * SLIP_TOLERANCE * size.max(f64::MIN_POSITIVE) / off,
+            );
+            add_multiple(1.0, &change, &mut z);
             for (g, points) in self.slipping {
                 let (jumps, forces) = points.split(&z[g]);
                 if let (Some(of_group), Some(to), Some(from)) = (
@@ -235,23 +238,9 @@ impl<'a> TransposedProblem<'a> {
         loads: &Loads,
         state: &mut DiscreteSolution,
     ) {
-        let mut residuals = self.left(loads, state);
-        let fields = residuals.iter_mut().map(|(&b, r)| (b, r)).collect();
-        fixed.free.project(&fixed.context, Field::Summed, fields);
-        let on_unknowns = |(b, residual): (BlockId, Vec<f64>)| {
-            let dofs = &fixed.condensed.blocks.get(&b)?.dofs;
-            let mut load = vec![0.0; dofs.len()];
-            dofs.add_load(&residual, &mut load);
-            Some((b, load))
-        };
-        let on_unknowns = residuals.into_iter().filter_map(on_unknowns).collect();
+        let on_unknowns = fixed.on_unknowns(self.left(loads, state));
         let conditions = state.groups.iter().map(|(&g, of_group)| {
-            let both = of_group.closed.iter().zip(&of_group.gaps);
-            let status = both.map(|(&closed, &lacks)| match closed {
-                true => FixedStatus::Closed { lacks },
-                false => FixedStatus::Open,
-            });
-            let mut statuses: Vec<FixedStatus> = status.collect();
+            let mut statuses = of_group.fixed_statuses();
             self.slipping[&g].set_turning(&mut statuses);
             (g, statuses)
         });

@@ -64,7 +64,7 @@ fn a_point_sticks_or_slips_as_its_law_says() {
         (none, [-0.3, -0.4], false, [1.2, 1.6], false),
     ] {
         let mut point = pressed(forces, gaps, sticks);
-        let changed = point.stick_or_slip(&group(COULOMB));
+        let changed = point.correct_statuses(&group(COULOMB));
         assert_eq!(
             changed,
             sticks != sticks_then || forces == none,

@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use super::{
-    BALANCE_TOLERANCE, FixingDof, LOAD_TOLERANCE, RigidMotions, RigidRow, Scene, UNDECIDED,
+    BALANCE_TOLERANCE, FixingDof, LOAD_TOLERANCE, RigidMotions, RigidRow, Scene, WARNED_IMBALANCE,
 };
 use crate::error::Failure;
 use crate::rigid::forces::{Forces, slips};
@@ -46,7 +46,7 @@ impl Scene {
         scale: f64,
     ) -> Option<Result<RigidMotions, Failure>> {
         let (bodies, names) = (&self.bodies, &self.names);
-        let rows = self.both_ways();
+        let rows = self.two_sided_rows();
         let (touched, alone) = kinematics.touched(&rows);
         let driven = self.driven_alone(kinematics, &alone);
         let touched = Touched {
@@ -114,12 +114,12 @@ impl Scene {
     }
 
     /// The part of the load that normal forces can't balance, if it is more than round-off.
-    pub(super) fn unpressed_many(
+    pub(super) fn unbalanced_part_many(
         &self,
         kinematics: &Kinematics,
         scale: f64,
     ) -> Option<DVector<f64>> {
-        let rows = self.both_ways();
+        let rows = self.two_sided_rows();
         let normals = rows.iter().filter(|row| row.friction.is_none());
         let normals = normals.map(|row| kinematics.sparse_row(row)).collect();
         let load = kinematics.load(&self.bodies);
@@ -203,7 +203,7 @@ impl Touched<'_> {
         let balance = |rows: Vec<SparseRow>| {
             let rest = ManyBodies::new(&self.kinematics.centers, rows)
                 .and_then(|bodies| bodies.rest(self.load.as_slice(), &vec![0.0; bodies.len()]));
-            rest.is_some_and(|rest| rest.unbalanced() <= UNDECIDED * scale)
+            rest.is_some_and(|rest| rest.unbalanced() <= WARNED_IMBALANCE * scale)
         };
         let forces = Forces::new(self.rows, |_| true);
         if balance(self.normals())

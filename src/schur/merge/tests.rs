@@ -59,8 +59,14 @@ fn example() -> (Vec<Condensed>, [Vec<f64>; 2], Mat<f64>, Vec<f64>) {
 #[test]
 fn a_merge_is_the_schur_complement_of_the_sum() {
     let (children, loads, a, f) = example();
-    let (merge, condensed) =
-        Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
+    let (merge, condensed) = Merge::new(
+        children,
+        &[2, 5, 7],
+        &[],
+        &mut MatrixPool::default(),
+        Par::Seq,
+    )
+    .unwrap();
     let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
     let gone = [2, 5, 7];
     let kept = [9, 10, 11, 0, 1, 3, 4, 6, 8];
@@ -87,8 +93,14 @@ fn what_is_recovered_solves_the_sum() {
         .llt(Side::Lower)
         .unwrap()
         .solve(Mat::from_fn(12, 1, |i, _| f[i]));
-    let (merge, _) =
-        Merge::new(children, &[2, 5, 7], &[], &mut Spare::default(), Par::Seq).unwrap();
+    let (merge, _) = Merge::new(
+        children,
+        &[2, 5, 7],
+        &[],
+        &mut MatrixPool::default(),
+        Par::Seq,
+    )
+    .unwrap();
     let load = merge.condense(&loads.each_ref().map(Vec::as_slice), &[], &[]);
     let kept: Vec<f64> = [9, 10, 11, 0, 1, 3, 4, 6, 8]
         .map(|i| exact[(i, 0)])
@@ -120,7 +132,7 @@ fn a_normal_jump_takes_the_place_of_a_displacement() {
         children,
         &[2, 5, 7],
         &[replaced],
-        &mut Spare::default(),
+        &mut MatrixPool::default(),
         Par::Seq,
     )
     .unwrap();
@@ -153,7 +165,7 @@ fn an_unknown_that_nothing_holds_is_named() {
             usize::from(c.interface_dofs[0] == trace(1)),
         )] = -50.0;
     }
-    let error = Merge::new(children, &[2], &[], &mut Spare::default(), Par::Seq).unwrap_err();
+    let error = Merge::new(children, &[2], &[], &mut MatrixPool::default(), Par::Seq).unwrap_err();
     assert_eq!(error, FreeInterfaceDof(trace(2)));
 }
 
@@ -183,7 +195,7 @@ fn a_known_jump_takes_the_place_of_a_displacement_and_has_no_row() {
         jumps: vec![(0, 2.0)],
         is_tied: true,
     };
-    let spare = &mut Spare::default();
+    let spare = &mut MatrixPool::default();
     let (merge, condensed) =
         Merge::new(children, &[2, 5, 7], &[replaced], spare, Par::Seq).unwrap();
     let (gone, kept) = ([2, 7], [9, 10, 11, 0, 1, 3, 4, 6, 8]);

@@ -199,9 +199,9 @@ impl Findings {
             let unknown = ratio(STUCK * size, way).min(1.0).asin();
             let opposing = size_of_force * (angle - unknown).max(0.0).cos();
             let least_bound = if is_parting { size_of_force } else { bounds[k] };
-            let lacks = ratio(least_bound - opposing, scale) / FRICTION;
+            let shortfall = ratio(least_bound - opposing, scale) / FRICTION;
             let slipped = ratio(way, size) / STUCK;
-            self.direction = worse(self.direction, lacks.min(slipped));
+            self.direction = worse(self.direction, shortfall.min(slipped));
             for &(k, tangent) in of_point {
                 let slip = dot(point.slip, tangent.direction);
                 self.slip = worse(self.slip, ratio((slip - state.jumps[k]).abs(), size));
@@ -219,8 +219,8 @@ impl Findings {
                 (true, false) => self.stuck = worse(self.stuck, slipped),
                 (true, true) => {
                     let least_bound = if is_parting { 0.0 } else { bounds[k] };
-                    let lacks = ratio(least_bound - size_of_force, scale) / FRICTION;
-                    self.status = worse(self.status, lacks);
+                    let shortfall = ratio(least_bound - size_of_force, scale) / FRICTION;
+                    self.status = worse(self.status, shortfall);
                 }
             }
         }

@@ -25,7 +25,7 @@ const REFUSED: [&str; 10] = [
 ];
 
 /// Keywords without effect on the problem: texts, output and ends.
-const SILENT: [&str; 8] = [
+const WITHOUT_EFFECT: [&str; 8] = [
     "HEADING", "PREPRINT", "RESTART", "OUTPUT", "PRINT", "FILE", "END ", "ASSEMBLY",
 ];
 
@@ -33,7 +33,7 @@ const SILENT: [&str; 8] = [
 const LARGEST_TAG: i64 = 1 << 60;
 
 /// Largest number of instances whose numbers are listed individually.
-const TOLD: usize = 20;
+const MOST_LISTED: usize = 20;
 
 /// A deck whose parts are instantiated.
 pub(crate) struct Whole {
@@ -158,7 +158,7 @@ impl<'a> Assembly<'a> {
                 "*{keyword} isn't read; expected a deck that lists all nodes and elements, in Cartesian coordinates"
             )),
             _ => {
-                if !SILENT.iter().any(|silent| keyword.contains(silent)) {
+                if !WITHOUT_EFFECT.iter().any(|silent| keyword.contains(silent)) {
                     self.skipped.insert(format!("*{}", name::shown(keyword)));
                 }
                 Ok(())
@@ -238,7 +238,7 @@ impl<'a> Assembly<'a> {
         warnings.extend(notes.warnings());
         let moved = self.whole.instances.iter();
         let mut moved = moved.filter(|(name, offsets)| offsets.nodes != 0 && !name.is_empty());
-        let told = moved.by_ref().take(TOLD).map(|(instance, offsets)| {
+        let told = moved.by_ref().take(MOST_LISTED).map(|(instance, offsets)| {
             format!(
                 "the nodes of the instance '{instance}' are numbered as in its part + {}, its elements + {}",
                 offsets.nodes, offsets.elements

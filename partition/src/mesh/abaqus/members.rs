@@ -34,7 +34,11 @@ enum Meaning<'a> {
 
 impl Deck {
     /// The name of a set or surface that a block refers to and that doesn't exist.
-    pub(crate) fn lacks<'a>(&self, source: &'a Source, block: &'a Block) -> Option<&'a str> {
+    pub(crate) fn undefined_name<'a>(
+        &self,
+        source: &'a Source,
+        block: &'a Block,
+    ) -> Option<&'a str> {
         let instance = block.parameter("INSTANCE");
         let of = match block.keyword.as_str() {
             "SURFACE" if block.parameter("COMBINE").is_some() => {

@@ -64,7 +64,7 @@ fn in_turn(source: &Source, deck: &mut Deck, blocks: Vec<&Block>) -> Result<(), 
                 let count = to_come.get(&name).copied().unwrap_or_default();
                 count > usize::from(name == own)
             };
-            match deck.lacks(source, block) {
+            match deck.undefined_name(source, block) {
                 Some(name) if others(name) => later.push(block),
                 _ => add(source, deck, block)?,
             }

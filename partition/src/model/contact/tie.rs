@@ -14,7 +14,7 @@ const NEAR: f64 = 0.05;
 
 /// Remaining gap, relative to the size of facets, above which a warning is given: the tie doesn't preserve moments
 /// across it.
-const FELT: f64 = 1e-3;
+const WARNED_GAP: f64 = 1e-3;
 
 /// The points of a tie with the size of its facets.
 pub(in crate::model) struct Tied {
@@ -39,7 +39,7 @@ impl Contacts<'_> {
         let tied = self.tied(keys, (names, reach), &what)?;
         warnings.extend(tied.warnings);
         let widest = tied.points.iter().fold(0.0, |m: f64, p| m.max(p.gap.abs()));
-        if !reach.adjust && widest > FELT * tied.size {
+        if !reach.adjust && widest > WARNED_GAP * tied.size {
             warnings.push(format!(
                 "{what}: gaps of up to {} {} are kept: across them forces act without a moment; expected sides that touch, or \
                  adjust = true, which moves nodes",

@@ -11,10 +11,10 @@ use crate::magnitude::short;
 
 /// Gap or overlap, relative to the side's extent, above which a warning is given: quadratic edges that approximate an arc have
 /// a smaller one.
-const SEEN: f64 = 1e-8;
+const WARNED_GAP: f64 = 1e-8;
 
 /// Distance of straight facets from a curve, relative to an interference, above which it affects the interference.
-const FELT: f64 = 0.1;
+const SIGNIFICANT: f64 = 0.1;
 
 /// Height of the kinks between straight quadratic facets, relative to their size, above which they approximate a curve.
 const KINKED: f64 = 1e-4;
@@ -35,7 +35,7 @@ impl Contacts<'_> {
             return None;
         }
         let count = points.iter().filter(|p| p.gap < -seen).count();
-        let facets = match off > FELT * -deepest {
+        let facets = match off > SIGNIFICANT * -deepest {
             true => format!(
                 "; straight facets stand off a curve by up to {} {unit} of that: expected quadratic cells",
                 short(off)
@@ -77,7 +77,7 @@ impl Contacts<'_> {
 
     /// The gap or overlap above which a warning is given (m).
     fn seen(&self, side_a: &Surface) -> f64 {
-        (ROUNDING * self.size).max(SEEN * side_a.extent())
+        (ROUNDING * self.size).max(WARNED_GAP * side_a.extent())
     }
 
     /// The warning of a point at a corner of side a, where the averaged normal is that of neither facet.
@@ -113,7 +113,7 @@ impl Contacts<'_> {
     /// the corners, so that pressures oscillate between the two.
     pub(super) fn straight_edges(what: &str, letter: &str, side: &Surface) -> Option<String> {
         let is_quadratic = side.facets.iter().any(|facet| !facet.kind.is_linear());
-        let off = side.stands_off_curve();
+        let off = side.sagitta_of_curve();
         (is_quadratic && off > KINKED * side.facet_size()).then(|| {
             format!(
                 "{what}: the quadratic facets of side {letter} are straight and stand off a curve by up to {} of their size, so \

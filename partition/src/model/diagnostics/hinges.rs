@@ -10,10 +10,10 @@ use crate::scene::condition::Names;
 use crate::scene::contact::Contact;
 
 /// A node of the plane, twice, or the ends of an edge in space, ascending: where facets meet.
-type Rim = [u32; 2];
+type Ridge = [u32; 2];
 
-/// The rims of a facet with these nodes.
-fn rims(kind: ElementKind, nodes: &[u32]) -> Vec<Rim> {
+/// The ridges of a facet with these nodes.
+fn ridges(kind: ElementKind, nodes: &[u32]) -> Vec<Ridge> {
     let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
     match kind.dim() {
         1 => vec![[nodes[0]; 2], [nodes[1]; 2]],
@@ -23,8 +23,8 @@ fn rims(kind: ElementKind, nodes: &[u32]) -> Vec<Rim> {
     }
 }
 
-/// A contact between bodies, with the rims of its two sides.
-type Sides<'a> = (&'a Contact, [BTreeSet<Rim>; 2]);
+/// A contact between bodies, with the ridges of its two sides.
+type Sides<'a> = (&'a Contact, [BTreeSet<Ridge>; 2]);
 
 impl Diagnostics<'_> {
     /// Warnings of contacts with hinges, for each contact and what it meets there.
@@ -32,22 +32,22 @@ impl Diagnostics<'_> {
         let all: Vec<Sides> = (self.declared.iter())
             .filter(|of| of.contact.tie.is_none())
             .filter_map(|of| {
-                let mut sides = of.contact.sides().map(|side| self.rims_of(side));
+                let mut sides = of.contact.sides().map(|side| self.ridges_of(side));
                 Some((&of.contact, [sides.next()?, sides.next()?]))
             })
             .collect();
-        let shared = |[a, b]: &[BTreeSet<Rim>; 2]| a.intersection(b).copied().collect();
-        let joined: Vec<Vec<Rim>> = all.iter().map(|(_, sides)| shared(sides)).collect();
+        let shared = |[a, b]: &[BTreeSet<Ridge>; 2]| a.intersection(b).copied().collect();
+        let joined: Vec<Vec<Ridge>> = all.iter().map(|(_, sides)| shared(sides)).collect();
         let facets = self.facets_at(joined.iter().flatten());
         let mut warnings = Vec::new();
         for ((contact, _), joined) in all.iter().zip(joined) {
-            let mut found: BTreeMap<Option<&str>, Vec<Rim>> = BTreeMap::new();
-            for rim in joined.into_iter().filter(|rim| facets[rim] > 2) {
+            let mut found: BTreeMap<Option<&str>, Vec<Ridge>> = BTreeMap::new();
+            for ridge in joined.into_iter().filter(|ridge| facets[ridge] > 2) {
                 let meets = |(other, sides): &&Sides| {
-                    other.name != contact.name && sides.iter().any(|side| side.contains(&rim))
+                    other.name != contact.name && sides.iter().any(|side| side.contains(&ridge))
                 };
                 let other = all.iter().find(meets).map(|(other, _)| &other.name[..]);
-                found.entry(other).or_default().push(rim);
+                found.entry(other).or_default().push(ridge);
             }
             let hinges = found.into_iter();
             warnings.extend(hinges.map(|(other, hinges)| self.hinge(contact, other, &hinges)));
@@ -55,27 +55,27 @@ impl Diagnostics<'_> {
         warnings
     }
 
-    /// The rims of a side's facets.
-    fn rims_of(&self, side: &Names) -> BTreeSet<Rim> {
+    /// The ridges of a side's facets.
+    fn ridges_of(&self, side: &Names) -> BTreeSet<Ridge> {
         let mesh = &self.bodies.mesh;
         let facets = groups::facets(mesh, side, "").unwrap_or_default();
         let facets = facets.into_iter().map(|facet| facet as usize);
         facets
-            .flat_map(|facet| rims(mesh.facets.kind(facet), mesh.facets.nodes_of(facet)))
+            .flat_map(|facet| ridges(mesh.facets.kind(facet), mesh.facets.nodes_of(facet)))
             .collect()
     }
 
-    /// The number of facets of the boundary at each of these rims.
-    fn facets_at<'r>(&self, asked: impl Iterator<Item = &'r Rim>) -> HashMap<Rim, usize> {
-        let mut count: HashMap<Rim, usize> = asked.map(|&rim| (rim, 0)).collect();
+    /// The number of facets of the boundary at each of these ridges.
+    fn facets_at<'r>(&self, asked: impl Iterator<Item = &'r Ridge>) -> HashMap<Ridge, usize> {
+        let mut count: HashMap<Ridge, usize> = asked.map(|&ridge| (ridge, 0)).collect();
         if count.is_empty() {
             return count;
         }
         let cells = &self.bodies.mesh.cells;
         for facet in self.topology.boundary() {
             let (kind, _) = cells.kind(facet.cell as usize).facets()[facet.facet as usize];
-            for rim in rims(kind, &facet.nodes(cells)) {
-                if let Some(count) = count.get_mut(&rim) {
+            for ridge in ridges(kind, &facet.nodes(cells)) {
+                if let Some(count) = count.get_mut(&ridge) {
                     *count += 1;
                 }
             }
@@ -84,7 +84,7 @@ impl Diagnostics<'_> {
     }
 
     /// The warning of the hinges of a contact, on the outer boundary or where it meets another contact.
-    fn hinge(&self, contact: &Contact, other: Option<&str>, hinges: &[Rim]) -> String {
+    fn hinge(&self, contact: &Contact, other: Option<&str>, hinges: &[Ridge]) -> String {
         let mesh = &self.bodies.mesh;
         let node = hinges[0][0] as usize;
         let (name, tag, place) = (

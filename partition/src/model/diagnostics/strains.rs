@@ -18,7 +18,7 @@ const LARGE: f64 = 0.1;
 
 /// Strain that is an error unless the scene allows it. A wrong unit of length or stress results in a factor of a
 /// thousand or a million; scenes of arbitrary round numbers reach ten.
-const ABSURD: f64 = 100.0;
+const REFUSED_STRAIN: f64 = 100.0;
 
 /// An estimated strain and its cause.
 struct Estimate {
@@ -50,7 +50,7 @@ impl Diagnostics<'_> {
             }
         }
         estimates.extend(self.of_gaps());
-        let is_absurd = |estimate: &&Estimate| estimate.strain > ABSURD;
+        let is_absurd = |estimate: &&Estimate| estimate.strain > REFUSED_STRAIN;
         if let Some(absurd) = estimates
             .iter()
             .find(is_absurd)
@@ -131,7 +131,9 @@ impl Diagnostics<'_> {
         let (extent, unit) = (self.extent(), self.scene.units.length());
         let of_contact = |contact: &Contact| {
             let gaps = contact.points.iter().map(|point| point.gap);
-            let gap = gaps.reduce(f64::min).filter(|gap| -gap > ABSURD * extent)?;
+            let gap = gaps
+                .reduce(f64::min)
+                .filter(|gap| -gap > REFUSED_STRAIN * extent)?;
             Some(Estimate {
                 strain: -gap / extent,
                 words: format!(

@@ -13,7 +13,7 @@ use super::{polygons, segments};
 use crate::contact_point::ContactPoint;
 
 /// The contact points carried by the nodes of side a.
-pub(super) struct Carried {
+pub(super) struct CarriedPoints {
     /// A contact point for every node that carries a multiplier, along the side.
     pub points: Vec<ContactPoint<u32>>,
     /// Penetration of the sides (m) until the first point closes: the smallest of the average gaps over the facets
@@ -25,7 +25,7 @@ pub(super) struct Carried {
 ///
 /// # Errors
 /// Sides that don't face each other.
-pub(super) fn carried(sides: &Sides) -> Result<Carried, String> {
+pub(super) fn carried(sides: &Sides) -> Result<CarriedPoints, String> {
     let normals: HashMap<u32, [f64; 3]> = (sides.a.nodes().into_iter())
         .filter_map(|(node, at)| Some((node, at.normal()?)))
         .collect();
@@ -62,7 +62,7 @@ pub(super) fn carried(sides: &Sides) -> Result<Carried, String> {
     if points.is_empty() {
         return Err(apart(any_back_facing));
     }
-    Ok(Carried { points, unseen })
+    Ok(CarriedPoints { points, unseen })
 }
 
 /// The facets along side a.

@@ -11,7 +11,7 @@ use crate::element::geometry::{advance, cross, difference, dot, length};
 /// Distance of a node on an edge from the chord, relative to the chord, above which the edge is curved.
 const CURVED: f64 = 1e-9;
 /// Distance, relative to the facet, that is round-off.
-const STILL: f64 = 1e-12;
+const STEP_TOLERANCE: f64 = 1e-12;
 
 /// Coordinates on a facet: those of the plane perpendicular to its normal, in which straight edges of any facet are
 /// straight, so that flat sides are clipped exactly; on a facet with curved edges its reference coordinates, in which
@@ -110,7 +110,7 @@ impl Chart {
             let next = self.flat(advance(y, -ahead, along));
             let moved = (next[0] - flat[0]).hypot(next[1] - flat[1]);
             flat = next;
-            if moved <= STILL * self.size {
+            if moved <= STEP_TOLERANCE * self.size {
                 break;
             }
         }

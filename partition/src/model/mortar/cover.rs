@@ -13,10 +13,10 @@ use crate::element::quadrature::Quadrature;
 
 /// Degree added to that of the shape functions' products for flat facets whose maps aren't affine: with it, facets with
 /// nodes moved by a fifth of their size have errors of 1e-12.
-pub(super) const BEYOND: usize = 6;
+pub(super) const EXTRA_DEGREE: usize = 6;
 
 /// The highest degree: that of quadrilaterals of 9 nodes.
-const MOST_DEGREE: usize = 8 + BEYOND;
+const MOST_DEGREE: usize = 8 + EXTRA_DEGREE;
 
 /// A quadrature point of a segment.
 pub(super) struct Sample {

@@ -1,14 +1,14 @@
 //! Choice of the side that carries the multipliers.
 
 use super::super::sides::Sides;
-use super::carried::{Carried, carried};
+use super::carried::{CarriedPoints, carried};
 use super::probes::probes;
 use crate::contact_point::{ContactPoint, Probe};
 use crate::magnitude::short;
 
 /// Factor on the larger sagitta of the facets of curves on either side: sides with gaps up to that value are
 /// conforming.
-const FITTING: f64 = 2.0;
+const CONFORMING_GAP: f64 = 2.0;
 
 /// Gap, relative to the smaller facets, that is round-off.
 const ROUND_OFF: f64 = 1e-6;
@@ -45,18 +45,18 @@ pub(in crate::model) struct Mortar {
 /// Sides that don't face each other.
 pub(in crate::model) fn pair(sides: &Sides, what: &str) -> Result<Mortar, String> {
     let first = carried(sides)?;
-    let of = |first: Carried, warning| Mortar {
+    let of = |first: CarriedPoints, warning| Mortar {
         points: first.points,
         probes: probes(sides),
         warning,
     };
     let (a, b) = (sides.a, sides.b);
-    let off = FITTING * a.kinks().max(b.kinks());
+    let off = CONFORMING_GAP * a.kinks().max(b.kinks());
     let round_off = ROUND_OFF * a.facet_size().min(b.facet_size());
     let fits = |unseen: f64| unseen <= off.max(round_off);
     let ratio = a.facet_size() / b.facet_size();
-    let stands_off = a.stands_off().max(b.stands_off()) > round_off;
-    let is_finer = stands_off && ratio < FINER;
+    let is_curved = a.sagitta().max(b.sagitta()) > round_off;
+    let is_finer = is_curved && ratio < FINER;
     if fits(first.unseen) && !is_finer {
         return Ok(of(first, None));
     }

@@ -8,10 +8,10 @@ use std::collections::HashMap;
 
 use nalgebra::DMatrix;
 
-use super::super::clip::{PlanePoint, Seen, area, clip, middle, triangles};
+use super::super::clip::{PlanePoint, ProjectedFacet, area, clip, middle, triangles};
 use super::super::surface::SurfaceFacet;
 use super::chart::{Chart, aside};
-use super::cover::{BEYOND, Cover, Opposite, Overlap, Pieces};
+use super::cover::{Cover, EXTRA_DEGREE, Opposite, Overlap, Pieces};
 use super::field::NormalField;
 use super::foot::{foot, middle as middle_of};
 use super::map::Xi;
@@ -21,7 +21,7 @@ use crate::element::geometry::{difference, dot, length};
 /// Area of a polygon, relative to that of the facet, below which it is round-off of facets with a common edge.
 const SLIVER: f64 = 1e-12;
 /// Negligible distance of a curved edge from the chord, relative to the facet.
-const SAG: f64 = 1e-3;
+const NEGLIGIBLE_SAGITTA: f64 = 1e-3;
 /// Largest number of straight parts of a curved edge.
 const PARTS: f64 = 8.0;
 /// Negligible distance of a node from its position under an affine map, relative to the facet.
@@ -33,12 +33,12 @@ const BEYOND_CURVED: usize = 2;
 /// The part of a facet of side a that is covered by side b, and whether a facet of side b there faces the same way.
 pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
     let chart = Chart::new(field);
-    let mut shadows = Shadows::new(&chart);
+    let mut outlines = ProjectedOutlines::new(&chart);
     let mut pieces = Vec::new();
     let mut any_back_facing = false;
     for candidate in candidates(opposite, field, &chart) {
         let facet = &opposite.surface.facets[candidate];
-        let mut shadow = shadows.of(facet);
+        let mut shadow = outlines.of(facet);
         let faces = opposite.faces(candidate, chart.normal());
         if faces {
             shadow.reverse();
@@ -57,7 +57,7 @@ pub(super) fn cover(opposite: &Opposite, field: &NormalField) -> (Cover, bool) {
             continue;
         }
         match faces {
-            true => pieces.push(Seen {
+            true => pieces.push(ProjectedFacet {
                 facet: candidate,
                 outline,
                 gap,
@@ -105,13 +105,13 @@ fn candidates(opposite: &Opposite, field: &NormalField, chart: &Chart) -> Vec<us
 }
 
 /// Facets of side b projected into a chart.
-struct Shadows<'a> {
+struct ProjectedOutlines<'a> {
     chart: &'a Chart,
     /// Corners that have been projected already.
     corners: HashMap<u32, PlanePoint>,
 }
 
-impl<'a> Shadows<'a> {
+impl<'a> ProjectedOutlines<'a> {
     fn new(chart: &'a Chart) -> Self {
         Self {
             chart,
@@ -136,8 +136,8 @@ impl<'a> Shadows<'a> {
             let along = |s: f64| chart.place(kind.position(&at, [s, 0.0, 0.0]));
             let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
             shadow.push(p);
-            let sag = aside(p, q, along(0.0)) / (SAG * chart.area.sqrt());
-            let parts = sag.sqrt().ceil().clamp(1.0, PARTS);
+            let sagitta = aside(p, q, along(0.0)) / (NEGLIGIBLE_SAGITTA * chart.area.sqrt());
+            let parts = sagitta.sqrt().ceil().clamp(1.0, PARTS);
             shadow.extend((1..parts as usize).map(|part| along(2.0 * part as f64 / parts - 1.0)));
         }
         shadow
@@ -148,7 +148,7 @@ impl<'a> Shadows<'a> {
 fn integrate(
     chart: &Chart,
     facet: &SurfaceFacet,
-    piece: &Seen,
+    piece: &ProjectedFacet,
     opposite: &Opposite,
     cover: &mut Cover,
 ) -> Overlap {
@@ -208,7 +208,7 @@ fn degree(a: &SurfaceFacet, b: &SurfaceFacet) -> usize {
     let product = own + own.max(other);
     match [a, b] {
         both if both.iter().all(|facet| is_affine(facet)) => product,
-        both if both.iter().all(|facet| is_flat(facet)) => product + BEYOND,
+        both if both.iter().all(|facet| is_flat(facet)) => product + EXTRA_DEGREE,
         _ => product + BEYOND_CURVED,
     }
 }

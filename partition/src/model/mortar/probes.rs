@@ -43,7 +43,7 @@ pub(in crate::model) fn opposite(
         }
         Hit::Facet(facet) => {
             let facet = &side.facets[facet];
-            let (shape, gap) = met(facet, of)?;
+            let (shape, gap) = intersection(facet, of)?;
             let nodes = facet.nodes.iter().zip(shape);
             (nodes.map(|(&node, n)| (node, -n)).collect(), gap)
         }
@@ -54,7 +54,7 @@ pub(in crate::model) fn opposite(
 }
 
 /// The shape functions of a facet at the intersection with the normal of a node, and the distance (m).
-fn met(facet: &SurfaceFacet, node: &SideNode) -> Option<(Vec<f64>, f64)> {
+fn intersection(facet: &SurfaceFacet, node: &SideNode) -> Option<(Vec<f64>, f64)> {
     let (x, normal) = (node.position, node.normal);
     match facet.kind.dim() {
         1 => {

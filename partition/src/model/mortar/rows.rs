@@ -17,10 +17,10 @@ const ROUND_OFF: f64 = 1e-13;
 
 /// Lower bound of the weighted gap, relative to the smallest gap around it: on non-matching curved sides the two are
 /// about equal.
-const NEARER: f64 = 0.8;
+const LEAST_GAP_RATIO: f64 = 0.8;
 
 /// Mean square of the distances of nodes, relative to the part of side a, below which they coincide.
-const TOGETHER: f64 = 1e-8;
+const COINCIDENT: f64 = 1e-8;
 
 /// Integrals of a multiplier's weight ψ over the covered part.
 pub(super) struct Row {
@@ -168,7 +168,7 @@ impl Row {
             let total = parts().map(|(c, _)| c).sum::<f64>();
             let middle = parts().map(|(c, s)| c * s).sum::<f64>() / total;
             let spread: f64 = parts().map(|(c, s)| c * (s - middle).powi(2)).sum();
-            if spread > TOGETHER * total {
+            if spread > COINCIDENT * total {
                 for ((_, value), (c, s)) in self.side_b.iter_mut().zip(parts()) {
                     *value += defect * c * (s - middle) / spread;
                 }
@@ -256,7 +256,7 @@ impl Row {
         entries.sort_by_key(|&(node, _)| node != a.node);
         let tag_a = mesh.node_tags[a.node as usize];
         ContactPoint {
-            gap: (self.gap / self.area).max(self.least_gap.min(NEARER * self.least_gap)),
+            gap: (self.gap / self.area).max(self.least_gap.min(LEAST_GAP_RATIO * self.least_gap)),
             area: self.area,
             force_point,
             ..ContactPoint::new(entries, normal, a.position, tag_a)

@@ -67,7 +67,7 @@ impl Weight {
 /// The nodes that carry multipliers. All other nodes on the covered part, crack tips included, pass their part of the
 /// dual basis on to neighbouring nodes, so that the weights sum to 1 everywhere: no part of the integrals is lost, and
 /// a uniform pressure is transferred exactly.
-struct Carrying {
+struct MultiplierNodes {
     nodes: HashSet<u32>,
     bases: BTreeMap<Kind, Bases>,
 }
@@ -102,15 +102,20 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
     around.retain(|node, _| !sides.shared.contains(node));
     let enough = (around.iter()).filter(|(_, [own, needed])| own >= needed);
     let nodes = enough.map(|(node, _)| *node).collect();
-    let mut carrying = Carrying { nodes, bases };
+    let mut multipliers = MultiplierNodes { nodes, bases };
     loop {
         for Covered { facet, .. } in covered {
-            if !facet.nodes.iter().any(|node| carrying.nodes.contains(node)) {
+            if !facet
+                .nodes
+                .iter()
+                .any(|node| multipliers.nodes.contains(node))
+            {
                 let nodes = facet.nodes.iter().filter(|node| around.contains_key(node));
-                (carrying.nodes).extend(nodes.max_by(|p, q| around[p][0].total_cmp(&around[q][0])));
+                (multipliers.nodes)
+                    .extend(nodes.max_by(|p, q| around[p][0].total_cmp(&around[q][0])));
             }
         }
-        let weights: Vec<_> = covered.iter().map(|on| carrying.on(on)).collect();
+        let weights: Vec<_> = covered.iter().map(|on| multipliers.on(on)).collect();
         let mut areas: HashMap<u32, [f64; 2]> = HashMap::new();
         for (on, weights) in covered.iter().zip(&weights) {
             for (node, weight) in weights {
@@ -130,7 +135,7 @@ pub(super) fn weights(sides: &Sides, covered: &[Covered]) -> Vec<Vec<(u32, Weigh
             return weights;
         }
         around.retain(|node, _| !weak.contains(node));
-        carrying.nodes.retain(|node| !weak.contains(node));
+        multipliers.nodes.retain(|node| !weak.contains(node));
     }
 }
 
@@ -150,7 +155,7 @@ impl Covered<'_> {
     }
 }
 
-impl Carrying {
+impl MultiplierNodes {
     /// The weights on a facet, for its nodes that carry a multiplier.
     fn on(&self, covered: &Covered) -> Vec<(u32, Weight)> {
         let Covered { facet, cover, .. } = covered;

@@ -1,6 +1,6 @@
 //! The view from a facet of the boundary along its normal.
 
-use super::super::clip::{PlanePoint, Seen, area, clip, middle};
+use super::super::clip::{PlanePoint, ProjectedFacet, area, clip, middle};
 use super::super::mortar::foot_on;
 use super::super::surface::SurfaceFacet;
 use super::facet::{ROUND_OFF, STANDING_OFF, SkinFacet};
@@ -50,7 +50,7 @@ impl<'a> View<'a> {
         let seen = opposite
             .iter()
             .filter_map(|(index, other)| self.seen(*index, other));
-        let all: Vec<Seen> = seen.collect();
+        let all: Vec<ProjectedFacet> = seen.collect();
         let visible = all.iter().filter(|seen| !seen.is_hidden(&all));
         visible
             .map(|seen| (seen.facet, seen.gap, self.measure(&seen.outline)))
@@ -66,7 +66,7 @@ impl<'a> View<'a> {
     }
 
     /// The visible part of another facet.
-    fn seen(&self, index: usize, other: &SkinFacet) -> Option<Seen> {
+    fn seen(&self, index: usize, other: &SkinFacet) -> Option<ProjectedFacet> {
         let (own, shape) = (&self.facet.shape, &other.shape);
         let mut shadow = self.flat(shape);
         shadow.reverse();
@@ -78,7 +78,7 @@ impl<'a> View<'a> {
         }
         let x = self.place(middle(&outline));
         let gap = self.height(shape, x) - self.height(own, x);
-        Some(Seen {
+        Some(ProjectedFacet {
             facet: index,
             gap,
             outline,

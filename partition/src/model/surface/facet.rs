@@ -127,7 +127,7 @@ impl SurfaceFacet {
     }
 
     /// Largest distance of nodes on its edges from the middle of their chords (m).
-    pub(super) fn sag(&self) -> f64 {
+    pub(super) fn edge_sagitta(&self) -> f64 {
         let edges: Vec<&[usize]> = match self.kind.dim() {
             1 => vec![&[0, 1, 2][..self.nodes.len().min(3)]],
             _ => self.kind.facets().iter().map(|(_, edge)| *edge).collect(),

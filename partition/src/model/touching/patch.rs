@@ -118,7 +118,7 @@ impl Sides {
         }
         let body = |side: &[usize]| skin.facets[side[0]].body;
         let is_turned = match body(&sides[0]).cmp(&body(&sides[1])) {
-            std::cmp::Ordering::Equal => looks_down(skin, &sides[0]),
+            std::cmp::Ordering::Equal => faces_down(skin, &sides[0]),
             order => order.is_gt(),
         };
         let surface = |side: &[usize]| Surface {
@@ -128,7 +128,7 @@ impl Sides {
             sides.swap(0, 1);
         }
         let [a, b] = [surface(&sides[0]), surface(&sides[1])];
-        let is_curved = a.stands_off().max(b.stands_off()) > SAME * a.extent();
+        let is_curved = a.sagitta().max(b.sagitta()) > SAME * a.extent();
         if is_curved && a.facet_size() < FINER * b.facet_size() {
             sides.swap(0, 1);
         }
@@ -142,7 +142,7 @@ impl Sides {
 }
 
 /// True if a side faces down, left or to the back: by the last component of its normals' sum that isn't round-off.
-fn looks_down(skin: &Skin, side: &[usize]) -> bool {
+fn faces_down(skin: &Skin, side: &[usize]) -> bool {
     let facets = || side.iter().map(|&facet| &skin.facets[facet].shape);
     let measure: f64 = facets().map(|facet| facet.measure).sum();
     let sum = facets().fold([0.0; 3], |sum, f| advance(sum, f.measure, f.normal));

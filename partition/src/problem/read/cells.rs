@@ -119,7 +119,7 @@ fn fault_of_cell(kind: ElementKind, nodes: &[u32], points: &[[f64; 3]]) -> Optio
 
 /// Two incompatible cells, and the reason.
 fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'static str)> {
-    if Facets::repeat_themselves(cells, points)
+    if Facets::repeat_edges(cells, points)
         && let Some(two) = Facets::new(cells, points).overlap(cells)
     {
         let what = match cells.kind(0).dim() {
@@ -134,6 +134,6 @@ fn fault_between_cells(cells: &Elements, points: usize) -> Option<([u32; 2], &'s
     }
     let what = "share the ends of an edge, but not the node between them; expected the same nodes \
                 on both sides";
-    let tear = Facets::torn(cells, points).filter(|tear| tear.hangs)?;
-    Some((tear.cells, what))
+    let facet = Facets::nonconforming(cells, points).filter(|facet| facet.hangs)?;
+    Some((facet.cells, what))
 }

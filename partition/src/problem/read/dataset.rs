@@ -41,12 +41,14 @@ impl Dataset {
         dataset.check_layout()?;
         dataset.check_storage(file.size())?;
         dataset.check_type()?;
-        counts.learn(field, &dataset.shape).map_err(|expected| {
-            dataset.error(&format!(
-                "has shape {:?}; expected {expected}",
-                dataset.shape
-            ))
-        })?;
+        counts
+            .match_shape(field, &dataset.shape)
+            .map_err(|expected| {
+                dataset.error(&format!(
+                    "has shape {:?}; expected {expected}",
+                    dataset.shape
+                ))
+            })?;
         Ok(dataset)
     }
 

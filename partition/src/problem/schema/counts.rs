@@ -39,7 +39,7 @@ impl Counts {
     ///
     /// # Errors
     /// The expected shape.
-    pub fn learn(&mut self, field: &Field, found: &[usize]) -> Result<(), String> {
+    pub fn match_shape(&mut self, field: &Field, found: &[usize]) -> Result<(), String> {
         let terms = self.terms(field);
         // h5py writes `data=[]` with shape (0,) whatever the width of a row.
         let rows = match found {

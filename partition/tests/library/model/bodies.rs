@@ -101,10 +101,10 @@ fn cells_in_no_body_are_left_out_with_their_nodes_and_a_warning() {
     assert_eq!(model.mesh.cell_tags, two().mesh.cell_tags[4..]);
     assert_eq!(model.mesh.facets.len(), 6);
     assert!(model.mesh.points.iter().all(|p| p[1] >= 1.0));
-    let tops: Vec<f64> = (model.supports.iter())
+    let heights: Vec<f64> = (model.supports.iter())
         .map(|s| model.mesh.points[s.node as usize][1])
         .collect();
-    assert_eq!(tops, [2.0; 3]);
+    assert_eq!(heights, [2.0; 3]);
     let warning = &model.warnings[0];
     assert!(warning.contains("4 of 8 cells") && warning.contains("the group 'lower' isn't among"));
 }

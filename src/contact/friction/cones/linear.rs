@@ -50,7 +50,7 @@ impl FrictionCones<'_> {
                 let jumps = equation
                     .jumps
                     .iter()
-                    .map(|&(i, c)| c * self.laws.beyond(i, &start));
+                    .map(|&(i, c)| c * self.laws.violation(i, &start));
                 (equation.constant - forces.sum::<f64>() - jumps.sum::<f64>()) / equation.scale
             })
             .collect();

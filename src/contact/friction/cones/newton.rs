@@ -25,21 +25,21 @@ const LAW: f64 = 1e-9;
 const ROUND_OFF: f64 = 1e-15;
 /// Part of its bound that the force of a slipping point may lack, and the part of a force's terms that is round-off: a
 /// whole bound is small against the terms of an unresisted slip.
-const MISSED_OF_BOUND: f64 = 1e-3;
-const MISSED_OF_TERMS: f64 = 1e-14;
+const RESIDUAL_OF_BOUND: f64 = 1e-3;
+const RESIDUAL_OF_TERMS: f64 = 1e-14;
 /// Force, relative to its terms, up to which a limit keeps its status.
-const STAYS: f64 = 1e-15;
+const STATUS_TOLERANCE: f64 = 1e-15;
 /// Viscosity of all jumps relative to stiffness and time: first, least and largest.
 const VISCOSITIES: [f64; 3] = [0.1, 1e-4, 10.0];
 /// Ratio to the last motion that counts as no decrease, and how often this may occur.
-const SLOWER: f64 = 0.9;
+const NO_DECREASE: f64 = 0.9;
 const PATIENCE: usize = 3;
 /// Resistance to a motion, relative to that of springs, that counts as zero.
 const NO_RESISTANCE: f64 = 1e-10;
 /// Work of loads beyond that of friction, relative to its terms, that exceeds round-off.
-const SURPLUS: f64 = 1e-9;
+const WORK_TOLERANCE: f64 = 1e-9;
 /// Change of a jump, relative to the fastest one, that counts as zero.
-const STAYS_OPEN: f64 = 1e-6;
+const NO_CHANGE: f64 = 1e-6;
 /// Maximum number of changes of the viscosity.
 const CHANGES: usize = 24;
 
@@ -81,14 +81,17 @@ impl FrictionCones<'_> {
     /// and so are the terms to which the law's residual is relative.
     fn misses_a_bound(&self, found: &Found) -> bool {
         let Found { place, state, .. } = found;
-        let missed = self.laws.missed(place, state);
+        let residuals = self.laws.residuals(place, state);
         let mut points = self.laws.points.iter().zip(&state.points);
         points.any(|(point, status)| {
             let bound = self.laws.point(point, place, &state.closed).bound;
-            let miss = point.limits().map(|i| missed[i].abs()).fold(0.0, f64::max);
+            let miss = point
+                .limits()
+                .map(|i| residuals[i].abs())
+                .fold(0.0, f64::max);
             matches!(status, PointStatus::Slips { .. })
-                && miss > MISSED_OF_BOUND * bound
-                && miss > MISSED_OF_TERMS * self.force_scale(point.first, place)
+                && miss > RESIDUAL_OF_BOUND * bound
+                && miss > RESIDUAL_OF_TERMS * self.force_scale(point.first, place)
         })
     }
 
@@ -179,7 +182,7 @@ impl FrictionCones<'_> {
             let changes = found.place.jumps.iter().zip(&place.jumps);
             let changes: Vec<f64> = changes.map(|(to, from)| to - from).collect();
             let change = largest(&changes);
-            if viscosity <= weakest && change > SLOWER * last {
+            if viscosity <= weakest && change > NO_DECREASE * last {
                 sliding += 1;
                 if sliding >= PATIENCE && self.slides_on(&found, &changes) {
                     return Rest::Slides;
@@ -207,7 +210,7 @@ impl FrictionCones<'_> {
     /// loads do more work than all contacts dissipate, under their present pressure and with friction at its bound.
     fn slides_on(&self, found: &Found, changes: &[f64]) -> bool {
         let Found { place, state, .. } = found;
-        if self.resists(changes) > NO_RESISTANCE {
+        if self.resistance(changes) > NO_RESISTANCE {
             return false;
         }
         let along = |row: &[(usize, f64)]| row.iter().map(|&(i, c)| c * changes[i]).sum::<f64>();
@@ -228,11 +231,11 @@ impl FrictionCones<'_> {
         let work = dot(self.contact.c, changes);
         let terms = self.contact.c.iter().zip(changes);
         let terms: f64 = terms.map(|(c, change)| (c * change).abs()).sum();
-        closes <= STAYS_OPEN * far && work - taken > SURPLUS * (terms + taken)
+        closes <= NO_CHANGE * far && work - taken > WORK_TOLERANCE * (terms + taken)
     }
 
     /// Resistance of the bodies to a motion of jumps, relative to springs as stiff as they are.
-    fn resists(&self, changes: &[f64]) -> f64 {
+    fn resistance(&self, changes: &[f64]) -> f64 {
         let mut forces = vec![0.0; changes.len()];
         self.contact.subtract(changes, &mut forces);
         let springs = changes
@@ -293,7 +296,7 @@ impl FrictionCones<'_> {
         Found {
             place,
             state,
-            missed: found.missed,
+            residual: found.residual,
             steps: found.steps,
         }
     }
@@ -356,7 +359,7 @@ impl ContactOperator for Dense<'_, '_> {
     }
 
     fn slack(&self) -> f64 {
-        STAYS
+        STATUS_TOLERANCE
     }
 
     fn accuracy(&self, _: &TotalResidual) -> StepAccuracy {

@@ -3,10 +3,10 @@
 mod points;
 
 use faer::Mat;
-use faer::linalg::solvers::Solve;
 
 use super::polygon::{FrictionPolygon, Polygons, SlipPart};
 use super::responses::{Responses, Terms};
+use super::start::{Equation, Start};
 use crate::contact::friction::{FrictionProblem, Status};
 use crate::vector::{axpy, largest};
 
@@ -20,11 +20,6 @@ pub(in crate::contact::friction) struct End {
     /// Directions of the forces of points that slip in space, in the scale of energies.
     pub directions: Vec<Option<[f64; 2]>>,
 }
-
-/// Compliance of closed rows that depend on each other.
-const YIELD: f64 = 1e-8;
-/// Stiffness of springs on all jumps, for motions without resistance.
-const SPRING: f64 = 1e-10;
 
 /// Non-negative quantity of a limit or a point, which may be 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,11 +56,8 @@ pub(super) struct Path {
     responses: Responses,
     /// The same with all zero quantities at 0: at θ = 0, and for every unit of θ.
     value: [Vec<f64>; 2],
-    /// Both for independent jumps and the forces of dependent rows as unknowns, from which pivots start.
-    start: Mat<f64>,
-    at_start: Vec<f64>,
-    /// Number of independent jumps.
-    independent: usize,
+    /// The system from which pivots start.
+    start: Start,
     /// Zero quantities: one for a normal limit, as many for a point as it has tangents.
     zero: Vec<Quantity>,
     bounds: Vec<f64>,
@@ -81,65 +73,30 @@ pub(super) struct Path {
 }
 
 /// Number from 0.5 to 1.5 by which forces differ, so that no two vanish at once.
-fn spread(i: usize, attempt: usize) -> f64 {
+fn perturbation(i: usize, attempt: usize) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     0.5 + ((i + 1) as f64 * GOLDEN + attempt as f64 * 0.37).fract()
-}
-
-/// Jumps of all limits, then their forces, for a unit of each independent jump and of the force of each dependent row,
-/// and both with all of these at 0; in the scale of energies.
-fn system_of_gaps(
-    problem: &FrictionProblem<'_>,
-    scale: &[f64],
-    bounds: &[f64],
-) -> (Mat<f64>, Vec<f64>) {
-    let contact = &problem.contact;
-    let (m, count) = (contact.c.len(), bounds.len());
-    let mut start = Mat::zeros(2 * count, count);
-    let mut at_start = vec![0.0; 2 * count];
-    at_start[..m].copy_from_slice(&bounds[..m]);
-    for i in 0..m {
-        let stiffness = |j: usize| contact.h[(i, j)] / (scale[i] * scale[j]);
-        let held: f64 = (0..m).map(|j| stiffness(j) * bounds[j]).sum();
-        at_start[count + i] = contact.c[i] / scale[i] - held;
-        (0..m).for_each(|j| start[(count + i, j)] = stiffness(j));
-        start[(count + i, i)] += SPRING;
-        start[(i, i)] = -1.0;
-    }
-    for (k, row) in (m..).zip(contact.rows.iter()) {
-        for &(i, c) in row {
-            let c = c * scale[k] / scale[i];
-            at_start[k] += c * bounds[i];
-            start[(k, i)] -= c;
-            start[(count + i, k)] -= c;
-        }
-        start[(k, k)] = -YIELD;
-        start[(count + k, k)] = 1.0;
-    }
-    (start, at_start)
 }
 
 impl Path {
     /// Start of the path, with all limits closed.
     pub(super) fn new(problem: &FrictionProblem<'_>, polygons: &Polygons) -> Self {
         let contact = &problem.contact;
-        let (m, count) = (contact.c.len(), contact.bounds.len());
+        let count = contact.bounds.len();
         let scale = problem.scales();
         let bounds: Vec<f64> = (contact.bounds.iter().zip(&scale))
             .map(|(bound, scale)| bound * scale)
             .collect();
-        let (start, at_start) = system_of_gaps(problem, &scale, &bounds);
-        let unit = largest(&at_start[count..]).max(f64::MIN_POSITIVE);
+        let start = Start::new(problem, &scale, &bounds);
+        let unit = largest(start.forces()).max(f64::MIN_POSITIVE);
         let mut path = Self {
             responses: Responses::new(Mat::new()),
             value: [Vec::new(), Vec::new()],
             start,
-            at_start,
-            independent: m,
             zero: (0..count).map(Quantity::Gap).collect(),
             bounds,
             added: (0..count)
-                .map(|i| unit * spread(i, polygons.attempt))
+                .map(|i| unit * perturbation(i, polygons.attempt))
                 .collect(),
             points: Vec::new(),
             normals: Vec::new(),
@@ -237,56 +194,13 @@ impl Path {
 
     /// Computes responses and values anew from the start, without the round-off of pivots.
     pub(super) fn refresh(&mut self) {
-        let count = self.bounds.len();
-        self.value = [self.at_start.clone(), vec![0.0; 2 * count]];
-        // Known jumps, and the quantity of each.
-        let known: Vec<(usize, usize)> = (self.zero.iter().enumerate())
-            .filter_map(|(k, zero)| match *zero {
-                Quantity::Gap(i) if i < self.independent => Some((k, i)),
-                _ => None,
-            })
-            .collect();
-        let (mut is_equation, mut is_unknown) = (vec![true; count], vec![true; count]);
-        for &(k, i) in &known {
-            (is_equation[k], is_unknown[i]) = (false, false);
-        }
-        let unknown: Vec<usize> = (0..count).filter(|&i| is_unknown[i]).collect();
-        let equations: Vec<usize> = (0..count).filter(|&k| is_equation[k]).collect();
-        // A column for every zero quantity, and two for the values.
-        let mut change = Mat::zeros(unknown.len(), count + 2);
-        let mut matrix = Mat::zeros(unknown.len(), unknown.len());
-        for (row, &k) in equations.iter().enumerate() {
-            let (terms, _) = self.terms(self.zero[k]);
-            let of = |j: usize| {
-                let terms = terms.iter().map(|&(t, c)| c * self.start[(t, j)]);
-                terms.sum::<f64>()
-            };
-            for (l, &j) in unknown.iter().enumerate() {
-                matrix[(row, l)] = of(j);
-            }
-            for &(column, i) in &known {
-                change[(row, column)] = -of(i);
-            }
-            change[(row, k)] = 1.0;
-            let value = self.quantity(self.zero[k]);
-            change[(row, count)] = -value[0];
-            change[(row, count + 1)] = -value[1];
-        }
-        matrix.partial_piv_lu().solve_in_place(&mut change);
-        let of_unknown = Mat::from_fn(2 * count, unknown.len(), |i, l| self.start[(i, unknown[l])]);
-        let mut all = of_unknown * change;
-        for (k, value) in self.value.iter_mut().enumerate() {
-            axpy(1.0, all.col_as_slice(count + k), value);
-        }
-        for (column, i) in known {
-            axpy(
-                1.0,
-                self.start.col_as_slice(i),
-                all.col_as_slice_mut(column),
-            );
-        }
-        all.resize_with(2 * count, count, |_, _| 0.0);
-        self.responses = Responses::new(all);
+        self.value = self.start.values();
+        let equation = |&zero: &Quantity| match zero {
+            Quantity::Gap(i) if i < self.start.independent => Equation::Jump(i),
+            _ => Equation::Combination(self.terms(zero).0, self.quantity(zero)),
+        };
+        let equations: Vec<Equation> = self.zero.iter().map(equation).collect();
+        self.responses = Responses::new(self.start.solved(&equations, &mut self.value));
     }
 
     /// Replaces the k-th zero quantity.
@@ -320,7 +234,7 @@ impl Path {
         bounded
     }
 
-    /// The next θ from `theta` in the direction `way` at which a quantity other than the one just left becomes 0, and
+    /// The next θ from `theta` in the direction `sense` at which a quantity other than the one just left becomes 0, and
     /// that quantity.
     pub(super) fn next(
         &self,
@@ -388,7 +302,7 @@ impl Path {
             let slips = matches!(own, Status::Slipping | Status::Parting) && !polygon.is_line();
             directions.push(slips.then(|| self.force_at(0.0, point)));
         }
-        let (m, count) = (self.independent, self.bounds.len());
+        let (m, count) = (self.start.independent, self.bounds.len());
         let jumps = self.value[0].iter().zip(&self.scale).take(m);
         let of_rows = self.value[0][count + m..].iter().zip(&self.scale[m..]);
         End {

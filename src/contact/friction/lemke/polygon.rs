@@ -17,7 +17,7 @@ const STEEP: [f64; ATTEMPTS] = [1e2, 1e4, 1e3, 1e6];
 /// Number of sides in space before refinement, for every attempt.
 const SIDES: [usize; ATTEMPTS] = [16, 96, 24, 48];
 /// Rotation of the first side, as part of the angle of a side: keeps normals off the axes.
-const TURNED: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
+const FIRST_ANGLE: [f64; ATTEMPTS] = [0.27, 0.41, 0.63, 0.21];
 /// Number of fine sides on either side of a refined direction.
 const BESIDE: usize = 6;
 const REST: usize = 14;
@@ -69,7 +69,8 @@ impl Polygons {
     /// Polygons at the start of an attempt.
     pub(super) fn new(attempt: usize) -> Self {
         let angle = TAU / SIDES[attempt] as f64;
-        let equal = (0..SIDES[attempt]).map(|side| unit((side as f64 + TURNED[attempt]) * angle));
+        let equal =
+            (0..SIDES[attempt]).map(|side| unit((side as f64 + FIRST_ANGLE[attempt]) * angle));
         Self {
             attempt,
             directions: Vec::new(),
@@ -94,7 +95,7 @@ impl Polygons {
             _ if !in_space => Rc::clone(&self.line),
             Some(&Some([x, y])) => {
                 let (middle, beside) = (y.atan2(x), BESIDE as f64);
-                let turned = TURNED[self.attempt];
+                let turned = FIRST_ANGLE[self.attempt];
                 let fine = (0..2 * BESIDE + 1).map(|k| self.angle * (k as f64 - beside + turned));
                 let half = self.angle * beside;
                 let rest = (1..=REST).map(|k| {

@@ -15,7 +15,7 @@ use faer::{Mat, Par};
 use crate::vector::axpy;
 
 /// Maximum number of stored pivots.
-const MOST_APART: usize = 64;
+const MOST_PIVOTS: usize = 64;
 
 /// Combination of three jumps and forces, by their number.
 pub(super) type Terms = [(usize, f64); 3];
@@ -74,8 +74,8 @@ impl Responses {
 
     /// Replaces the i-th zero quantity, and returns its column.
     pub(super) fn pivot(&mut self, i: usize, terms: Terms) -> &[f64] {
-        if self.pivots.len() == MOST_APART {
-            self.put_together();
+        if self.pivots.len() == MOST_PIVOTS {
+            self.apply_pivots();
         }
         let mut column = self.column(i);
         let own = sum(&terms, &column);
@@ -89,13 +89,13 @@ impl Responses {
     }
 
     /// Computes all columns: with the shares s of the pivots in them, s_k = a_kᵀ (x − Σ s_l c_l) for l < k.
-    fn put_together(&mut self) {
-        let (rows, count, apart) = (
+    fn apply_pivots(&mut self) {
+        let (rows, count, exchanges) = (
             self.columns.nrows(),
             self.columns.ncols(),
             self.pivots.len(),
         );
-        let mut shares = Mat::zeros(apart, count);
+        let mut shares = Mat::zeros(exchanges, count);
         let mut origins: Vec<Option<usize>> = vec![None; count];
         for (k, pivot) in self.pivots.iter().enumerate() {
             origins[pivot.limit] = Some(k);
@@ -112,11 +112,11 @@ impl Responses {
                 shares[(k, i)] = sum(&pivot.terms, column);
             }
         }
-        let of_each = Mat::from_fn(apart, apart, |k, l| {
+        let of_each = Mat::from_fn(exchanges, exchanges, |k, l| {
             sum(&self.pivots[k].terms, &self.pivots[l].column)
         });
         solve_unit_lower_triangular_in_place(of_each.as_ref(), shares.as_mut(), Par::Seq);
-        let columns = Mat::from_fn(rows, apart, |i, k| self.pivots[k].column[i]);
+        let columns = Mat::from_fn(rows, exchanges, |i, k| self.pivots[k].column[i]);
         self.columns -= &columns * &shares;
         self.pivots.clear();
     }
@@ -154,6 +154,6 @@ mod tests {
                 assert!((a - b).abs() < 1e-9 * scale, "{k}: {a:e} {b:e}");
             }
         }
-        assert!(pivots > 2 * MOST_APART, "{pivots}");
+        assert!(pivots > 2 * MOST_PIVOTS, "{pivots}");
     }
 }
