@@ -51,6 +51,7 @@ pub(super) fn body_states(
         .iter()
         .map(|&frame| BodyState {
             frame,
+            units: catalog.units,
             supports: held_by_symmetry(catalog),
             has_springs: false,
             load: vec![0.0; modes],

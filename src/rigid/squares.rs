@@ -1,5 +1,7 @@
 //! Squares and cubes for tests.
 
+use contact_dd_partition::scene::units::Units;
+
 use super::scene::{BodyState, Friction, RigidRow, Scene};
 use crate::contact::friction::ForceBound;
 use crate::fem::body_frame::BodyFrame;
@@ -8,6 +10,7 @@ use crate::fem::body_frame::BodyFrame;
 pub fn body(low: [f64; 3], high: [f64; 3], load: &[f64]) -> BodyState {
     BodyState {
         frame: BodyFrame::new(low, high),
+        units: Units::Metre,
         supports: Vec::new(),
         has_springs: false,
         load: load.to_vec(),

@@ -72,10 +72,10 @@ class PressureMap:
             # The arc is drawn to scale, and said as an angle.
             axes.xaxis.set_major_locator(MultipleLocator(chart.radius * np.radians(self.step_of_angle())))
             axes.xaxis.set_major_formatter(lambda arc, _: degrees(arc / chart.radius))
-            axes.set_xlabel(f"{chart.labels[0]} [°]", fontsize=8)
+            axes.set_xlabel(chart.labels[0].with_unit("°"), fontsize=8)
         else:
-            axes.set_xlabel(f"{chart.labels[0]} [{length}]", fontsize=8)
-        axes.set_ylabel(f"{chart.labels[1]} [{length}]", fontsize=8)
+            axes.set_xlabel(chart.labels[0].with_unit(length), fontsize=8)
+        axes.set_ylabel(chart.labels[1].with_unit(length), fontsize=8)
         bar = axes.figure.colorbar(colours, ax=axes, shrink=0.85, pad=0.02)
         bar.set_label(f"pressure [{self.unit}]", fontsize=8)
         bar.ax.tick_params(labelsize=7)
