@@ -52,10 +52,10 @@ def parser() -> argparse.ArgumentParser:
     solved.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene")
     solved.add_argument("--ranks", type=int, default=2, help="number of processes (default: 2)")
     solved.add_argument("--subdomains", type=int, help="number of subdomains (default: by size)")
-    solved.add_argument("--folder", type=Path, default=Path(), help="folder of problem file and result (default: the current one)")
+    solved.add_argument("--folder", type=Path, default=Path(), help="folder for the files (default: the current one)")
     solved.set_defaults(command=run)
 
-    what = "Solves a scene for many values of loads, gaps and friction by one factorization; writes tables and a plot."
+    what = "Solves a scene for many values of loads, gaps and friction by one factorization; writes tables."
     studied = commands.add_parser("study", help="solve for many values of parameters", description=what)
     studied.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene with [[quantity]]")
     studied.add_argument(
@@ -65,13 +65,13 @@ def parser() -> argparse.ArgumentParser:
     )
     studied.add_argument("--ranks", type=int, default=2, help="number of processes (default: 2)")
     studied.add_argument("--subdomains", type=int, help="number of subdomains (default: by size)")
-    studied.add_argument("--folder", type=Path, default=Path(), help="folder of problem file and tables (default: the current one)")
+    studied.add_argument("--folder", type=Path, default=Path(), help="folder for the files (default: the current one)")
     studied.set_defaults(command=study)
 
     what = "Translates a deck of Abaqus or CalculiX into a scene and its mesh."
     converted = commands.add_parser("convert", help="translate a deck into a scene", description=what)
     converted.add_argument("deck", type=Path, metavar="DECK.inp", help="deck")
-    converted.add_argument("folder", type=Path, nargs="?", help="folder for scene.toml and mesh.msh (default: the deck's stem)")
+    converted.add_argument("folder", type=Path, nargs="?", help="folder to write (default: the deck's stem)")
     converted.set_defaults(command=convert)
 
     drawn = commands.add_parser("plot", help="draw pictures of a result", description="Draws pictures of a result.")
@@ -79,7 +79,7 @@ def parser() -> argparse.ArgumentParser:
     drawn.add_argument("outdir", type=Path, nargs="?", help="folder (default: figures beside the result)")
     drawn.add_argument(
         "--scale", type=factor, default="auto",
-        help="enlargement of the deformation (default: auto: as large as keeps closed contacts from seeming to overlap)",
+        help="enlargement of the deformation (default: auto: closed contacts don't seem to overlap)",
     )
     drawn.add_argument(
         "--circle", type=radius, metavar="RADIUS",
@@ -90,7 +90,7 @@ def parser() -> argparse.ArgumentParser:
     drawn.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     drawn.set_defaults(command=plot)
 
-    written = commands.add_parser("report", help="write an HTML page on a run", description="Writes an HTML page on a run.")
+    written = commands.add_parser("report", help="write a page on a run", description="Writes a page on a run, in HTML.")
     written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     written.add_argument("page", type=Path, nargs="?", help="HTML file (default: the result's name with .html)")
     written.add_argument(
@@ -98,14 +98,14 @@ def parser() -> argparse.ArgumentParser:
     )
     written.set_defaults(command=report)
 
-    what = "Writes a CSV table of each contact: pressures and gaps, in the plane over the arc length of side a (slave)."
+    what = "Writes a CSV table of each contact: pressures and gaps, in the plane over the arc length."
     tabled = commands.add_parser("table", help="write tables of contacts", description=what)
     tabled.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     tabled.add_argument("outdir", type=Path, nargs="?", help="folder (default: tables beside the result)")
     tabled.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     tabled.set_defaults(command=table)
 
-    what = "Compares results of one scene on two or three meshes, and estimates the error bars of their numbers."
+    what = "Compares results of one scene on two or three meshes, and estimates error bars."
     compared = commands.add_parser("compare", help="error bars from several meshes", description=what)
     compared.add_argument("results", type=Path, nargs="+", metavar="RESULT", help="result file; the meshes differ in size")
     compared.set_defaults(command=bars)
@@ -113,8 +113,8 @@ def parser() -> argparse.ArgumentParser:
     what = "Meshes and solves until the estimated error is as small as requested."
     adapted = commands.add_parser("adapt", help="mesh and solve until the error is small", description=what)
     adapted.add_argument("scene", type=Path, help="scene.toml")
-    adapted.add_argument("--error", type=float, required=True, help="requested relative error, in the energy norm: 1e-2 is 1 %%")
-    adapted.add_argument("--quantity", metavar="NAME", help="request the error of this quantity instead, relative to its value")
+    adapted.add_argument("--error", type=float, required=True, help="relative error, in the energy norm: 1e-2 is 1 %%")
+    adapted.add_argument("--quantity", metavar="NAME", help="request the error of this quantity instead")
     adapted.add_argument("--geometry", type=Path, help="file that Gmsh meshes (default: the scene's mesh with .geo)")
     adapted.add_argument("--ranks", type=int, default=2, help="number of processes (default: 2)")
     adapted.add_argument("--folder", type=Path, help="folder of mesh and result (default: the scene's stem + -adapted)")
