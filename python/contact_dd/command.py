@@ -90,7 +90,7 @@ def parser() -> argparse.ArgumentParser:
     drawn.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     drawn.set_defaults(command=plot)
 
-    written = commands.add_parser("report", help="write a page on a run", description="Writes a page on a run, in HTML.")
+    written = commands.add_parser("report", help="write a page on a run", description="Writes a page in HTML.")
     written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     written.add_argument("page", type=Path, nargs="?", help="HTML file (default: the result's name with .html)")
     written.add_argument(
@@ -107,7 +107,7 @@ def parser() -> argparse.ArgumentParser:
 
     what = "Compares results of one scene on two or three meshes, and estimates error bars."
     compared = commands.add_parser("compare", help="error bars from several meshes", description=what)
-    compared.add_argument("results", type=Path, nargs="+", metavar="RESULT", help="result file; the meshes differ in size")
+    compared.add_argument("results", type=Path, nargs="+", metavar="RESULT", help="result, each on another mesh")
     compared.set_defaults(command=bars)
 
     what = "Meshes and solves until the estimated error is as small as requested."
