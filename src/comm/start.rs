@@ -18,7 +18,7 @@ use crate::error::Failure;
 
 /// All ranks, and MPI if there are several; MPI ends when this is dropped.
 pub struct World {
-    /// `None` for a single rank, which sends no messages.
+    /// MPI, until it is dropped; `None` for a single rank, which sends no messages.
     universe: Option<Universe>,
     hosts: usize,
 }

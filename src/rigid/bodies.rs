@@ -165,7 +165,7 @@ fn of_subdomain(block: &Block, loads: &BlockLoads, frame: &BodyFrame) -> BodyPar
     }
 }
 
-/// At most `entries` rows with the same null space and least-squares solution as `rows`.
+/// Equivalent rows, at most `entries` of them, with the null space and the least-squares solution of `rows`.
 pub(super) fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
     if rows.len() <= entries {
         return rows;

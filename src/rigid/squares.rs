@@ -25,7 +25,7 @@ pub fn square(load: [f64; 3]) -> BodyState {
 }
 
 impl BodyState {
-    /// The same body, supported at `x` along an axis with the prescribed displacement `value`.
+    /// This body, supported at `x` along an axis with the prescribed displacement `value`.
     pub fn held(mut self, x: [f64; 3], along: [f64; 3], value: f64) -> Self {
         let mut row = self.frame.action(2, &x, &along);
         row.push(value);
@@ -46,12 +46,12 @@ impl BodyState {
 }
 
 impl RigidRow {
-    /// The same constraint with a gap.
+    /// This constraint with a gap.
     pub fn open(self, gap: f64) -> Self {
         Self { gap, ..self }
     }
 
-    /// The same constraint as a tangential one of the point whose normal constraint has this number.
+    /// This constraint as the tangential one of a point whose normal constraint has this number.
     pub fn rough(self, normal: usize, bound: ForceBound) -> Self {
         let friction = Some(Friction { normal, bound });
         Self { friction, ..self }

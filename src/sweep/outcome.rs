@@ -23,7 +23,8 @@ const AGAINST_CONTACT: f64 = 1e-11;
 /// Residual of equilibrium relative to the load above which the result is meaningless.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 
-/// The same limit if the unbalanced part may be a body with a free motion.
+/// Residual of equilibrium relative to the load above which the result is meaningless if the unbalanced part may be a
+/// body with a free motion.
 const MOVES: f64 = 1e-2;
 
 /// Most contact points that are named.

@@ -52,7 +52,7 @@ fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
 pub(super) struct Supports {
     /// Ascending by node, the rows of one node orthonormal.
     pub rows: Vec<Support>,
-    /// For every boundary condition the earlier ones that hold a part of what it prescribes: at common nodes, the force
+    /// The earlier boundary conditions that share prescribed displacements with each one: at common nodes, the force
     /// along the direction of the earlier one is assigned to that one.
     holders: Vec<BTreeSet<usize>>,
 }
@@ -73,7 +73,7 @@ impl Supports {
 }
 
 impl Supports {
-    /// For each boundary condition whether it holds a part of one after the first `displacements`.
+    /// Flags of the boundary conditions that share prescribed displacements with one after the first `displacements`.
     pub fn decide(&self, displacements: usize) -> Vec<bool> {
         let others = self.holders.iter().skip(displacements);
         let held: BTreeSet<usize> = others.flatten().copied().collect();

@@ -12,7 +12,7 @@ use super::syntax;
 use crate::error::InputError;
 use crate::mismatch::in_plain_words;
 
-/// One step from a table or an array to an entry.
+/// A step from a table or an array to an entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     Key(String),
@@ -93,7 +93,7 @@ fn first_table(text: &str) -> Option<(usize, &str)> {
     None
 }
 
-/// Where a missing top-level key belongs, for the end of a message; empty for a key of a table, given by `path`.
+/// The place of a missing top-level key, for the end of a message; empty for a key of a table, given by `path`.
 fn above(text: &str, key: &str, path: &[Step]) -> String {
     if path.is_empty() && ["materials", "bodies"].contains(&key) {
         return format!("; expected a table [{key}.NAME] for each");

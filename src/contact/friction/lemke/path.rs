@@ -47,11 +47,11 @@ pub(super) enum Quantity {
 /// Position of a point's tangential force in its polygon.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// Inside: the point sticks.
+    /// A position inside the polygon: the point sticks.
     Sticks,
-    /// On a side, by the steep bound or not.
+    /// A position on a side of the polygon, with the steep bound or the other one.
     Side(usize, bool),
-    /// At a corner of two sides, by the steep bound or not.
+    /// A corner between two sides of the polygon, with the steep bound or the other one.
     Corner([usize; 2], bool),
 }
 
@@ -59,9 +59,10 @@ enum Place {
 pub(super) struct Path {
     /// Jumps of all limits, then their forces, for a unit of each zero quantity.
     responses: Responses,
-    /// The same with all zero quantities at 0: at θ = 0, and for every unit of θ.
+    /// Jumps and forces with all zero quantities at 0: at θ = 0, and their growth with θ.
     value: [Vec<f64>; 2],
-    /// Both for independent jumps and the forces of dependent rows as unknowns, from which pivots start.
+    /// Responses and values before the first pivot, with independent jumps and the forces of dependent rows as
+    /// unknowns.
     start: Mat<f64>,
     at_start: Vec<f64>,
     /// Number of independent jumps.
