@@ -59,8 +59,9 @@ pub fn start() -> Result<World, Failure> {
     let comm = world.comm();
     end_all_at_a_panic(&comm);
     launcher::check(comm.size)?;
-    listen()
-        .map_err(|error| Failure::internal(format!("signals can't be listened to: {error}")))?;
+    listen().map_err(|error| {
+        Failure::internal(format!("signal handlers can't be installed: {error}"))
+    })?;
     #[cfg(debug_assertions)]
     on_purpose::set_rank(comm.rank);
     if let Some(ranks) = &comm.world {

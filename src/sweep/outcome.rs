@@ -216,7 +216,7 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         equilibrium > NOT_BALANCED || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
     if unbalanced || is_driven || penetration > NOT_BALANCED || !certificate.is_a_number() {
         let moves = match is_driven || equilibrium_of_load > MOVES {
-            true => ", or something slides or parts on and on",
+            true => ", or a body slides or separates without limit",
             false => "",
         };
         return Some(format!(
@@ -226,8 +226,8 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         ));
     }
     (!finite).then(|| {
-        "some of displacements, stresses, forces and energies are no finite numbers: loads or stiffnesses are too large \
-         or too small, or something moves without end"
+        "some displacements, stresses, forces or energies aren't finite: loads or stiffnesses are too large or too small, \
+         or a body moves without limit"
             .into()
     })
 }
