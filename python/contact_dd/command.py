@@ -176,7 +176,7 @@ def study(arguments: argparse.Namespace) -> None:
 
 
 def partitioned(arguments: argparse.Namespace, heard: set[str], prints: Path | None = None) -> Path:
-    """The problem file of a scene or a deck, in the folder asked for; what a deck prints in a file of its own. Warnings
+    """The problem file of a scene or a deck, in the requested folder, and a file of the tables requested by a deck. Warnings
     are added to those `heard`."""
     source, folder = arguments.source, arguments.folder
     try:

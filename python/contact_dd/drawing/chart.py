@@ -95,8 +95,8 @@ def unrolled(axis, loaded, normals, points):
 
 
 def first_angle(axis, first, second, inward):
-    """Where angles around an axis begin, from its direction `first`, and what they are called: by places, which in a
-    hole are opposite of their normals."""
+    """Start of the angles around an axis, from its direction `first`, and their title, which names positions: in a
+    hole these are opposite to the normals."""
     if np.abs(axis).max() <= NEARLY:
         return 0.0, Label("angle from the load")
     across = np.abs(axis) < 0.5
