@@ -176,8 +176,8 @@ def study(arguments: argparse.Namespace) -> None:
 
 
 def partitioned(arguments: argparse.Namespace, heard: set[str], prints: Path | None = None) -> Path:
-    """The problem file of a scene or a deck, in the requested folder, and a file of the tables requested by a deck. Warnings
-    are added to those `heard`."""
+    """The problem file of a scene or a deck, in the requested folder, and a file of the tables that a deck requests.
+    Warnings are added to those `heard`."""
     source, folder = arguments.source, arguments.folder
     try:
         folder.mkdir(parents=True, exist_ok=True)
