@@ -340,7 +340,7 @@ impl Bddc {
 
 fn free_motion(Mechanism: Mechanism) -> Failure {
     Failure::ill_posed(
-        "a part of the scene can move although every contact that presses is held; expected supports or contact that \
-         hold it",
+        "a part of the scene can move although all contacts under pressure are closed; expected supports or contact \
+         against it",
     )
 }

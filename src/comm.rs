@@ -48,7 +48,7 @@ pub struct Comm {
     rank: usize,
     size: usize,
     hosts: usize,
-    /// `None` for a single rank that runs without MPI.
+    /// MPI's communicator; `None` for a single rank that runs without MPI.
     world: Option<SimpleCommunicator>,
     bytes_sent: Cell<u64>,
     messages_sent: Cell<u64>,

@@ -124,13 +124,13 @@ impl Context<'_> {
         if ratio < INDISTINCT {
             failure
                 .message
-                .push_str("; or something does hold it, by less than numbers of 16 digits tell");
+                .push_str("; or its support is too weak for double precision");
             return failure;
         }
         Failure::input(format!(
             "the largest stiffness, of '{stiff}', is {} times the smallest, of '{soft}' (of one material: against a change \
-             of volume and of shape), and numbers of 16 digits don't tell what the softest part is held by; expected \
-             less than {} times; found where {}",
+             of volume and of shape), and double precision loses what restrains the softest part; expected less \
+             than {} times; found where {}",
             short(ratio),
             short(INDISTINCT),
             failure.message

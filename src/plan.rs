@@ -42,7 +42,7 @@ pub struct Plan {
     pub clusters: Numbered<ClusterId, ClusterPlan>,
     /// The pairs: the clusters in contact.
     pub pairs: Numbered<PairId, ClusterId>,
-    /// How contact is merged.
+    /// The treatment of contact in merging.
     pub merging: Merging,
     /// The nodes of the hierarchy above which nothing is merged where active sets are fixed, ascending: its roots, or
     /// the clusters between which the iterative interface solver works.
@@ -290,7 +290,7 @@ impl Plan {
         clusters.flat_map(|c| c.groups.clone()).collect()
     }
 
-    /// For every such group, its owner and that of its cluster, cluster by cluster.
+    /// The owners of every such group and of its cluster, cluster by cluster.
     pub fn routes_to_clusters(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let clusters = self.pairs.iter().map(|&c| &self.clusters[c]);
         clusters.flat_map(|cluster| {

@@ -123,7 +123,7 @@ fn warnings(totals: &Totals<'_>, settings: &Settings) -> Vec<String> {
         };
         warnings.push(format!(
             "the forces on the nodes are balanced to {:.1e} of the largest load only: {why}, and stresses and contact \
-             forces are no better than that",
+             forces are no more accurate",
             certificate.equilibrium_of_load
         ));
     }

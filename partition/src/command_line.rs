@@ -8,6 +8,7 @@ use clap::{Parser, ValueHint};
 use crate::element::ElementKind;
 use crate::example::EXAMPLES;
 use crate::manual::{Document, Manual};
+use crate::solver::count;
 
 /// Text of the manual other than the options.
 pub const MANUAL: Manual = Manual {
@@ -22,7 +23,7 @@ pub const MANUAL: Manual = Manual {
         ),
         (
             "contact-dd-partition part.inp --write-scene my-scene",
-            "writes the scene and the mesh that the deck means",
+            "translates a deck into a scene and its mesh",
         ),
         (
             "contact-dd-partition --example granite --write-scene my-scene",
@@ -34,7 +35,7 @@ pub const MANUAL: Manual = Manual {
         ),
         (
             "contact-dd-partition --info problem.h5",
-            "tells what a problem file holds",
+            "prints the contents of a problem file",
         ),
     ],
     exit_codes: &[
@@ -56,7 +57,7 @@ pub const MANUAL: Manual = Manual {
         ),
         (
             "problem.h5",
-            "the problem file; it gets its name when it is whole",
+            "the problem file; it gets its name when it is complete",
         ),
     ],
     environment: &[
@@ -79,18 +80,19 @@ pub struct CommandLine {
 
     /// Number of subdomains [default: by size]
     ///
-    /// Without it each has about 2000 dofs.
+    /// By default each has about 2000 degrees of freedom.
     #[arg(
         short = 'n',
         long,
         value_name = "N",
         allow_negative_numbers = true,
+        value_parser = count::<usize>,
         help_heading = "Problem file"
     )]
     pub subdomains: Option<usize>,
 
-    /// Number of clusters of subdomains for contact-dd-mpi --interface iterative, about [default: by size]
-    #[arg(long, value_name = "N", help_heading = "Problem file")]
+    /// Approximate number of clusters of subdomains for contact-dd-mpi --interface iterative [default: by size]
+    #[arg(long, value_name = "N", value_parser = count::<usize>, help_heading = "Problem file")]
     pub clusters: Option<usize>,
 
     /// Problem file to write [default: the scene's stem + .h5]
@@ -98,12 +100,12 @@ pub struct CommandLine {
           value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 
-    /// Print what a problem file holds, and write nothing
+    /// Print the contents of a problem file, and exit
     #[arg(long, value_name = "FILE.h5", help_heading = "Problem file", exclusive = true,
           value_hint = ValueHint::FilePath)]
     pub info: Option<PathBuf>,
 
-    /// Take a built-in scene
+    /// Use a built-in scene
     #[arg(
         long,
         value_name = "NAME",
@@ -124,24 +126,25 @@ pub struct CommandLine {
         requires = "example",
         conflicts_with = "scene",
         default_value_t = 0,
+        value_parser = count::<u32>,
         help_heading = "Built-in scenes"
     )]
     pub refine: u32,
 
-    /// Cells of the built-in scene [default: triangle3, in space what suits the scene]
+    /// Cells of the built-in scene [default: triangle3, in space the scene's own]
     ///
-    /// In the plane triangles and quadrilaterals, in space tetrahedra and hexahedra. Where the mesh size changes, there are triangles between quadrilaterals.
+    /// In the plane: triangles and quadrilaterals; in space: tetrahedra and hexahedra. Where the mesh size changes, there are triangles between quadrilaterals.
     #[arg(long, value_name = "KIND", requires = "example", conflicts_with = "scene",
           value_parser = elements(), help_heading = "Built-in scenes")]
     pub element: Option<ElementKind>,
 
-    /// Write scene.toml and mesh.msh of the deck or the built-in scene into DIR, to start from
+    /// Write scene.toml and mesh.msh of the deck or the built-in scene into DIR
     ///
     /// The problem file is then written only with -o.
     #[arg(long, value_name = "DIR", help_heading = "Problem file", value_hint = ValueHint::DirPath)]
     pub write_scene: Option<PathBuf>,
 
-    /// Write the tables that *NODE PRINT and *EL PRINT of the deck ask for as JSON, for what prints them of the result
+    /// Write the requests of the deck's *NODE PRINT and *EL PRINT, for contact-dd run, which writes their tables
     #[arg(long, value_name = "FILE.json", conflicts_with = "example", help_heading = "Problem file",
           value_hint = ValueHint::FilePath)]
     pub write_prints: Option<PathBuf>,

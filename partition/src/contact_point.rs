@@ -239,7 +239,7 @@ impl<N: Copy> ContactPoint<N> {
         })
     }
 
-    /// The same point with renamed nodes; entries without a new name are removed.
+    /// This point with renamed nodes; entries without a new name are removed.
     pub fn rename<M>(&self, mut name: impl FnMut(N) -> Option<M>) -> ContactPoint<M> {
         let entries = self.entries.iter();
         ContactPoint {
@@ -284,8 +284,8 @@ pub struct Probe<N> {
 }
 
 impl ContactPoint<u32> {
-    /// The same point with sides a and b exchanged: weights, normal and tags. `on_a` is true for the nodes of the new
-    /// side a, `at` returns their positions (m).
+    /// This point with sides a and b exchanged: weights, normal and tags. `on_a` is true for the nodes of the new side
+    /// a, `at` returns their positions (m).
     pub fn turned(self, on_a: impl Fn(u32) -> bool, at: impl Fn(u32) -> [f64; 3]) -> Self {
         let entries: Vec<_> = self
             .entries

@@ -7,7 +7,7 @@ pub struct DisjointSets {
 }
 
 impl DisjointSets {
-    /// Every number in a set of its own.
+    /// The partition into sets of a single number each.
     pub fn new(n: usize) -> Self {
         Self {
             parent: (0..n as u32).collect(),

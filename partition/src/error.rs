@@ -24,7 +24,7 @@ impl InputError {
         move |reason| Self::new(format!("{what}: {reason}"))
     }
 
-    /// The same error with the file it was found in, unless it already names one.
+    /// This error with the name of its file, unless it already has one.
     #[must_use]
     pub fn in_file(mut self, path: &Path) -> Self {
         self.place.get_or_insert_with(|| path.to_path_buf());

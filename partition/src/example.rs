@@ -27,7 +27,7 @@ include!(concat!(env!("OUT_DIR"), "/scenes.rs"));
 pub struct Example {
     /// Name for `--example`.
     pub name: &'static str,
-    /// One line on its purpose.
+    /// Its purpose, in one line.
     pub about: &'static str,
     /// Default number of subdomains.
     pub subdomains: usize,

@@ -59,6 +59,7 @@ pub mod magnitude;
 pub mod manual;
 pub mod mesh;
 pub mod message;
+pub mod mismatch;
 pub mod model;
 pub mod name;
 pub mod numbered;

@@ -77,7 +77,7 @@ impl<T: Copy> Lists<T> {
         self.offsets.len() - 1
     }
 
-    /// One of the lists.
+    /// The list with this number.
     pub fn of(&self, list: usize) -> &[T] {
         &self.items[self.offsets[list]..self.offsets[list + 1]]
     }

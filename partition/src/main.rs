@@ -147,7 +147,8 @@ fn read(args: &CommandLine) -> Result<Option<Source>, Failure> {
             return Err(InputError::new(message).in_file(path).into());
         }
         if args.write_prints.is_some() {
-            let message = "prints nothing, as a scene; expected a deck beside --write-prints";
+            let message =
+                "is a scene, which requests no tables; expected a deck beside --write-prints";
             return Err(InputError::new(message).in_file(path).into());
         }
         let scene = Scene::read(path)?;
@@ -193,8 +194,8 @@ fn read_deck(args: &CommandLine, path: &Path) -> Result<Option<Source>, Failure>
     }
     if let Some(directory) = &args.write_scene {
         if !translation.mesh.has_modes.is_empty() {
-            let message = "has elements with incompatible modes, for which Gmsh's format has no word; expected C3D8, CPE4 \
-                           or CPS4 beside --write-scene";
+            let message = "has elements with incompatible modes, which Gmsh's format can't express; expected C3D8, CPE4 or \
+                           CPS4 beside --write-scene";
             return Err(InputError::new(message).in_file(path).into());
         }
         let scene = translation.write(directory)?;
@@ -242,8 +243,7 @@ fn goes_on(args: &CommandLine, scene: &Path) -> Result<bool, Failure> {
 fn keep(input: &Path, output: &Path) -> Result<(), InputError> {
     match (input.canonicalize(), output.canonicalize()) {
         (Ok(one), Ok(other)) if one == other => Err(InputError::new(
-            "the problem file would take the place of what it is made from; \
-             expected another name behind -o",
+            "the problem file would overwrite its input; expected another name behind -o",
         )
         .in_file(output)),
         _ => Ok(()),

@@ -28,7 +28,7 @@ pub struct Mesh {
     pub cells: Elements,
     /// The mesh file's tag of each cell.
     pub cell_tags: Vec<i64>,
-    /// For every cell whether it has incompatible modes; empty if none has.
+    /// Flags of the cells with incompatible modes; empty if there is none.
     pub has_modes: Vec<bool>,
     /// Facets that the mesh file lists (dimension `dim − 1`), by node index.
     pub facets: Elements,

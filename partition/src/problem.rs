@@ -54,7 +54,7 @@ pub struct InterfaceNode {
     pub interface: u32,
 }
 
-/// One subdomain Ω^n: a piece of one body.
+/// A subdomain Ω^n: a piece of one body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subdomain {
     /// Number.

@@ -71,6 +71,14 @@ impl fmt::Display for Positive {
     }
 }
 
+/// Parses the number of an option that counts.
+///
+/// # Errors
+/// It isn't a whole number.
+pub fn count<N: FromStr>(text: &str) -> Result<N, String> {
+    (text.parse()).map_err(|_| "expected a whole number, 0 or more".into())
+}
+
 /// Parses the value of an option that is true without a value.
 ///
 /// # Errors
@@ -85,7 +93,7 @@ pub fn parse_flag(text: &str) -> Result<bool, String> {
 #[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Solving")]
 pub struct SolverSettings {
-    /// How the interface problem is solved [default: newton]
+    /// Method for the interface problem [default: newton]
     #[arg(long, value_enum, value_name = "NAME")]
     pub method: Option<Method>,
 
@@ -93,15 +101,15 @@ pub struct SolverSettings {
     #[arg(long, value_name = "X")]
     pub tolerance: Option<Positive>,
 
-    /// Most sweeps [default: depends on the method]
-    #[arg(long, value_name = "N")]
+    /// Largest number of sweeps [default: 20 for newton, up to 500 for anderson, 2000 for picard]
+    #[arg(long, value_name = "N", value_parser = count::<usize>)]
     pub max_sweeps: Option<usize>,
 
-    /// Relaxation of picard; 1 is the paper's (18) to the letter [default: found automatically]
+    /// Relaxation factor of picard; 1 is equation (18) of the paper [default: found automatically]
     #[arg(long, value_name = "THETA")]
     pub relaxation: Option<Positive>,
 
-    /// Neither recover nor write stresses
+    /// Neither recover nor write stresses [default: false]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true,
           default_missing_value = "true", value_parser = parse_flag)]
     pub no_stress: Option<bool>,

@@ -1,4 +1,4 @@
-"""The calls that made the parts of a scene, by which messages name these: nobody has written the scene's lines."""
+"""The calls that made the parts of a scene: messages name these instead of lines, which the user hasn't written."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Calls:
 
 
 def call(method: str, *positional: Any, **named: Any) -> str:
-    """A call as it was written; what is None wasn't given."""
+    """A call as it was written; arguments that are None weren't given."""
     given = [repr(value) for value in positional if value is not None]
     given += [f"{name}={value!r}" for name, value in named.items() if value is not None]
     return f"{method}({', '.join(given)})"

@@ -1,5 +1,5 @@
-"""The command `contact-dd`: runs of decks and scenes, pictures, pages and tables of results, error bars, and meshes
-that adapt."""
+"""The command `contact-dd`: runs of decks and scenes, pictures, pages and tables of results, error bars, and adaptive
+refinement."""
 
 import argparse
 import io
@@ -50,27 +50,28 @@ def parser() -> argparse.ArgumentParser:
     what = "Partitions and solves a deck of Abaqus or CalculiX, or a scene, and writes the result."
     solved = commands.add_parser("run", help="solve a deck or a scene", description=what)
     solved.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene")
-    solved.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
-    solved.add_argument("--subdomains", type=int, help="how many there are (default: by size)")
-    solved.add_argument("--folder", type=Path, default=Path(), help="of problem file and result (default: this one)")
+    solved.add_argument("--ranks", type=int, default=2, help="number of processes (default: 2)")
+    solved.add_argument("--subdomains", type=int, help="number of subdomains (default: by size)")
+    solved.add_argument("--folder", type=Path, default=Path(), help="folder for the files (default: the current one)")
     solved.set_defaults(command=run)
 
-    what = "Solves a scene for many values of its loads, gaps and friction by the factors of one run: tables, a plot."
+    what = "Solves a scene for many values of loads, gaps and friction by one factorization; writes tables."
     studied = commands.add_parser("study", help="solve for many values of parameters", description=what)
     studied.add_argument("source", type=Path, metavar="DECK.inp|SCENE.toml", help="deck or scene with [[quantity]]")
     studied.add_argument(
         "--vary", action="append", required=True, metavar="NAME=VALUES",
-        help="parameter, or a part of its name, and first:last:step or values with commas; several: all combinations",
+        help="a parameter, or a part of its name, and its values: first:last:step, or with commas between them; "
+        "repeated: all combinations",
     )
-    studied.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
-    studied.add_argument("--subdomains", type=int, help="how many there are (default: by size)")
-    studied.add_argument("--folder", type=Path, default=Path(), help="of problem file and tables (default: this one)")
+    studied.add_argument("--ranks", type=int, default=2, help="number of processes (default: 2)")
+    studied.add_argument("--subdomains", type=int, help="number of subdomains (default: by size)")
+    studied.add_argument("--folder", type=Path, default=Path(), help="folder for the files (default: the current one)")
     studied.set_defaults(command=study)
 
-    what = "Writes the scene and the mesh that a deck of Abaqus or CalculiX means, to go on from there."
-    converted = commands.add_parser("convert", help="make a scene of a deck", description=what)
+    what = "Translates a deck of Abaqus or CalculiX into a scene and its mesh."
+    converted = commands.add_parser("convert", help="translate a deck into a scene", description=what)
     converted.add_argument("deck", type=Path, metavar="DECK.inp", help="deck")
-    converted.add_argument("folder", type=Path, nargs="?", help="of scene.toml and mesh.msh (default: the deck's stem)")
+    converted.add_argument("folder", type=Path, nargs="?", help="folder to write (default: the deck's stem)")
     converted.set_defaults(command=convert)
 
     drawn = commands.add_parser("plot", help="draw pictures of a result", description="Draws pictures of a result.")
@@ -78,44 +79,45 @@ def parser() -> argparse.ArgumentParser:
     drawn.add_argument("outdir", type=Path, nargs="?", help="folder (default: figures beside the result)")
     drawn.add_argument(
         "--scale", type=factor, default="auto",
-        help="enlargement of the deformation (default: auto: it shows, and closed contacts don't seem to overlap)",
+        help="enlargement of the deformation (default: auto: closed contacts don't seem to overlap)",
     )
     drawn.add_argument(
         "--circle", type=radius, metavar="RADIUS",
-        help="in space: radius of a dashed circle on the pressures, around the origin, as of an exact contact",
+        help="in space: radius, in the scene's unit of length, of a dashed circle around the origin of pressure maps, "
+        "such as that of Hertz's contact",
     )
-    drawn.add_argument("--only", nargs="+", metavar="PICTURE", help="which to draw (default: all)")
+    drawn.add_argument("--only", nargs="+", metavar="PICTURE", help="names of the pictures to draw (default: all)")
     drawn.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     drawn.set_defaults(command=plot)
 
-    written = commands.add_parser("report", help="write a page on a run", description="Writes a page on a run.")
+    written = commands.add_parser("report", help="write a page on a run", description="Writes a page in HTML.")
     written.add_argument("result", type=Path, help="result file of contact-dd-mpi")
-    written.add_argument("page", type=Path, nargs="?", help="default: the result's name with .html")
+    written.add_argument("page", type=Path, nargs="?", help="HTML file (default: the result's name with .html)")
     written.add_argument(
         "--coarser", type=Path, nargs="+", metavar="RESULT", help="results on coarser meshes, for error bars"
     )
     written.set_defaults(command=report)
 
-    what = "Writes a table of each contact, CSV: pressures and gaps, in the plane over the arc length of side a."
+    what = "Writes a CSV table of each contact: pressures and gaps, in the plane over the arc length."
     tabled = commands.add_parser("table", help="write tables of contacts", description=what)
     tabled.add_argument("result", type=Path, help="result file of contact-dd-mpi")
     tabled.add_argument("outdir", type=Path, nargs="?", help="folder (default: tables beside the result)")
     tabled.add_argument("--step", type=int, help="number of the load step, from 1 (default: the last)")
     tabled.set_defaults(command=table)
 
-    what = "Compares results of one scene on two or three meshes, and says how far off the numbers are at most."
+    what = "Compares results of one scene on two or three meshes, and estimates error bars."
     compared = commands.add_parser("compare", help="error bars from several meshes", description=what)
-    compared.add_argument("results", type=Path, nargs="+", metavar="RESULT", help="on meshes that differ in size")
+    compared.add_argument("results", type=Path, nargs="+", metavar="RESULT", help="result, each on another mesh")
     compared.set_defaults(command=bars)
 
-    what = "Meshes and solves until the estimated error is as small as asked."
+    what = "Meshes and solves until the estimated error is as small as requested."
     adapted = commands.add_parser("adapt", help="mesh and solve until the error is small", description=what)
     adapted.add_argument("scene", type=Path, help="scene.toml")
-    adapted.add_argument("--error", type=float, required=True, help="relative, in the energy norm: 1e-2 is 1 %%")
-    adapted.add_argument("--quantity", metavar="NAME", help="the error is that of this quantity, relative to its value")
+    adapted.add_argument("--error", type=float, required=True, help="relative error, in the energy norm: 1e-2 is 1 %%")
+    adapted.add_argument("--quantity", metavar="NAME", help="request the error of this quantity instead")
     adapted.add_argument("--geometry", type=Path, help="file that Gmsh meshes (default: the scene's mesh with .geo)")
-    adapted.add_argument("--ranks", type=int, default=2, help="how many processes solve (default: 2)")
-    adapted.add_argument("--folder", type=Path, help="of mesh and result (default: the scene's stem + -adapted)")
+    adapted.add_argument("--ranks", type=int, default=2, help="number of processes (default: 2)")
+    adapted.add_argument("--folder", type=Path, help="folder of mesh and result (default: the scene's stem + -adapted)")
     adapted.set_defaults(command=adapt)
     return top
 
@@ -174,8 +176,8 @@ def study(arguments: argparse.Namespace) -> None:
 
 
 def partitioned(arguments: argparse.Namespace, warned: set[str], prints: Path | None = None) -> Path:
-    """The problem file of a scene or a deck, in the folder asked for; what a deck prints in a file of its own. Warnings
-    are added to those `warned`."""
+    """The problem file of a scene or a deck, in the requested folder, and a file of the tables that a deck requests.
+    Warnings are added to those `warned`."""
     source, folder = arguments.source, arguments.folder
     try:
         folder.mkdir(parents=True, exist_ok=True)

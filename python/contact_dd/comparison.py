@@ -63,7 +63,7 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
         found_of = f"the result {results[0].path} alone" if results else "no result"
         raise InputError(f"{found_of}; expected two or three results of one scene, on meshes that differ in size")
 
-    # By the size of cells, or what stands for it.
+    # By the size of cells, or the estimated error in its place.
     def size(result: Result) -> float:
         if adapted:
             return relative_errors(result)[0]
@@ -96,7 +96,7 @@ def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
             is_force = kind == "force" or kind.startswith(QUANTITY)
             if kind == "work" and error is not None:
                 error = max(error, energy_error(found[-1]))
-            # One that is longer than the number says nothing of a pressure, of work or of a stress intensity factor.
+            # A bar longer than a pressure, a work or a stress intensity factor is meaningless.
             if name in endless or not is_force and error is not None and error > abs(values[-1]):
                 error = None
             compared.append(Compared(name, unit, values, error, order))

@@ -23,8 +23,9 @@ TOTALS = {"RF": "total force (fx,fy,fz)", "EVOL": "total volume"}
 
 
 def write_dat(result: Result, prints: dict[str, Any], path: Path) -> bool:
-    """Writes the tables that a deck asks for, `prints` as `contact-dd-partition --write-prints` says it, at the end of
-    every step; returns whether there are any. Raises `InputError` where the problem file isn't beside the result."""
+    """Writes the tables requested by a deck, at the end of every step, from the `prints` of
+    `contact-dd-partition --write-prints`; returns whether there are any. Raises `InputError` where the problem file
+    isn't beside the result."""
     if not any(prints["steps"]):
         return False
     text = []

@@ -39,7 +39,7 @@ def meshed(path: Path | None, sizes: SizeField | None) -> bytes:
 
 @contextmanager
 def model_of(path: Path | None) -> Iterator[Any]:
-    """Gmsh with a model of its own for a file; what the caller has in it stays."""
+    """Gmsh with a separate model for a file; the caller's models stay."""
     try:
         import gmsh
     except ImportError as error:

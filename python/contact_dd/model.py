@@ -47,7 +47,7 @@ class Thermal(TypedDict):
 
 
 class Step(TypedDict, total=False):
-    """A load step, as `[[step]]` of a scene: what it doesn't mention is the model's, times `scale`."""
+    """A load step, as `[[step]]` of a scene: loads that it doesn't mention are the model's, times `scale`."""
 
     name: str
     time: float

@@ -119,7 +119,7 @@ class Printed:
 
     @cached_property
     def _places(self) -> dict[int, tuple[int, int]]:
-        """The kind of the elements that are printed and their places in it, by number: where their nodes lie tells."""
+        """The kind of the printed elements and their places in it, by number, found by the positions of nodes."""
         same = np.unique(self.result.points, axis=0, return_inverse=True)[1].ravel()
         found = {}
         for part, cells in enumerate(self.result.cells):
@@ -183,7 +183,7 @@ class Printed:
 
     @cached_property
     def forces(self) -> Floats:
-        """Forces on nodes from outside, loads and reactions: what stresses, contacts, ties and springs leave."""
+        """External forces on nodes, loads and reactions: the balance of stresses, contacts, ties and springs."""
         total = self.external.copy()
         for cells, is_reduced in self._by_rule():
             at, weights = rule(cells.kind, self.is_around_axis, is_reduced)

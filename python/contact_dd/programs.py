@@ -1,4 +1,4 @@
-"""The two programs: where they are, and what they say."""
+"""The two programs: their paths, runs and messages."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def partition(
     scene: Path, subdomains: int | None, progress: Progress, worded: Worded = str, problem: Path | None = None,
     prints: Path | None = None, warned: set[str] | None = None,
 ) -> Path:
-    """Writes the problem file of a scene or a deck, beside it unless it is named, and what the deck asks to be printed
-    into `prints`. Messages are `worded`; warnings are added to those `warned`, as the file has them, too."""
+    """Writes the problem file of a scene or a deck, by default beside it, and the tables requested by the deck into
+    `prints`. Messages are `worded`; warnings are added to those `warned`, as the file has them, too."""
     problem = problem or scene.with_suffix(".h5")
     number = [] if subdomains is None else ["-n", str(subdomains)]
     number += [] if prints is None else ["--write-prints", str(prints)]
@@ -93,7 +93,7 @@ def partition(
 
 
 def convert(deck: Path, folder: Path) -> None:
-    """Writes the scene and the mesh that a deck means, and prints what the program says of them."""
+    """Translates a deck into a scene and a mesh, and prints the program's messages."""
     run([find("contact-dd-partition"), str(deck), "--write-scene", str(folder)], print, str)
 
 
@@ -120,7 +120,7 @@ def study(
     """Solves the cases of a study. Messages are `worded`; warnings that are `warned` aren't given again."""
     asked, output = problem.with_suffix(".cases.json"), problem.with_suffix(".study.json")
     files.write(asked, json.dumps(cases))
-    # Which cases don't converge the table says.
+    # The table shows the cases that don't converge.
     with contextlib.suppress(errors.NotConverged):
         run_solver(problem, output, ranks, ["--study", str(asked), *options], progress, worded, warned)
     return studies.read(output)
@@ -170,7 +170,7 @@ def run(command: Sequence[str], take_line: Callable[[str], None], worded: Worded
 
 
 def error_of(code: int, said: str, worded: Worded) -> errors.ContactError:
-    """The error of a program that ended with `code`: the message of its event, or all that it said."""
+    """The error of a program that ended with `code`: the message of its event, or all of its output."""
     for line in said.splitlines():
         event = event_of(line)
         if event is not None and event["event"] == "error":
@@ -179,7 +179,7 @@ def error_of(code: int, said: str, worded: Worded) -> errors.ContactError:
 
 
 def event_of(line: str) -> dict[str, Any] | None:
-    """An event of `--log json`; None for what launchers and libraries print."""
+    """An event of `--log json`; None for lines of launchers and libraries."""
     if not line.startswith('{"event":'):
         return None
     event: dict[str, Any] = json.loads(line)

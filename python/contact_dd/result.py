@@ -43,7 +43,7 @@ class Result:
     units: str
     """"m" (m, N, Pa) or "mm" (mm, N, MPa)."""
     plane: str | None
-    """"strain", "stress" or "axisymmetric"; None in space, and of files that don't say."""
+    """"strain", "stress" or "axisymmetric"; None in space, and for files without it."""
     step: int
     """The load step, from 1."""
     steps: int
@@ -222,7 +222,7 @@ class Result:
 
     @property
     def von_mises(self) -> NDArray[np.float64]:
-        """The von Mises stress at nodes, of what is recovered there."""
+        """The von Mises stress of the stress recovered at nodes."""
         xx, yy, zz, xy, yz, xz = self.stress.T
         axial = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
         equivalent: NDArray[np.float64] = np.sqrt(0.5 * axial + 3 * (xy**2 + yz**2 + xz**2))
@@ -276,7 +276,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def number(value: float | None) -> float:
-    """A number of a report, in which what isn't finite is null."""
+    """A number of a report, where null stands for one that isn't finite."""
     return float("nan") if value is None else float(value)
 
 

@@ -144,7 +144,7 @@ def values_of(text: str) -> tuple[str, list[float]]:
             count = round((last - first) / step) + 1
             if step == 0 or count < 1 or abs(first + (count - 1) * step - last) > 1e-9 * abs(step):
                 raise ValueError
-            # As decimals they are what a scene would say: 0.3, not 0.30000000000000004.
+            # Rounded to the decimals that a scene would have: 0.3, not 0.30000000000000004.
             numbers = [float(f"{first + k * step:.12g}") for k in range(count)]
         else:
             numbers = [float(value) for value in values.split(",")]

@@ -61,7 +61,7 @@ def text(value: str) -> str:
 
 
 def inline(value: Any) -> str:
-    """A value on one line. What NumPy calls a number or an array counts as what it holds."""
+    """A value on one line; numbers and arrays of NumPy count as numbers and lists."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, str):

@@ -129,8 +129,8 @@ CALLS = {
         "top", point=[0, 0], normal=[0, 0]),
     "contact('top', 'bottom', name='a', friction=-1).friction": lambda model: model.contact(
         "top", "bottom", name="a", friction=-1),
-    "fix('bottom', x=1) says 1 for the displacement along (1, 0, 0), fix('bottom') says 0": lambda model: model.fix(
-        "bottom", x=1),
+    "fix('bottom', x=1) prescribes 1 for the displacement along (1, 0, 0), fix('bottom') prescribes 0":
+        lambda model: model.fix("bottom", x=1),
     "step 2 of steps.scal: unknown key 'scal'": lambda model: model.steps({}, {"scal": 1}),
     "step 1 of steps.pressure[1] on 'nix': the mesh": lambda model: model.steps(
         {"pressure": [{"on": "nix", "value": 1}]}),

@@ -57,15 +57,16 @@ def test_a_closed_cylinder_is_unrolled(axis, inward):
     # Angles begin at the axis of coordinates nearest to the load, at 60° around z, else at the load.
     loaded = chart.x[np.abs(way).argmin()] / RADIUS
     if axis == (0, 0, 1):
-        [(sign, name)] = re.findall(r"^angle from (−?)([xy]) about z$", chart.labels[0])
+        [(sign, name)] = re.findall(r"^angle from (−?)([xy]) about z$", chart.labels[0].name)
         begin = (-1) ** bool(sign) * np.eye(3)["xy".index(name)]
         at_zero = table["position"] - [5, -7, 2]
         assert abs(loaded) <= np.pi / 4 + 1e-9
         assert np.allclose(at_zero @ begin, RADIUS * np.cos(chart.x / RADIUS))
     else:
-        assert chart.labels[0] == "angle from the load"
+        assert chart.labels[0].with_unit("°") == "angle from the load [°]"
         assert abs(loaded) < 1e-9
-    assert chart.labels[1] == ("z" if axis == (0, 0, 1) else "distance along (-0.27, -0.53, 0.80)")
+    of_axis = "z [m]" if axis == (0, 0, 1) else "distance along the contact [m]\ndirection (-0.27, -0.53, 0.8)"
+    assert chart.labels[1].with_unit("m") == of_axis
 
 
 def test_a_closed_ball_is_seen_from_where_it_is_loaded():
@@ -88,7 +89,7 @@ def test_a_flat_side_is_seen_along_its_normal(scene, tmp_path):
         apart = table["position"][:, None] - table["position"]
         on_paper = np.hypot(np.subtract.outer(chart.x, chart.x), np.subtract.outer(chart.y, chart.y))
         assert np.allclose(on_paper, np.linalg.norm(apart, axis=2))
-        assert sorted(label.strip("−") for label in chart.labels) == ["x", "y"]
+        assert sorted(label.name.strip("−") for label in chart.labels) == ["x", "y"]
 
 
 def test_what_doesnt_press_hides_nothing_and_axes_have_names(scene, tmp_path):

@@ -22,7 +22,7 @@ pub struct ClassSums {
     ends: Vec<(usize, MergeRootId)>,
     there: Routes,
     back: Routes,
-    /// From every cluster's rank to the root.
+    /// Routes from every cluster's rank to the root.
     to_root: Routes,
 }
 

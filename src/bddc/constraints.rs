@@ -21,7 +21,7 @@ use crate::schur::trapezoid::NotDefinite;
 /// Ratio of the energies above which modes become coarse: about the remaining condition number.
 const THRESHOLD: f64 = 10.0;
 
-/// The error of a cluster that can move although its shared unknowns are held.
+/// Error: a cluster can move although its shared unknowns are held.
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism;
 

@@ -8,7 +8,7 @@ use crate::comm::clock::Times;
 /// Time that each phase of a run took, in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PhaseSeconds {
-    /// From start to end.
+    /// The whole run.
     pub total: f64,
     /// Reading the problem.
     pub read: f64,
@@ -40,7 +40,7 @@ impl PhaseSeconds {
         ]
     }
 
-    /// For every phase, the time of the rank that was slowest in it.
+    /// The time of every phase on its slowest rank.
     pub fn slowest(ranks: &[Self]) -> Self {
         let worst = |of: fn(&Self) -> f64| ranks.iter().map(of).fold(0.0, f64::max);
         Self {

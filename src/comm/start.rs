@@ -18,7 +18,7 @@ use crate::error::Failure;
 
 /// All ranks, and MPI if there are several; MPI ends when this is dropped.
 pub struct World {
-    /// `None` for a single rank, which sends no messages.
+    /// MPI, until it is dropped; `None` for a single rank, which sends no messages.
     universe: Option<Universe>,
     hosts: usize,
 }
@@ -59,8 +59,9 @@ pub fn start() -> Result<World, Failure> {
     let comm = world.comm();
     end_all_at_a_panic(&comm);
     launcher::check(comm.size)?;
-    listen()
-        .map_err(|error| Failure::internal(format!("signals can't be listened to: {error}")))?;
+    listen().map_err(|error| {
+        Failure::internal(format!("signal handlers can't be installed: {error}"))
+    })?;
     #[cfg(debug_assertions)]
     on_purpose::set_rank(comm.rank);
     if let Some(ranks) = &comm.world {

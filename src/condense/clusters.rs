@@ -62,7 +62,8 @@ fn make_stiffness_exact(cluster: &mut Condensed, defining: &[usize], modes: &Rig
     }
 }
 
-/// The same for the `load` on the normal jumps; `diagonal` is that of the matrix from which they are condensed.
+/// Makes the `load` on the normal jumps exact along these motions; `diagonal` is that of the matrix from which they are
+/// condensed.
 pub fn make_load_exact(load: &mut [f64], defining: &[usize], modes: &RigidModes, diagonal: &[f64]) {
     if let Some(basis) = basis(defining, modes, diagonal) {
         basis.set_load(load);

@@ -80,9 +80,9 @@ pub trait ContactOperator {
 /// Accuracy of a step's solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepAccuracy {
-    /// As accurate as is useful with this residual of the laws, relative to the largest force.
+    /// Accuracy adapted to this residual of the laws, relative to the largest force.
     Rough(f64),
-    /// To round-off.
+    /// Accuracy of round-off.
     Full,
 }
 
@@ -231,8 +231,8 @@ pub fn newton<O: ContactOperator>(
     }))
 }
 
-/// Whether a step with this residual is accepted, where `previous` is the residual of the one before; true if it is the
-/// last: its accuracy is limited by round-off, or no better than that of the previous one.
+/// Whether a step with this residual is accepted, where `previous` is the residual of the step before; true if it is the
+/// last one: its accuracy is limited by round-off, or no better than that of the previous step.
 fn accepted(
     total: &TotalResidual,
     accuracy: StepAccuracy,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub enum Status {
     /// No force: a normal jump below its bound, or a tangential one of an open contact.
     Open,
-    /// At its bound: closed, or sticking.
+    /// A jump at its bound: closed, or sticking.
     #[default]
     Closed,
     /// Slipping in the direction of its tangent, under λ_t = b.

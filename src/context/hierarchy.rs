@@ -41,9 +41,9 @@ pub fn carry(
 /// The direction of a message along the hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub enum Direction {
-    /// From a node to the one that it is merged into.
+    /// A message from a node to the one that it is merged into.
     Up,
-    /// To a node from the one that it was merged into.
+    /// A message to a node from the one that it was merged into.
     Down,
 }
 

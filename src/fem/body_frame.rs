@@ -1,6 +1,7 @@
 //! Rigid-body motions z: translations, and rotations ω × (x − x_0) about the body's center x_0, scaled by its size.
 
 use contact_dd_partition::element::geometry::{cross, dot, length};
+use contact_dd_partition::scene::units::Units;
 use serde::{Deserialize, Serialize};
 
 use crate::vector::axpy;
@@ -72,8 +73,8 @@ impl BodyFrame {
         moves
     }
 
-    /// Description of a motion: a rotation about an axis far outside of the body moves it as a translation does.
-    pub fn describe(&self, dim: usize, z: &[f64]) -> String {
+    /// Description of a motion, with the units of coordinates: a rotation about an axis far outside of the body moves it as a translation does.
+    pub fn describe(&self, dim: usize, units: Units, z: &[f64]) -> String {
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let (translation, rotation) = z.split_at(dim);
         if norm(rotation) <= FAR * norm(translation) {
@@ -85,7 +86,8 @@ impl BodyFrame {
             let omega = rotation[0] / self.size;
             let x = self.center[0] - translation[1] / omega;
             let y = self.center[1] + translation[0] / omega;
-            return format!("rotation about ({})", listed(&[x, y], self.digits()));
+            let point = listed(&[x, y], self.digits());
+            return format!("rotation about ({point}) {}", units.length());
         }
         // The rotations are about the third axis, the first and the second, in the order of `action`.
         let omega = [rotation[1], rotation[2], rotation[0]].map(|w| w / self.size);
@@ -102,8 +104,9 @@ impl BodyFrame {
             false => "",
         };
         format!(
-            "rotation about the axis through ({}) along ({}){shift}",
+            "rotation about the axis through ({}) {} along ({}){shift}",
             listed(&through, digits),
+            units.length(),
             listed(&axis, 4)
         )
     }
@@ -157,17 +160,21 @@ mod tests {
             "{u:?} {exact:?}"
         );
         let through = "(2.0400, -1.0000, -0.7800)";
-        let words = frame.describe(3, &z);
+        let words = frame.describe(3, Units::Metre, &z);
         assert_eq!(
             words,
-            format!("rotation about the axis through {through} along (0.6000, 0.0000, 0.8000)")
+            format!("rotation about the axis through {through} m along (0.6000, 0.0000, 0.8000)")
         );
         let mut screw = z.map(|z| -z);
         screw[1] += 1.0;
         screw[0] -= 2.0;
-        assert!(frame.describe(3, &screw).ends_with("translation along it"));
+        assert!(
+            frame
+                .describe(3, Units::Metre, &screw)
+                .ends_with("translation along it")
+        );
         assert_eq!(
-            frame.describe(3, &[0.0, -2.0, 0.0, 0.0, 0.0, 0.0]),
+            frame.describe(3, Units::Metre, &[0.0, -2.0, 0.0, 0.0, 0.0, 0.0]),
             "translation along (0.0000, -1.0000, 0.0000)"
         );
     }
@@ -182,19 +189,22 @@ mod tests {
         let u = frame.displacement(2, &[0.5, 0.25, 0.0], &z);
         assert!((u[0] - about(0.5, 0.25)[0]).abs() < 1e-14);
         assert!((u[1] - about(0.5, 0.25)[1]).abs() < 1e-14);
-        assert_eq!(frame.describe(2, &z), "rotation about (3.0000, -1.0000)");
+        assert_eq!(
+            frame.describe(2, Units::Millimetre, &z),
+            "rotation about (3.0000, -1.0000) mm"
+        );
         let small = BodyFrame::new([-0.01, -0.01, 0.0], [0.01, 0.01, 0.0]);
         assert_eq!(
-            small.describe(2, &[-1e-19, 2e-19, 1.0]),
-            "rotation about (0.000000, 0.000000)"
+            small.describe(2, Units::Metre, &[-1e-19, 2e-19, 1.0]),
+            "rotation about (0.000000, 0.000000) m"
         );
         assert_eq!(
-            frame.describe(2, &[0.0, -2.0, 0.0]),
+            frame.describe(2, Units::Metre, &[0.0, -2.0, 0.0]),
             "translation along (0.0000, -1.0000)"
         );
         // A block that slides straight, but for the last digits of its contacts.
         assert_eq!(
-            frame.describe(2, &[2.0, 0.0, 1e-5]),
+            frame.describe(2, Units::Metre, &[2.0, 0.0, 1e-5]),
             "translation along (1.0000, 0.0000)"
         );
     }

@@ -180,9 +180,9 @@ impl ContactResultant {
                 )
             });
             warnings.push(format!(
-                "contact '{}': what is closed is narrower than a facet of side {side}, {count} of whose nodes lie in it, so \
-                 that pressures and how far the bodies approach each other depend on the mesh{error}; expected several \
-                 facets of both sides",
+                "contact '{}': the contact zone is narrower than a facet of side {side}, {count} of whose nodes lie in it: \
+                 pressures and the approach of the bodies depend on the mesh{error}; expected several facets of both \
+                 sides",
                 self.name
             ));
         }

@@ -14,8 +14,8 @@ use crate::contact::jumps::JumpRow;
 
 /// Square of a row, relative to that of another one, that is round-off.
 const NO_ROW: f64 = 1e-28;
-/// The same for the part of a row left free by supports that prescribe zero displacement: a tangent counts as
-/// constrained if the jump along it is at most a thousandth of the displacements.
+/// Square of the part of a row left free by supports that prescribe zero displacement, relative to the row, that is
+/// round-off: a tangent counts as constrained if the jump along it is at most a thousandth of the displacements.
 const HELD: f64 = 1e-6;
 /// No tangent.
 const NONE: [f64; 3] = [0.0; 3];

@@ -50,7 +50,7 @@ pub struct CoupledContact<'a> {
 pub struct CoupledStep {
     /// δ.
     pub u: Vec<f64>,
-    /// For every pair the statuses after the step, and τ.
+    /// The statuses of every pair after the step, and τ.
     pub expected: Vec<Expected>,
     /// The solution of the contact problem of all pairs.
     pub contact: ContactSolution,

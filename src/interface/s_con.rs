@@ -56,7 +56,7 @@ enum Request {
     Evaluate(Vec<usize>),
     /// S_kl'(U) x of these pairs.
     Differentiate(Vec<usize>),
-    /// Whether a signal has asked any rank to stop.
+    /// The question whether any rank received a signal to stop.
     Signals,
 }
 
@@ -145,7 +145,7 @@ impl<'a> SCon<'a> {
         });
     }
 
-    /// True if a signal has asked any rank to stop. On the root, while the other ranks [`serve`](Self::serve).
+    /// True if any rank received a signal to stop. On the root, while the other ranks [`serve`](Self::serve).
     pub fn is_any_asked_to_stop(&self) -> bool {
         self.comm.broadcast(&mut Request::Signals);
         self.comm.is_any_asked_to_stop()

@@ -91,8 +91,8 @@ fn attempt(path: &Path) -> Result<Option<File>, Refusal> {
         Err(TryLockError::Error(_)) => match holder {
             Some(holder) if holder.may_live() => {
                 return Err(Refusal::Held(format!(
-                    "another run writes it: {holder}; its file system has no locks that would tell whether that \
-                     is still there: if it isn't, remove {}",
+                    "another run writes it: {holder}; its file system has no locks by which to check whether \
+                     that still runs: if it doesn't, remove {}",
                     path.display()
                 )));
             }

@@ -52,11 +52,11 @@ pub(super) enum Of {
     /// The mesh, the same in every load step.
     Mesh,
     Solution,
-    /// Left out if stresses are.
+    /// Lists of stresses, omitted together with these.
     Stress,
-    /// Left out if no load step adds or removes bodies or contacts.
+    /// Lists of present bodies, omitted unless a load step adds or removes bodies or contacts.
     Presence,
-    /// Left out if stresses are, or if the scene has no quantities.
+    /// Lists of quantities, omitted without stresses or quantities.
     Quantity,
 }
 
@@ -131,7 +131,7 @@ lists! {
     types: u8, "cell types", "Types", Cell, Mesh;
     /// Index of the material of every cell.
     materials: i32, "materials", "CellData/Material", Cell, Mesh;
-    /// Whether the body of every cell is present.
+    /// Flags of the cells whose body is present.
     present: u8, "presences", "CellData/Present", Cell, Presence;
     /// Stress of the cells.
     cell_stress: [f64; 6], "cell stresses", "CellData/Stress", Cell, Stress;

@@ -102,7 +102,7 @@ fn summary(of: &Summary) -> String {
     lines.join("\n")
 }
 
-/// The load step that begins, what is absent in it, and the remaining time if that is long.
+/// The line of a load step: its name, the absent bodies and contacts, and the remaining time if that is long.
 fn step(of: &Step) -> String {
     let absent = &of.absent;
     let first: Vec<String> = absent
@@ -125,7 +125,7 @@ fn step(of: &Step) -> String {
     )
 }
 
-/// One line of the table of sweeps.
+/// A line of the table of sweeps.
 fn sweep(line: &SweepRecord) -> String {
     let changed = line.changed.map_or("-".into(), |count| count.to_string());
     format!(

@@ -18,7 +18,8 @@ pub enum Merging {
     Groups,
     /// Fronts without contact are merged once, the others again for every active set.
     ActiveSet,
-    /// The same up to the clusters only, between which the iterative interface solver works.
+    /// Fronts as in [`ActiveSet`](Self::ActiveSet), but up to the clusters only, between which the iterative interface
+    /// solver works.
     Clusters,
 }
 

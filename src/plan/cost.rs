@@ -116,8 +116,8 @@ impl Plan {
         estimates
     }
 
-    /// For each of `ranks` ranks the most memory of matrices waiting to be merged, including the one that they are
-    /// merged into.
+    /// The largest memory, on each of `ranks` ranks, of matrices waiting to be merged and of the one that they are
+    /// merged into (bytes).
     fn waiting(&self, dim: usize, ranks: usize) -> Vec<f64> {
         let (mut now, mut most) = (vec![0.0; ranks], vec![0.0f64; ranks]);
         let s = |v: TreeNodeId| PER_ENTRY * (self.front(v, dim).kept as f64).powi(2);

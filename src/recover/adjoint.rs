@@ -69,9 +69,9 @@ pub fn quantities_at(
     let without = if before.is_none() {
         Some("they aren't asked for")
     } else if has_slipped {
-        Some("friction remembers the load steps and increments before the last one")
+        Some("friction depends on the load steps and increments before the last one")
     } else if has_come {
-        Some("a contact that came later remembers the position of its bodies")
+        Some("a contact added in a later step depends on the position of its bodies then")
     } else {
         None
     };

@@ -68,8 +68,8 @@ impl MinimumNorm {
     }
 }
 
-/// Moves the bodies, among all positions that contact forces leave them, to that of least displacement, including the
-/// closing motion, unless the `certificate` gets worse; conditions that open through it are open. Collective.
+/// Moves the bodies to the position of least displacement, including the closing motion, among all positions that the
+/// contact forces allow, unless the `certificate` gets worse; opens the conditions that open in it. Collective.
 pub fn take_minimum_norm(
     fixed: &FixedActiveSet<'_>,
     analysis: &RigidBodyAnalysis,

@@ -34,7 +34,7 @@ pub fn reactions(fixed: &FixedActiveSet<'_>, solutions: &OnBlocks<BlockSolution>
     reactions
 }
 
-/// For every support its condition, its position and the reaction.
+/// The condition, the position and the reaction of every support.
 fn of_block(
     fixed: &FixedActiveSet<'_>,
     b: BlockId,

@@ -121,7 +121,7 @@ struct Exchange<'a> {
     comm: &'a Comm,
     /// The ranks that share every node on Γ, ascending.
     ranks: Vec<Vec<usize>>,
-    /// From rank to rank, where they share any.
+    /// The pairs of ranks that share any node.
     routes: Vec<(usize, usize)>,
 }
 

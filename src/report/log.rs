@@ -53,7 +53,7 @@ pub struct RunLog<'a> {
     began: Instant,
     /// Progress bar of a phase.
     bar: Bar,
-    /// Time of the last progress event.
+    /// Time of the last printed progress event.
     last_progress: Cell<Instant>,
     /// The first load step of this run, and when it began.
     first_step: Cell<Option<(usize, Instant)>>,

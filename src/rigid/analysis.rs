@@ -225,7 +225,7 @@ impl Kinematics {
             }
         }
         let z = self.of_body(worst, motion.as_slice());
-        (worst, bodies[worst].frame.describe(self.dim, &z))
+        (worst, bodies[worst].describe(self.dim, &z))
     }
 
     /// The free `motions` with the `fixing_dofs` that stop them, and a warning of each.

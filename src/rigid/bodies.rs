@@ -51,6 +51,7 @@ pub(super) fn body_states(
         .iter()
         .map(|&frame| BodyState {
             frame,
+            units: catalog.units,
             supports: held_by_symmetry(catalog),
             has_springs: false,
             load: vec![0.0; modes],
@@ -164,7 +165,7 @@ fn of_subdomain(block: &Block, loads: &BlockLoads, frame: &BodyFrame) -> BodyPar
     }
 }
 
-/// At most `entries` rows with the same null space and least-squares solution as `rows`.
+/// Equivalent rows, at most `entries` of them, with the null space and the least-squares solution of `rows`.
 pub(super) fn compressed(rows: Vec<Vec<f64>>, entries: usize) -> Vec<Vec<f64>> {
     if rows.len() <= entries {
         return rows;

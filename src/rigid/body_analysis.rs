@@ -41,7 +41,7 @@ impl RigidBodyAnalysis {
         motions.fold(0.0, |longest, z| longest.max(z.abs()))
     }
 
-    /// The same for bodies that stay where they are before the load deforms them.
+    /// This analysis without closing motions: the bodies stay where they are before the load deforms them.
     pub fn without_closing_motions(&self) -> Self {
         let at_rest = |of_body: &Vec<f64>| vec![0.0; of_body.len()];
         Self {

@@ -16,8 +16,8 @@ use crate::fem::body_frame::BodyFrame;
 
 /// Unbalanced load, relative to all loads, that counts as zero.
 const BALANCED: f64 = 1e-9;
-/// The same where regularizing springs of the sparse solver for many bodies take a part of the load: they move bodies
-/// by some thousand times their gaps.
+/// Unbalanced load, relative to all loads, that counts as zero where regularizing springs of the sparse solver for many
+/// bodies take a part of it: they move bodies by some thousand times their gaps.
 const SPRINGS: f64 = 1e-6;
 /// Number of motions from which on dense matrices would take gigabytes. If the sparse method doesn't find the rest
 /// position of so many, they stay where they are, and the contact solver moves them.

@@ -23,8 +23,8 @@ impl Scene {
         self.drive(&kinematics, conditions, &[], |_| true)
     }
 
-    /// The same for the motions of some `bodies` alone, restricted to those that leave the `fixing_dofs` in place: if
-    /// other constraints hold a body's neighbours, moving its fixing dof costs energy.
+    /// These constraints and the load for the motions of some `bodies` alone, restricted to those that leave the
+    /// `fixing_dofs` in place: if other constraints hold a body's neighbours, moving its fixing dof costs energy.
     fn drive(
         &self,
         kinematics: &Kinematics,

@@ -36,7 +36,7 @@ impl Kinematics {
         let one = |motion: &FreeMotion| {
             let of_body = |b: usize| {
                 let own = motion.bodies.iter().find(|(body, _)| *body == b);
-                let how = own.map(|(_, z)| bodies[b].frame.describe(self.dim, z));
+                let how = own.map(|(_, z)| bodies[b].describe(self.dim, z));
                 format!("'{}' ({})", names[b], how.unwrap_or_default())
             };
             listed(taking_part(motion).map(of_body).collect())
@@ -151,7 +151,7 @@ mod tests {
         };
         let words = described(2, vec![motion([0.6, 0.8, 0.4]), motion([0.8, -0.6, 0.8])]);
         let slides = "'brick 1' (translation along (0.1789, 0.9839))";
-        let turns = "'brick 1' (rotation about (5.91942, 0.50000))";
+        let turns = "'brick 1' (rotation about (5.91942, 0.50000) m)";
         assert_eq!(words, [slides, turns]);
     }
 

@@ -257,7 +257,7 @@ fn normalize(x: &mut [f64]) {
     x.iter_mut().for_each(|x| *x /= size);
 }
 
-/// For each row its unknowns, which are mutually coupled.
+/// The unknowns of each row, which are mutually coupled.
 fn cliques(rows: &[SparseRow]) -> Cliques {
     let mut cliques = Cliques::default();
     (rows.iter()).for_each(|row| cliques.push(row.iter().map(|&(i, _)| i as u32)));

@@ -91,7 +91,7 @@ pub(super) fn proves(rows: &[RigidRow], jumps: &[f64], [work, terms, scale]: [f6
     surplus > ROUND_OFF * (terms + taken) && surplus > MOST_FORCE * scale * worst
 }
 
-/// The same for a `motion` of many bodies and sparse constraints.
+/// True if a `motion` of many bodies with sparse constraints is such a proof.
 pub(super) fn proves_sparse(
     rows: &[RigidRow],
     sparse: &[SparseRow],

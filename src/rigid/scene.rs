@@ -1,5 +1,6 @@
 //! The scene of the rigid-body analysis: bodies, and contact constraints on their motions.
 
+use contact_dd_partition::scene::units::Units;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::friction::ForceBound;
@@ -14,6 +15,8 @@ const RESULTANT_ROUND_OFF: f64 = 1e-12;
 pub struct BodyState {
     /// Frame of its rigid motions.
     pub frame: BodyFrame,
+    /// Units of its coordinates in messages.
+    pub units: Units,
     /// Rows of its supports on its rigid motions, the prescribed displacement last (m).
     pub supports: Vec<Vec<f64>>,
     /// True if springs hold it, as rows of its supports that prescribe 0; then supports don't move it.
@@ -27,6 +30,11 @@ pub struct BodyState {
 }
 
 impl BodyState {
+    /// Description of one of its rigid motions, with coordinates in their units.
+    pub(super) fn describe(&self, dim: usize, z: &[f64]) -> String {
+        self.frame.describe(dim, self.units, z)
+    }
+
     /// Sets resultants of round-off to zero: they would move an unloaded body until a contact stops it.
     pub(super) fn drop_round_off(&mut self) {
         let round_off = RESULTANT_ROUND_OFF * self.load_scale;

@@ -1,5 +1,7 @@
 //! Squares and cubes for tests.
 
+use contact_dd_partition::scene::units::Units;
+
 use super::scene::{BodyState, Friction, RigidRow, Scene};
 use crate::contact::friction::ForceBound;
 use crate::fem::body_frame::BodyFrame;
@@ -8,6 +10,7 @@ use crate::fem::body_frame::BodyFrame;
 pub fn body(low: [f64; 3], high: [f64; 3], load: &[f64]) -> BodyState {
     BodyState {
         frame: BodyFrame::new(low, high),
+        units: Units::Metre,
         supports: Vec::new(),
         has_springs: false,
         load: load.to_vec(),
@@ -22,7 +25,7 @@ pub fn square(load: [f64; 3]) -> BodyState {
 }
 
 impl BodyState {
-    /// The same body, supported at `x` along an axis with the prescribed displacement `value`.
+    /// This body, supported at `x` along an axis with the prescribed displacement `value`.
     pub fn held(mut self, x: [f64; 3], along: [f64; 3], value: f64) -> Self {
         let mut row = self.frame.action(2, &x, &along);
         row.push(value);
@@ -43,12 +46,12 @@ impl BodyState {
 }
 
 impl RigidRow {
-    /// The same constraint with a gap.
+    /// This constraint with a gap.
     pub fn open(self, gap: f64) -> Self {
         Self { gap, ..self }
     }
 
-    /// The same constraint as a tangential one of the point whose normal constraint has this number.
+    /// This constraint as the tangential one of a point whose normal constraint has this number.
     pub fn rough(self, normal: usize, bound: ForceBound) -> Self {
         let friction = Some(Friction { normal, bound });
         Self { friction, ..self }

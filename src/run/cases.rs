@@ -4,6 +4,7 @@ use std::path::Path;
 
 use contact_dd_partition::contact_point::{ContactPoint, Law};
 use contact_dd_partition::id::{OnBlocks, OnGroups};
+use contact_dd_partition::mismatch::in_plain_words;
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::{Parameter, ParameterKind};
 use serde::{Deserialize, Serialize};
@@ -33,7 +34,8 @@ impl Cases {
         let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
         let cases: Self = serde_json::from_str(&text).map_err(|error| {
             wrong(format!(
-                "{error}; expected {{\"parameters\": [names], \"cases\": [[values], …]}}"
+                "{}; the file's form is {{\"parameters\": [names], \"cases\": [[values], …]}}",
+                described(&error)
             ))
         })?;
         let parameters = cases.of(catalog).map_err(wrong)?;
@@ -98,6 +100,17 @@ impl Cases {
             }
         };
         self.parameters.iter().map(find).collect()
+    }
+}
+
+/// The error in a file in JSON, with its line.
+fn described(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let message = (text.rsplit_once(" at line ")).map_or(text.as_str(), |(message, _)| message);
+    let line = error.line();
+    match error.is_data() {
+        true => format!("line {line}: {}", in_plain_words(message)),
+        false => format!("line {line}: this isn't valid JSON: {message}"),
     }
 }
 

@@ -100,8 +100,8 @@ impl Stages<'_> {
         Some(robust)
     }
 
-    /// This rank's part of a stage, for the first of some `choices` for which there is memory; for the `first` stage
-    /// the problem is logged. Collective.
+    /// The part of a stage on this rank, by the first of some `choices` for which there is memory; for the `first`
+    /// stage the problem is logged. Collective.
     ///
     /// # Errors
     /// Too little memory, or invalid data in the problem file.

@@ -69,8 +69,8 @@ fn large_strain((block, largest): (BlockId, LargestStrain), catalog: &Catalog) -
     let body = &catalog.bodies[catalog.body_of(block)].name;
     let at = largest.at.map(short);
     Some(format!(
-        "body '{body}': strains of up to {} at ({}) {}, where small ones are meant, above {} in {} % of the bodies; are the \
-         units of loads, displacements and stiffness the same?",
+        "body '{body}': strains of up to {} at ({}) {}, beyond small strains, above {} in {} % of the bodies; are the units \
+         of loads, displacements and stiffness consistent?",
         short(largest.size),
         at[..catalog.dim].join(", "),
         catalog.units.length(),
@@ -82,7 +82,7 @@ fn large_strain((block, largest): (BlockId, LargestStrain), catalog: &Catalog) -
 /// The warning of a motion at the friction limit.
 fn at_limit(motion: &str) -> String {
     format!(
-        "limit of friction: friction alone holds {motion}, with all the force that the law allows, which is the same \
-         wherever it slides to; position not unique"
+        "limit of friction: friction alone restrains {motion}, and is at its bound at every distance of sliding; position \
+         not unique"
     )
 }

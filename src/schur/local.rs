@@ -34,8 +34,8 @@ impl LocalSchur {
         Self::condensed(matrix, interior, matrix, par)
     }
 
-    /// The same for a block without free motion whose pivots are nevertheless round-off because it bends under very
-    /// small forces: springs of the size of round-off make K_II definite.
+    /// Factorizes a block without free motion whose pivots are round-off because it bends under very small forces:
+    /// springs of the size of round-off make K_II definite.
     ///
     /// # Errors
     /// K_II isn't positive definite even with these springs.

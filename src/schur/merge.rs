@@ -112,7 +112,8 @@ impl Merge {
         merged
     }
 
-    /// The same with some of the front's `own` normal jumps eliminated; those kept come after the children's jumps.
+    /// Merges `children` as [`new`](Self::new) does, and eliminates some of the front's `own` normal jumps; those
+    /// kept come after the children's jumps.
     ///
     /// # Errors
     /// A_EE isn't positive definite.

@@ -42,7 +42,7 @@ fn elimination_tree(graph: &Graph, order: &[u32]) -> Vec<u32> {
     parents
 }
 
-/// Children before parents, subtrees together.
+/// The postorder of a tree: children before parents, subtrees together.
 fn postorder(parents: &[u32]) -> Vec<u32> {
     let n = parents.len();
     let mut children = Children::new(parents);

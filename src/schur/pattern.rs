@@ -36,7 +36,7 @@ impl Cliques {
         &self.members[self.offsets[c]..self.offsets[c + 1]]
     }
 
-    /// For each of `n` unknowns the lists that contain it, as offsets and list numbers.
+    /// The lists that contain each of `n` unknowns, as offsets and list numbers.
     pub(super) fn transposed(&self, n: usize) -> (Vec<usize>, Vec<u32>) {
         let mut offsets = vec![0; n + 1];
         for &i in &self.members {

@@ -18,7 +18,7 @@ pub const MANUAL: Manual = Manual {
         ),
         (
             "contact-dd-mpi --check problem.h5",
-            "validates a problem file and tells what solving it would take",
+            "validates a problem file and estimates memory and arithmetic of a run",
         ),
         (
             "mpirun -n 4 contact-dd-mpi problem.h5 -o out.vtkhdf --report report.json",
@@ -51,7 +51,7 @@ pub const MANUAL: Manual = Manual {
         ),
         (
             "problem.vtkhdf",
-            "the result, for ParaView and h5py; it gets its name when it is whole",
+            "the result, for ParaView and h5py; it gets its name when it is complete",
         ),
     ],
     environment: &[
@@ -80,7 +80,7 @@ pub struct CommandLine {
     #[command(flatten)]
     pub run: RunSettings,
 
-    /// Validate the problem file, estimate memory and flops of a run, and exit
+    /// Validate the problem file, estimate memory (bytes) and arithmetic (flops) of a run, and exit
     #[arg(long, help_heading = "Running")]
     pub check: bool,
 
@@ -111,7 +111,7 @@ pub struct RunSettings {
           help_heading = "Output")]
     pub output: Option<PathBuf>,
 
-    /// Write the report in JSON, too
+    /// Write the report to a file in JSON, too
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = "Output")]
     pub report: Option<PathBuf>,
 
@@ -123,25 +123,25 @@ pub struct RunSettings {
     #[arg(short, long, help_heading = "Output")]
     pub quiet: bool,
 
-    /// Go on after the last load step that a stopped run finished
+    /// Continue a stopped run after its last finished load step
     #[arg(long, help_heading = "Running")]
     pub restart: bool,
 
-    /// Look for another solution with friction from other starts, and say whether there is one
+    /// With friction: solve again from other starting points, and report whether there is another solution
     #[arg(long, help_heading = "Running")]
     pub second_start: bool,
 
-    /// Solve for the cases of a study instead, and write a table of the quantities
-    #[arg(long, value_name = "CASES", value_hint = ValueHint::FilePath, help_heading = "Running",
+    /// Solve the cases of a study instead, and write a table of their quantities
+    #[arg(long, value_name = "CASES.json", value_hint = ValueHint::FilePath, help_heading = "Running",
           conflicts_with_all = ["restart", "report", "second_start", "check"])]
     pub study: Option<PathBuf>,
 
-    /// How the linear interface problem is solved, with --method newton [default: what takes less time]
+    /// Solver of the linear interface problem, for --method newton [default: the faster one, by an estimate]
     #[arg(long, value_name = "NAME", value_enum, help_heading = "Solving")]
     pub interface: Option<InterfaceMethod>,
 
     /// Threads of each rank [default: 1]
-    #[arg(long, value_name = "N", help_heading = "Running")]
+    #[arg(long, value_name = "N", value_parser = threads, help_heading = "Running")]
     pub threads: Option<NonZeroU16>,
 }
 
@@ -166,6 +166,14 @@ pub enum LogFormat {
     Text,
     /// One JSON object in each line
     Json,
+}
+
+/// Parses a number of threads.
+///
+/// # Errors
+/// It isn't a whole number above 0, or too large.
+fn threads(text: &str) -> Result<NonZeroU16, String> {
+    (text.parse()).map_err(|_| format!("expected a whole number from 1 to {}", u16::MAX))
 }
 
 impl CommandLine {

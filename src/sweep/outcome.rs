@@ -23,7 +23,8 @@ const AGAINST_CONTACT: f64 = 1e-11;
 /// Residual of equilibrium relative to the load above which the result is meaningless.
 const NOT_BALANCED_OF_LOAD: f64 = 1e-3;
 
-/// The same limit if the unbalanced part may be a body with a free motion.
+/// Residual of equilibrium relative to the load above which the result is meaningless if the unbalanced part may be a
+/// body with a free motion.
 const NOT_BALANCED_OF_MOTION: f64 = 1e-2;
 
 /// Most contact points that are named.
@@ -215,7 +216,7 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         equilibrium > NOT_BALANCED || (not_round_off && equilibrium_of_load > NOT_BALANCED_OF_LOAD);
     if unbalanced || is_driven || penetration > NOT_BALANCED || !certificate.is_a_number() {
         let moves = match is_driven || equilibrium_of_load > NOT_BALANCED_OF_MOTION {
-            true => ", or something slides or parts on and on",
+            true => ", or a body slides or separates without limit",
             false => "",
         };
         return Some(format!(
@@ -225,8 +226,8 @@ fn fault_of(certificate: &Certificate, finite: bool) -> Option<String> {
         ));
     }
     (!finite).then(|| {
-        "some of displacements, stresses, forces and energies are no finite numbers: loads or stiffnesses are too large \
-         or too small, or something moves without end"
+        "some displacements, stresses, forces or energies aren't finite: loads or stiffnesses are too large or too small, \
+         or a body moves without limit"
             .into()
     })
 }

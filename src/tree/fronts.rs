@@ -24,7 +24,7 @@ use crate::tree::front_jumps::FrontJumps;
 /// contacts hold it: the next active set closes those that stop it.
 const SPRING: f64 = 1e-9;
 
-/// Least pivot between clusters, relative to its diagonal entry, above round-off.
+/// Pivot between clusters, relative to its diagonal entry, above which it is more than round-off.
 const NO_PIVOT: f64 = 1e-12;
 
 /// A front with a fixed status of its own normal jumps.

@@ -214,7 +214,7 @@ fn the_axis_is_no_place_to_cross_or_to_leave() {
     );
     let left = refused("[[displacement]]\non = 'ring left'\nx = 1e-3\n", [0.0, 1.0]);
     assert!(
-        left.contains("axis of symmetry says 0 for the displacement along (1, 0, 0)"),
+        left.contains("axis of symmetry prescribes 0 for the displacement along (1, 0, 0)"),
         "{left}"
     );
     let contact = "[[contact]]\nname = 'c'\nsides = ['ring left']\nobstacle = {point = [0, 0], normal = [1, 0]}\n";

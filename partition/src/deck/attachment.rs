@@ -9,8 +9,8 @@ use super::reference::NodeAxis;
 use super::springs::Springs;
 use crate::error::InputError;
 
-/// Refuses forces and supports of nodes that belong to nothing. Zero supports of a set of which other nodes are attached
-/// are left out with a warning: sets of planes often have nodes that no element has.
+/// Refuses forces and supports of nodes that belong to no element and no coupling. Zero supports of a set of which
+/// other nodes are attached are left out with a warning: sets of planes often have nodes that no element has.
 ///
 /// # Errors
 /// The line of the force or support.

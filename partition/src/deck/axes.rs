@@ -13,7 +13,7 @@ pub(super) type Axes = [Vector; 3];
 /// A local system of coordinates.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum System {
-    /// The same axes everywhere.
+    /// Axes that are the same everywhere.
     Rectangular(Axes),
     /// Radial, hoop and axial directions, for the axis through two points.
     Cylindrical(Vector, Vector),

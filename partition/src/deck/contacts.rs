@@ -92,7 +92,7 @@ struct General {
 /// All contacts of a deck.
 #[derive(Default)]
 pub(super) struct Contacts {
-    /// At least one interaction by name, in the order of their steps.
+    /// Interactions by name, for each name at least one, in the order of their steps.
     interactions: BTreeMap<String, Vec<Interaction>>,
     /// The interaction being read, by name in capitals.
     open: Option<String>,

@@ -40,7 +40,7 @@ struct Coupling {
     name: String,
     coupled: Coupled,
     node: u32,
-    /// `None` before the keyword that defines it.
+    /// The kind of coupling; `None` before the keyword that defines it.
     kind: Option<Kind>,
     /// Name of the local system of its displacements, in capitals.
     orientation: Option<String>,

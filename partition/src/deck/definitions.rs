@@ -32,7 +32,7 @@ const LAWS: [&str; 5] = [
     "SURFACE BEHAVIOR",
 ];
 
-/// Refuses what is defined twice. Sets and surfaces may be: another definition adds members, as in CalculiX.
+/// Refuses repeated definitions. Sets and surfaces may be: another definition adds members, as in CalculiX.
 ///
 /// # Errors
 /// The second definition, with the line of the first.

@@ -85,7 +85,7 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// True if the deck's mesh has what is being read: a part without instances isn't there.
+    /// True if the deck's mesh contains the part being read, as it doesn't without instances of it.
     pub(super) fn is_placed(&self) -> bool {
         !matches!(self.scope, Scope::Part(_)) || !self.instances().is_empty()
     }
@@ -170,7 +170,7 @@ impl<'a> Places<'a> {
         self.dim
     }
 
-    /// For every node whether it belongs to a cell.
+    /// Flags of the nodes that belong to a cell.
     pub(super) fn with_cells(&self) -> Vec<bool> {
         let dim = self.dim();
         let mut has_cell = vec![false; self.deck.points.len()];

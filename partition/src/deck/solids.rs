@@ -28,7 +28,7 @@ pub(super) fn check(places: &Places) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Refuses a section of elements without stiffness here, which would be lost without a word.
+/// Refuses a section of elements that have no stiffness here, as ignoring it would change the answer silently.
 ///
 /// # Errors
 /// A truss, a shell or a plane element in space, which can only be a side, or a beam, which is left out.
@@ -84,7 +84,7 @@ fn is_beam(kind: &str) -> bool {
     BEAMS.iter().any(|beam| kind.starts_with(beam))
 }
 
-/// What a deck has instead of solids.
+/// The elements that a deck without solids has, in words.
 fn instead(places: &Places) -> String {
     let blocks = places.source.blocks.iter();
     let types: BTreeSet<String> = blocks

@@ -38,7 +38,7 @@ struct Property {
     place: LinePlace,
     /// Set by name in capitals.
     set: String,
-    /// `None` for the line between the ends.
+    /// The axis; `None` for the line between the ends.
     axis: Option<usize>,
     stiffness: f64,
 }

@@ -198,8 +198,8 @@ fn geometric(graph: &Graph, aim: Aim) -> Vec<Vec<bool>> {
     tried.flat_map(|(_, slab)| slab.cuts(graph)).collect()
 }
 
-/// At most `most` of `len` vertices, spread evenly: at multiples of the golden ratio, as equal strides through a
-/// regular mesh would pick its vertices from few rows.
+/// A sample of at most `most` of `len` vertices, spread evenly: at multiples of the golden ratio, as equal strides
+/// through a regular mesh would pick its vertices from few rows.
 fn sample(len: usize, most: usize) -> Vec<usize> {
     if len <= most {
         return (0..len).collect();

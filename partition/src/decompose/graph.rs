@@ -11,7 +11,7 @@ use crate::model::Model;
 pub(super) struct Edge {
     /// The vertex at its other end.
     pub to: u32,
-    /// Cost of cutting it; the lowest bit tells a facet from a contact.
+    /// Cost of cutting it; the lowest bit distinguishes facets from contacts.
     packed: u32,
 }
 
@@ -24,12 +24,12 @@ impl Edge {
         }
     }
 
-    /// The same edge to another vertex.
+    /// This edge to another vertex.
     pub fn towards(self, to: u32) -> Self {
         Self { to, ..self }
     }
 
-    /// One edge that replaces this one and another to the same vertex.
+    /// The edge that replaces this one and another to the same vertex.
     pub fn joined(self, other: &Self) -> Self {
         let is_facet = self.is_facet() || other.is_facet();
         Self::new(self.to, self.weight() + other.weight(), is_facet)

@@ -154,7 +154,7 @@ impl Piece {
         least
     }
 
-    /// Both halves, bisecting the directions in turn, by de Casteljau's algorithm.
+    /// The two halves of a bisection, by de Casteljau's algorithm; directions are bisected in turn.
     fn halves(mut self) -> [Self; 2] {
         let axis = self.halvings % self.dim;
         let middle = 0.5 * (self.low[axis] + self.high[axis]);

@@ -9,9 +9,9 @@ use crate::element::{ElementKind, Elements};
 pub(super) enum Pattern {
     /// Columns and rows of rectangles, each divided along its shorter diagonal unless quadrilaterals are wanted.
     Grid(usize, usize),
-    /// One row of triangles with this number of segments at the bottom, and twice as many at the top.
+    /// A row of triangles with this number of segments at the bottom, and twice as many at the top.
     Refining(usize),
-    /// One row of triangles with this number of segments at the top, and twice as many at the bottom.
+    /// A row of triangles with this number of segments at the top, and twice as many at the bottom.
     Coarsening(usize),
 }
 

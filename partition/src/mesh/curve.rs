@@ -8,8 +8,8 @@ use crate::element::Elements;
 const BITS: u32 = 21;
 
 impl Mesh {
-    /// The same mesh with its cells along Morton's curve, and its nodes in the order of their first cell: loops over a
-    /// large mesh take half the time.
+    /// The mesh with its cells along Morton's curve, and its nodes in the order of their first cell: loops over a large
+    /// mesh take half the time.
     #[must_use]
     pub fn along_curve(mut self) -> Self {
         let order = self.cells_along_curve();

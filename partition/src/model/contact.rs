@@ -37,7 +37,7 @@ struct Paired {
     probes: Vec<Probe<u32>>,
     /// Largest distance of straight facets from the curve that they approximate (m).
     off: f64,
-    /// The same of facets in the middle of a curve, where the meshes of the sides don't match; else 0 (m).
+    /// The sagitta of facets in the middle of a curve, where the meshes of the sides don't match; else 0 (m).
     sagitta: f64,
     warnings: Vec<String>,
 }

@@ -251,7 +251,7 @@ impl CouplingOnMesh<'_> {
         match most > 0.0 && least > NO_INERTIA * most {
             true => Ok(inertia),
             false => Err(self.refused(
-                "its nodes don't tell how the point turns, as they lie on a line with it; expected a side, or nodes that don't",
+                "its nodes don't determine how the point turns, as they lie on a line with it; expected a side, or nodes that don't",
             )),
         }
     }
@@ -318,7 +318,9 @@ impl CouplingOnMesh<'_> {
         let turns = means.split_off(frame.dim);
         let arm = difference(frame.origin, middle);
         let rest = uncoupled.forms(frame, (&means, &turns), &inertia, arm);
-        forms.extend(rest.ok_or_else(|| self.refused("its nodes don't tell how the point turns"))?);
+        forms.extend(
+            rest.ok_or_else(|| self.refused("its nodes don't determine how the point turns"))?,
+        );
         Ok(forms)
     }
 

@@ -51,7 +51,7 @@ struct Ending {
 /// The crack tips of a plane mesh.
 #[derive(Default)]
 pub(super) struct CrackTips {
-    /// Those with enough facets around them, in the order of their positions, each with a cell that contains it.
+    /// The tips with enough facets around them, in the order of their positions, each with a cell that contains it.
     pub tips: Vec<(u32, CrackTip)>,
     /// The names of the others, each with its position.
     pub coarse: Vec<(String, [f64; 3])>,

@@ -219,7 +219,7 @@ fn of_degree(
         (&[xx, yy, xy], Some(PlaneState::Strain)) => {
             let (Some([zx, zy, _]), Some(_)) = (material.out_of_plane, material.poisson) else {
                 return Err(
-                    "in plane strain heat needs the stiffness out of the plane; expected a material of \
+                    "in plane strain thermal strain needs the stiffness out of the plane; expected a material of \
                      'young' and 'poisson'"
                         .into(),
                 );

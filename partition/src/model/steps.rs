@@ -38,7 +38,7 @@ pub(super) struct Loads {
     pub initial_stress: InitialStress,
     /// The steps; none where the scene has none.
     pub steps: Vec<ModelStep>,
-    /// For each boundary condition whether it prescribes a part of what another one of another kind prescribes.
+    /// Flags of the boundary conditions that prescribe a displacement which one of another kind prescribes, too.
     pub decides: Vec<bool>,
 }
 

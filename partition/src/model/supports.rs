@@ -52,7 +52,7 @@ fn on_axis(scene: &Scene, mesh: &Mesh) -> impl Iterator<Item = u32> {
 pub(super) struct Supports {
     /// Ascending by node, the rows of one node orthonormal.
     pub rows: Vec<Support>,
-    /// For every boundary condition the earlier ones that hold a part of what it prescribes: at common nodes, the force
+    /// The earlier boundary conditions that share prescribed displacements with each one: at common nodes, the force
     /// along the direction of the earlier one is assigned to that one.
     holders: Vec<BTreeSet<usize>>,
 }
@@ -65,7 +65,7 @@ impl Supports {
             let holders: Vec<&str> = holders.iter().map(short).collect();
             match holders.is_empty() {
                 true => name.clone(),
-                false => format!("{name}, without what {} holds of it", holders.join(" or ")),
+                false => format!("{name}, except the part of {}", holders.join(" or ")),
             }
         });
         named.collect()
@@ -73,7 +73,7 @@ impl Supports {
 }
 
 impl Supports {
-    /// For each boundary condition whether it holds a part of one after the first `displacements`.
+    /// Flags of the boundary conditions that share prescribed displacements with one after the first `displacements`.
     pub fn decide(&self, displacements: usize) -> Vec<bool> {
         let others = self.holders.iter().skip(displacements);
         let held: BTreeSet<usize> = others.flatten().copied().collect();
@@ -198,15 +198,18 @@ fn orthonormal(
         let agreed = if exact.is_some() { AGREE } else { PARALLEL };
         if value.abs() > agreed * scale {
             let others = match exact {
-                Some(other) => format!("{} says {}", names[other.condition], other.value),
+                Some(other) => format!("{} prescribes {}", names[other.condition], other.value),
                 None => {
                     let before = rows[..index].iter().map(|r| names[r.condition].as_str());
-                    format!("{} say otherwise", before.collect::<Vec<_>>().join(" and "))
+                    format!(
+                        "{} prescribe another one",
+                        before.collect::<Vec<_>>().join(" and ")
+                    )
                 }
             };
             let [x, y, z] = row.direction;
             return Err(InputError::new(format!(
-                "node {}: {} says {} for the displacement along ({x}, {y}, {z}), {others}; \
+                "node {}: {} prescribes {} for the displacement along ({x}, {y}, {z}), {others}; \
                  expected conditions that agree",
                 mesh.node_tags[node as usize], names[row.condition], row.value
             )));

@@ -82,7 +82,7 @@ pub const ATTRIBUTES: &[Attribute] = &[
     attribute("/", "version", "2"),
     attribute("/", "title", "a line of text; optional"),
     attribute("/", "units",
-        "`\"m\"` (m, N, Pa) or `\"mm\"` (mm, N, MPa), what messages and pictures call them; optional"),
+        "`\"m\"` (m, N, Pa) or `\"mm\"` (mm, N, MPa), the names of units in messages and pictures; optional"),
     attribute("/", "dimension", "2 or 3"),
     attribute("/", "plane", "`\"strain\"`, `\"stress\"` or `\"axisymmetric\"` (x the radius, y the axis x = 0, zz the hoop); absent in 3 dimensions"),
     attribute("/VTKHDF", "Version", "`[2, 0]`; optional"),
@@ -92,10 +92,10 @@ pub const ATTRIBUTES: &[Attribute] = &[
     attribute("/settings", "method", "`\"newton\"`, `\"anderson\"` or `\"picard\"`"),
     attribute("/settings", "tolerance",
         "residual of the interface problem at which sweeps end, above 0"),
-    attribute("/settings", "max_sweeps", "most sweeps, an integer"),
+    attribute("/settings", "max_sweeps", "largest number of sweeps, an integer"),
     attribute("/settings", "relaxation", "relaxation of picard, above 0"),
     attribute("/settings", "no_stress",
-        "true: stresses are left out. A truth value as h5py writes it, or 1 or 0"),
+        "true: stresses are left out. A Boolean as h5py writes it, or 1 or 0"),
 ];
 
 /// All datasets, starting with those whose shapes define the count of a letter.
@@ -104,11 +104,12 @@ pub const FIELDS: &[Field] = &[
     field("/steps/name", "L", Names, "at least one"),
     field("/steps/time", "L", Numbers, "ascending"),
     optional("/steps/body", "L, B", Codes("presence", 2),
-        "1 where the body is there, 0 where it isn't: nothing may act on it then, no force, no prescribed displacement but 0, no \
-         initial stress, and its contact points aren't there either; without it all bodies are"),
+        "1 where the body is active, 0 where it is inactive: then neither a force nor an initial stress nor a prescribed \
+         displacement other than 0 may act on it, and its contact points are inactive, too; without this dataset all \
+         bodies are active"),
     optional("/steps/contact", "L, Q", Codes("presence", 2),
-        "1 where the contact is there, if its bodies are, 0 where it isn't; without it all contacts are. Gap and slip of what \
-         comes count from the displacements at the end of the step before"),
+        "1 where the contact is active if its bodies are, 0 where it is inactive; without this dataset all contacts are \
+         active. Gap and slip of an activated contact count from the displacements at the end of the previous step"),
     field("/VTKHDF/NumberOfPoints", "N", Sizes('P'), "points of each subdomain"),
     field("/VTKHDF/NumberOfCells", "N", Sizes('C'), "cells of each subdomain"),
     field("/VTKHDF/NumberOfConnectivityIds", "N", Sizes('K'),
@@ -143,12 +144,12 @@ pub const FIELDS: &[Field] = &[
         "1 where the 8-node quadrilaterals and 20-node hexahedra of the material are integrated at two points in each direction, \
          0 where at three; without it all are at three"),
     field("/bodies/name", "B", Names,
-        "a body is what hangs together through shared nodes, its subdomains through Γ"),
+        "names of the bodies; a body is connected through shared nodes, its subdomains through Γ"),
     field("/subdomains/body", "N", Indices("body", 'B'), "body of each subdomain"),
     field("/subdomains/group", "N", Integers, "contact group of each subdomain, −1 for none"),
     optional("/subdomains/reference", "N", Integers,
-        "number of the last points of each subdomain that no cell has: corners of the frames of reference points of couplings, \
-         which move with its body; without it there are none"),
+        "number of the last points of each subdomain, which belong to no cell: corners of the frames of reference points \
+         of couplings, which move with its body; without this dataset there are none"),
     field("/hierarchy/parent", "T", Integers, "parent of each node, −1 for a root"),
     optional("/hierarchy/cluster", "Z", Indices("node of the hierarchy", 'T'),
         "the nodes between which `--interface iterative` works, strictly ascending: each subdomain is one of them or \
@@ -181,8 +182,8 @@ pub const FIELDS: &[Field] = &[
     field("/force/node", "F", Integers, "node, strictly ascending within a subdomain"),
     field("/force/value", "F, L?, d", Numbers, "nodal force [N], in every load step"),
     optional("/initial_stress/cell", "C, L?, 6", Numbers,
-        "stress that the cell has without strain, its mean, in every load step: XX, YY, ZZ, XY, YZ, XZ [Pa]. Results add it to \
-         C ε; what it does to nodes is in `/force`"),
+        "initial stress of the cell, its mean, in every load step: XX, YY, ZZ, XY, YZ, XZ [Pa]. Results add it to C ε; \
+         its nodal forces are in `/force`"),
     optional("/initial_stress/node", "P, L?, 6", Numbers,
         "the same at the node, in the first of the materials that the subdomain has around it; with `cell` or not at all"),
     field("/contact/name", "Q", GroupNames, "names of the contacts"),
@@ -214,32 +215,33 @@ pub const FIELDS: &[Field] = &[
     field("/contact/entry_weight", "E", Numbers,
         "weight w of the node's displacement: w n is its coefficient"),
     optional("/contact/law", "R", Codes("law", 4),
-        "what bounds the tangential force: 0 nothing, there is none; 1 Tresca friction, `shear_bound` wherever the \
-         point is; 2 Coulomb's, `friction` times the normal force, and `shear_bound` as cohesion, where it is closed; 3 nothing \
-         bounds any force: a tie, whose jump is 0 along the normal and the tangents, whatever the gap"),
+        "law of the point: 0 without friction; 1 Tresca friction, bounded by `shear_bound`, closed or open; 2 Coulomb \
+         friction, bounded by `friction` times the normal force and by `shear_bound` as cohesion, where it is closed; 3 \
+         a tie, whose jump is 0 along the normal and the tangents, whatever the gap, and whose forces have no bound"),
     optional("/contact/entry_axis", "E, d", Numbers,
         "of an equation, a point of law 3 in which every entry has a direction of its own, a unit vector: w times the displacement \
          along it, summed over the entries, is `gap`; zeros at the entries of other points"),
     optional("/contact/friction", "R", NotNegative,
-        "coefficient of friction; 0 but for Coulomb's; with `law` and `shear_bound` or not at all"),
+        "coefficient of Coulomb friction; 0 for other laws; with `law` and `shear_bound` or not at all"),
     optional("/contact/shear_bound", "R", NotNegative,
         "bound of the tangential force over `area` [Pa]; 0 where there is no friction"),
     optional("/contact/stiffness", "R, 2", NotNegative,
-        "stiffness of what lies between the sides, along the normal and along the tangents, its `area` times the stiffness per \
-         area [N/m]; 0 where it is rigid. Along the normal the sides overlap by force over stiffness, along the tangents what \
-         sticks is displaced by it. An equation with one along the normal is a spring between points, whose force is its multiplier"),
+        "contact stiffness along the normal and along the tangents, `area` times the stiffness per area [N/m]; 0 where \
+         the contact is rigid. Along the normal the sides overlap by force over stiffness, along the tangents sticking \
+         points are displaced by it. An equation with a stiffness along the normal is a spring between points, whose \
+         force is its multiplier"),
     optional("/contact/absolute", "R", Codes("start", 2),
-        "1 where `gap` is that of the undeformed bodies also if the contact comes in a later load step, 0 where it is that of the \
-         bodies as they are then; without it all are 0"),
+        "1 where `gap` is that of the undeformed bodies even if the contact is activated in a later load step, 0 where \
+         it is relative to the position of the bodies then; without this dataset all are 0"),
     optional("/contact/motion", "R, L?, d", Numbers,
-        "displacement of the obstacle that the point faces, in every load step [m]; of an equation, along the axis of its first \
-         entry, what its value is beyond `gap`; zeros at other points"),
+        "displacement of the obstacle that the point faces, in every load step [m]; of an equation the increment of its \
+         value beyond `gap`, along the axis of its first entry; zeros at other points"),
     optional("/contact/preload", "R, L?", Numbers,
-        "of the first point of a pretension the force that `/force` exerts across its cut, in every load step [N]; zeros at other \
-         points. Points of a pretension are equations with `node_a` and `node_b`, of the first of which entries 0 and 1 are a \
-         node of the cut on both sides; with `node_b` alone the point is what holds its shortening, and follows it"),
+        "of the first point of a pretension the force that `/force` exerts across its cut, in every load step [N]; zeros \
+         at other points. Points of a pretension are equations with `node_a` and `node_b`; entries 0 and 1 of the first \
+         are a node of the cut on both sides. A point with `node_b` alone holds the shortening, and comes after these"),
     field("/probe/contact", "V", Indices("contact", 'Q'),
-        "index of the contact of which the probe says whether its sides penetrate where no condition holds them"),
+        "index of the contact whose sides the probe checks for penetration at a node without condition"),
     field("/probe/node", "V", Integers, "name (`GlobalNodeId`) of its node, on the side without conditions"),
     field("/probe/normal", "V, d", UnitVectors, "unit vector n, outward of its side"),
     field("/probe/gap", "V", Numbers, "gap along n [m]; n · Σ weight · u beyond it is penetration"),
@@ -254,14 +256,14 @@ pub const FIELDS: &[Field] = &[
     field("/tip/position", "A, d", Numbers, "undeformed position [m]"),
     field("/tip/direction", "A, d", UnitVectors, "unit vector along which the crack would grow straight on"),
     field("/tip/radius", "A", Positive,
-        "radius of the disc around it that is evaluated [m]: nothing but the straight faces of this crack lies in it"),
+        "radius of the evaluated disc around it [m], which contains only the straight faces of this crack"),
     field("/tip/facet_offset", "A + 1", Offsets('X'), "facets of the crack faces in each disc"),
     field("/tip/facet_face", "X", Codes("face", 2), "0 for the lower face, 1 for the upper one, to whose left of `direction` the body lies"),
     field("/tip/facet_node", "X, 3", Integers,
         "names of the facet's nodes: the end nearer to the tip, the other end, the node between them or −1"),
     field("/tip/facet_distance", "X, 3", NotNegative,
         "distances of these from the tip [m]; without a node between them the last one isn't used"),
-    field("/quantity/name", "J", Names, "names of quantities that are asked for, each another one"),
+    field("/quantity/name", "J", Names, "names of the requested quantities, all different"),
     field("/quantity/kind", "J", Codes("kind of quantity", 12),
         "0 displacement of a node, 1 mean stress of a body, 2 reaction, 3 force of a contact on side a, 4 its mean pressure, 5 its \
          largest pressure, 6 gap that is left at one of its points, 7 elastic energy, 8 K_I of a crack tip, 9 its K_II, 10 its J, 11 \
@@ -269,11 +271,11 @@ pub const FIELDS: &[Field] = &[
     field("/quantity/direction", "J, d", Numbers,
         "direction of a reaction or a contact's force, in space axis of a moment; zeros for the sum of the normal forces, and for other kinds but \
          displacements, whose direction `/weight` has, too"),
-    field("/quantity/point", "J, d", Numbers, "point about which a moment is one [m]; zeros for other kinds"),
+    field("/quantity/point", "J, d", Numbers, "reference point of a moment [m]; zeros for other kinds"),
     field("/quantity/length", "J", NotNegative,
         "length over which a largest pressure is smoothed [m]; 0 for that of a point, and for other kinds"),
     field("/quantity/constant", "J, L?", Numbers,
-        "what is added to the sum of weights and displacements, in every load step: the mean of the initial stress"),
+        "constant added to the sum of weights times displacements, in every load step: the mean of the initial stress"),
     field("/quantity/node", "J", Integers, "name (`GlobalNodeId`) of the node of a displacement or a gap; −1 for other kinds"),
     field("/quantity/of_offset", "J + 1", Offsets('D'), "slices of `of`"),
     field("/quantity/of", "D", Integers,
@@ -286,8 +288,9 @@ pub const FIELDS: &[Field] = &[
         "factors of its displacement in the quantity; the parts of several subdomains add up"),
     field("/parameter/name", "O", Names, "names of parameters, with respect to which quantities have derivatives"),
     field("/parameter/kind", "O", Codes("kind of parameter", 5),
-        "0 factor of a load, 1 what the stiffness of materials is in proportion to, 2 what is added to the gap of a contact, 3 what is \
-         added to the displacements that a condition prescribes along an axis, 4 coefficient of friction"),
+        "0 factor of a load, 1 Young's modulus or a factor to which the stiffness of materials is proportional, 2 \
+         increment of the gap of a contact, 3 increment of the displacements that a condition prescribes along an axis, \
+         4 coefficient of friction"),
     field("/parameter/value", "O", NumbersOrNan, "its value; NaN where it isn't the same everywhere"),
     field("/parameter/of_offset", "O + 1", Offsets('p'), "slices of `of`"),
     field("/parameter/of", "p", Integers,

@@ -57,7 +57,7 @@ pub fn check(path: &Path, is_asked_to_stop: fn() -> bool) -> Result<(), InputErr
     checked.map_err(|error| error.in_file(path))
 }
 
-/// Reads the file if this process was started to try it; errors in its content are left to the process that reads it
+/// Reads the file if this process was started for a trial; errors in its content are left to the process that reads it
 /// afterwards.
 pub fn answer() -> Option<ExitCode> {
     let path = env::var_os(FILE)?;

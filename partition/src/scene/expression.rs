@@ -41,7 +41,7 @@ fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
-/// One step of an expression in postfix order.
+/// A step of an expression in postfix order.
 #[derive(Clone, Copy, Debug)]
 enum Step {
     Number(f64),

@@ -86,7 +86,7 @@ impl Scene {
         };
         let why = match (change, pretension.own) {
             (PretensionChange::Lock, Tightening::Force(_)) if index == 0 => {
-                "nothing is reached yet in the first step; expected 'lock' in a later one"
+                "there is no force to lock in the first step; expected 'lock' in a later one"
             }
             (PretensionChange::Lock, Tightening::Shortening(_)) => {
                 "a shortening that is given is held by itself; expected no 'lock'"
@@ -157,7 +157,7 @@ impl Scene {
     ) {
         for (index, cyclic) in self.cyclic.iter().enumerate() {
             let fault = (self.plane == Some(PlaneState::Axisymmetric))
-                .then(|| "what is the same all around an axis has no sectors".into());
+                .then(|| "an axisymmetric scene has no sectors".into());
             check(entry("cyclic", index, "sides"), fault);
             check(entry("cyclic", index, "point"), cyclic.point.fault(dim));
             let fault = match (&cyclic.axis, dim) {

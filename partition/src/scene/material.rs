@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
 use super::number::Constant;
+use super::place;
 use crate::magnitude::SMALLEST_STIFFNESS;
 use crate::stiffness::Stiffness;
 
@@ -88,6 +89,7 @@ struct MaterialKeys {
     poisson: Option<f64>,
     #[serde(default, deserialize_with = "stiffness")]
     stiffness: Option<Stiffness>,
+    #[serde(default, deserialize_with = "place::exactly")]
     out_of_plane: Option<[Constant; 3]>,
 }
 

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
@@ -9,8 +10,9 @@ use toml::de::{DeTable, DeValue, Error};
 use super::suggest::hint_and_known;
 use super::syntax;
 use crate::error::InputError;
+use crate::mismatch::in_plain_words;
 
-/// One step from a table or an array to an entry.
+/// A step from a table or an array to an entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     Key(String),
@@ -91,7 +93,7 @@ fn first_table(text: &str) -> Option<(usize, &str)> {
     None
 }
 
-/// Where a missing top-level key belongs, for the end of a message; empty for a key of a table, given by `path`.
+/// The place of a missing top-level key, for the end of a message; empty for a key of a table, given by `path`.
 fn above(text: &str, key: &str, path: &[Step]) -> String {
     if path.is_empty() && ["materials", "bodies"].contains(&key) {
         return format!("; expected a table [{key}.NAME] for each");
@@ -138,21 +140,25 @@ fn with_advice(text: &str, message: &str, path: &[Step]) -> String {
     });
     let table = keys.collect::<Vec<_>>().join(".");
     match syntax::double_brackets(&table) {
-        Some(advice) if message.starts_with("invalid type: map") => format!("{message}; {advice}"),
+        Some(advice) if message.starts_with("invalid type: map") => {
+            format!("it is a table; {advice}")
+        }
         _ => in_plain_words(message),
     }
 }
 
-/// The message of `serde` about a value, without names of Rust's types.
-fn in_plain_words(message: &str) -> String {
-    match message {
-        "wanted string or table" => "invalid type: expected a word in quotes".into(),
-        "floating-point number overflowed" => "too large; expected a finite number".into(),
-        _ => match message.strip_prefix("invalid length ") {
-            Some(rest) => format!("the number of entries is {rest}"),
-            None => message.replace(" usize", " a whole number, 0 or more"),
-        },
-    }
+/// Reads a list of exactly `N` entries: `toml` ignores further ones.
+pub(super) fn exactly<'de, D, T, const N: usize>(
+    deserializer: D,
+) -> Result<Option<[T; N]>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    let items = Vec::<T>::deserialize(deserializer)?;
+    let count = items.len();
+    let wrong = |_| D::Error::custom(format!("the number of entries is {count}; expected {N}"));
+    items.try_into().map(Some).map_err(wrong)
 }
 
 /// Reads an array of tables so that an error in one of them is located there: `toml` assigns an error without a

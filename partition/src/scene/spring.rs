@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer};
 use super::condition::Names;
 use super::contact::contact_name;
 use super::number::{Constant, Number, Vector};
+use super::place;
 use crate::element::geometry::length;
 
 /// A spring to the ground, or between two points.
@@ -67,6 +68,7 @@ pub enum SpringStiffness {
 )]
 struct SpringKeys {
     on: Option<Names>,
+    #[serde(default, deserialize_with = "place::exactly")]
     between: Option<[Names; 2]>,
     #[serde(default, deserialize_with = "optional_name")]
     name: Option<String>,

@@ -15,12 +15,12 @@ const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
     (
         "g shear shear_modulus k bulk bulk_modulus lambda lame",
         None,
-        "of a material the scene has 'young' and 'poisson': E = 2 G (1 + ν) = 3 K (1 − 2 ν)",
+        "a material has 'young' and 'poisson': E = 2 G (1 + ν) = 3 K (1 − 2 ν)",
     ),
     (
         "ex ey ez exx eyy ezz e1 e2 e3 gxy gyz gxz g12 g13 g23 nuxy nuyz nuxz nu12 nu13 nu23 orthotropic",
         Some("stiffness"),
-        "a material that isn't the same in all directions has a matrix 'stiffness'",
+        "an anisotropic material has a matrix 'stiffness'",
     ),
     (
         "yield yield_stress sigma_y plastic plasticity hardening",
@@ -35,12 +35,12 @@ const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
     (
         "alpha α cte expansion thermal_expansion temperature",
         Some("thermal"),
-        "heat is a body's thermal = { expansion = …, temperature = … }",
+        "thermal strain is a body's thermal = { expansion = …, temperature = … }",
     ),
     (
         "prestress insitu in_situ sigma0",
         Some("initial_stress"),
-        "stress before loading is a body's 'initial_stress'",
+        "in-situ stress is a body's 'initial_stress'",
     ),
     (
         "load loads force forces cload dload neumann point_load point_force",
@@ -55,7 +55,7 @@ const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
     (
         "symmetry roller rollers",
         Some("bilateral"),
-        "what slides along a plane, as at one of symmetry, is [[bilateral]]",
+        "rollers and planes of symmetry are [[bilateral]]",
     ),
     (
         "mu μ friction friction_coefficient coefficient cof fric",
@@ -65,32 +65,32 @@ const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
     (
         "master slave primary secondary target source side_a side_b surface_a surface_b",
         Some("sides"),
-        "a [[contact]] has two 'sides'",
+        "a [[contact]] has two 'sides', the slave first",
     ),
     (
         "clearance offset initial_gap",
         Some("gap"),
-        "a gap in place of the meshes' is the key 'gap' of a [[contact]]",
+        "a prescribed gap is the key 'gap' of a [[contact]]",
     ),
     (
         "penalty penalty_stiffness contact_stiffness normal_stiffness augmented kn",
         None,
-        "contact is exact: there is no penalty to choose",
+        "contact is exact, with no penalty to choose; a compliant [[contact]] has 'stiffness'",
     ),
     (
         "tie tied bonded glue",
         None,
-        "bodies whose meshes share nodes are tied",
+        "ties are [[tie]]; bodies whose meshes share nodes are tied, too",
     ),
     (
         "set nset elset group surface region location where boundaries",
         Some("on"),
-        "where a condition holds is its key 'on'",
+        "the place of a condition is its key 'on'",
     ),
     (
         "magnitude amount p",
         Some("value"),
-        "how large a load is is its key 'value'",
+        "the magnitude of a load is its key 'value'",
     ),
     (
         "tol eps epsilon",
@@ -100,7 +100,7 @@ const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
     (
         "iterations max_iterations maxiter max_iter",
         Some("max_sweeps"),
-        "the most sweeps are the key 'max_sweeps' of [solver]",
+        "the largest number of sweeps is the key 'max_sweeps' of [solver]",
     ),
     (
         "dim dimension type analysis",
@@ -112,11 +112,7 @@ const FOREIGN_WORDS: [(&str, Option<&str>, &str); 23] = [
         None,
         "in space the key 'plane' is left out",
     ),
-    (
-        "thickness",
-        None,
-        "forces are those of a thickness of 1, and all is in proportion to it",
-    ),
+    ("thickness", None, "forces are per unit of thickness"),
 ];
 
 /// The candidate with the fewest letters different from `word`, case-insensitive; the first of several.

@@ -71,7 +71,7 @@ fn a_problem_file_takes_the_place_of_no_file_that_it_is_made_from() {
     std::os::unix::fs::symlink("part.inc", folder.path().join("link.h5")).unwrap();
     for (output, _) in inputs.into_iter().chain([("link.h5", "")]) {
         let refused = program(&["scene.toml", "-o", output], folder.path());
-        assert!(said(&refused, 2).contains("what it is made from"));
+        assert!(said(&refused, 2).contains("would overwrite its input"));
     }
     for (name, text) in inputs {
         assert_eq!(fs::read_to_string(folder.path().join(name)).unwrap(), text);

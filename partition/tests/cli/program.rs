@@ -129,7 +129,11 @@ fn bad_usage_ends_with_2_and_unwritable_output_with_5() {
             2,
             "possible values: triangle3, triangle6",
         ),
-        (&["-n", "abc"], 2, "'abc' for '--subdomains <N>'"),
+        (
+            &["-n", "abc"],
+            2,
+            "'abc' for '--subdomains <N>': expected a whole number, 0 or more",
+        ),
         (&["-n", "-1"], 2, "'-1'"),
         (&["-n"], 2, "'--subdomains <N>'"),
         (&["--frobnicate"], 2, "'--frobnicate'"),

@@ -16,6 +16,18 @@ ON_THE_CUT = 1e-6
 
 
 @dataclass
+class Label:
+    """Title of an axis."""
+
+    name: str
+    remark: str = ""
+    """What is below the name."""
+
+    def with_unit(self, unit):
+        return f"{self.name} [{unit}]" + f"\n{self.remark}" * bool(self.remark)
+
+
+@dataclass
 class Chart:
     """Places of the conditions on paper."""
 
@@ -23,7 +35,7 @@ class Chart:
     """Flags of the conditions that are seen."""
     x: np.ndarray
     y: np.ndarray
-    labels: tuple[str, str]
+    labels: tuple[Label, Label]
     """Titles of the axes."""
     radius: float | None = None
     """Factor from an angle to x, where a side is unrolled."""
@@ -56,7 +68,7 @@ def seen_along(normal, rows, points):
     if np.abs(first).argmax() > np.abs(second).argmax():
         first, second = second, first
     x, y = placed(points[rows], first), placed(points[rows], second)
-    return Chart(rows, x, y, (along(first), along(second)))
+    return Chart(rows, x, y, (label_along(first), label_along(second)))
 
 
 def unrolled(axis, loaded, normals, points):
@@ -79,20 +91,21 @@ def unrolled(axis, loaded, normals, points):
     angle[angle < ON_THE_CUT - np.pi] += 2 * np.pi
     zero, label = first_angle(axis, first, second, inward)
     rows = np.arange(len(points))
-    return Chart(rows, radius * (angle - zero), placed(points, axis), (label, along(axis)), radius)
+    return Chart(rows, radius * (angle - zero), placed(points, axis), (label, label_along(axis)), radius)
 
 
 def first_angle(axis, first, second, inward):
-    """Where angles around an axis begin, from its direction `first`, and what they are called: by places, which in a
-    hole are opposite of their normals."""
+    """Start of the angles around an axis, from its direction `first`, and their title, which names positions: in a
+    hole these are opposite to the normals."""
     if np.abs(axis).max() <= NEARLY:
-        return 0.0, "angle from the load"
+        return 0.0, Label("angle from the load")
     across = np.abs(axis) < 0.5
     along_each = np.where(across, first, 0.0)
     k = np.abs(along_each).argmax()
     direction = np.sign(along_each[k]) * np.eye(3)[k]
     sign = "−" if (along_each[k] < 0) != inward else ""
-    return np.arctan2(direction @ second, direction @ first), f"angle from {sign}{'xyz'[k]} about {along(axis)}"
+    label = Label(f"angle from {sign}{'xyz'[k]} about {coordinate_of(axis)}")
+    return np.arctan2(direction @ second, direction @ first), label
 
 
 def placed(points, direction):
@@ -101,9 +114,15 @@ def placed(points, direction):
     return at if np.abs(direction).max() > NEARLY else at - at.min()
 
 
-def along(direction):
-    """A direction in words: a coordinate's name where it is one."""
+def coordinate_of(direction):
+    """The name of the coordinate that grows along a direction, `None` if none does."""
     k = np.abs(direction).argmax()
-    if abs(direction[k]) > NEARLY:
-        return "−" * bool(direction[k] < 0) + "xyz"[k]
-    return f"distance along ({', '.join(f'{component:.2f}' for component in direction + 0.0)})"
+    return "−" * bool(direction[k] < 0) + "xyz"[k] if abs(direction[k]) > NEARLY else None
+
+
+def label_along(direction):
+    """The title of an axis of paper: a coordinate of the scene, or the distance along the contact in a direction."""
+    if name := coordinate_of(direction):
+        return Label(name)
+    components = ", ".join(f"{round(component, 2) + 0.0:g}" for component in direction)
+    return Label("distance along the contact", f"direction ({components})")

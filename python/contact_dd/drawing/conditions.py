@@ -123,8 +123,7 @@ class Problem:
         return found
 
     def loads(self, surface):
-        """Nodes with forces on them, these forces, and body forces; without what initial stress and thermal strain are
-        held in balance by."""
+        """Loaded nodes, their forces, and body forces, without the forces of initial stress and thermal strain."""
         nothing = Conditions()
         if "force" not in self.file or "node" not in self.file["force"]:
             return nothing.nodes, nothing.forces, nothing.bodies
@@ -208,8 +207,8 @@ class Body:
 
 
 def body_force(body, total, is_inside, round_off):
-    """The forces of uniform densities on the nodes of a body, which are those that its nodes inside have; zeros where
-    none explain them. Without nodes inside all have to be explained."""
+    """Nodal forces of a uniform body force, determined from the inner nodes of a body; zeros if no uniform body force
+    explains the forces there, or those of all nodes in a body without inner ones."""
     inside = is_inside[body.nodes]
     if not inside.any() or np.abs(total[body.nodes[inside]]).max() <= round_off:
         inside = np.ones(len(body.nodes), dtype=bool)

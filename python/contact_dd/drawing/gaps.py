@@ -1,4 +1,4 @@
-"""Gaps: enlarged like all displacements, those that close would be drawn as overlaps, and those that stay, too."""
+"""Gaps in pictures: enlarged displacements would make closed, and even open ones, look like overlaps."""
 
 import numpy as np
 
@@ -12,8 +12,8 @@ MOST_LOOKED_AT = 100
 
 
 def honest_scale(result):
-    """The largest enlargement with which what is closed is drawn closed and what is open isn't drawn as an overlap;
-    infinite where any does."""
+    """The largest enlargement at which closed contacts look closed and open ones don't look like overlaps; infinite
+    without a limit."""
     tolerance = INVISIBLE * result.size
     least = np.inf
     closed, still_open = typical_gaps(result)

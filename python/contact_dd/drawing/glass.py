@@ -1,4 +1,4 @@
-"""Glass: bodies that are seen through, and in them the sides of contacts, which faces hide, by the colours of maps."""
+"""Transparent bodies, and the hidden sides of contacts inside them in the colours of their pressure maps."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -7,18 +7,18 @@ from matplotlib.patheffects import withStroke
 from contact_dd.drawing.pressure_map import COLOURS
 from contact_dd.drawing.raster import edges_of
 
-# How bright bodies are.
+# Brightness of bodies.
 GREY = 0.75
-# How opaque bodies are, and sides of contacts where they are open and where they press.
+# Opacity of bodies, of open and of closed parts of contacts.
 BODIES, OPEN, PRESSING = 0.35, 0.6, 0.95
 # Strengths of lines: edges of bodies that are seen and that are hidden, and of sides.
 SEEN, HIDDEN, OF_SIDES = 0.7, 0.3, 0.85
-# The least size of what presses, over that of the bodies, that is looked for within them.
+# Least size of the closed parts, relative to the bodies, for which the picture is drawn.
 LEAST = 1 / 8
 
 
 def is_seen_through(solid, names):
-    """Whether so much presses that it can be seen within the bodies."""
+    """Whether the closed parts of contacts are large enough to be seen inside the bodies."""
     tables = [solid.pressed[name] for name in names]
     pressing = [table["position"][table["pressure"] > 0] for table in tables]
     size = np.ptp(solid.result.points, axis=0).max()
@@ -40,7 +40,7 @@ def draw_glass(axes, solid, names):
         if not faces:
             continue
         values = solid.at_nodes(table) / table["pressure"].max()
-        # What presses comes last: what is open may lie before it.
+        # Closed parts come last: open ones may lie before them.
         for opacity, some in ((OPEN, [face for face in faces if values[face].max() <= 0]),
                               (PRESSING, [face for face in faces if values[face].max() > 0])):
             if some:

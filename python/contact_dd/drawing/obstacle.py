@@ -1,4 +1,4 @@
-"""Rigid obstacles: what contacts press on that is no body, drawn as ground under the sides of these contacts."""
+"""Rigid obstacles, drawn as ground under the sides of their contacts."""
 
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection

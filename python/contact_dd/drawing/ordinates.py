@@ -1,4 +1,4 @@
-"""Ordinates along contacts: their pressures on the sides, the largest of these in numbers, and what sticks or slips."""
+"""Ordinates along contacts: pressures on the sides with their largest values, and sticking and slipping parts."""
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -10,7 +10,7 @@ from contact_dd.drawing.units import in_units
 RED = "#d6202c"
 # Where a contact with friction is closed, by its status.
 FRICTION = {1: ("#1746a2", "sticks"), 2: ("#ff9f1c", "slips")}
-# What presses is hatched on white: a coating of red would turn the stress under it brown.
+# Pressures are hatched on white: red would turn the colours of the stress under it brown.
 BAND = {"fc": (1, 1, 1, 0.5), "ec": RED, "hatch": "//////", "lw": 0}
 # Most contacts whose largest pressure is written beside it, one by one.
 MOST_LABELS = 6
@@ -35,7 +35,7 @@ def pressures(axes, sides, length):
 
 
 def stick_and_slip(axes, sides):
-    """Lines along what sticks and what slips, up to the middle between neighbours."""
+    """Lines along sticking and slipping parts, up to the middle between neighbours."""
     for side in sides:
         if not side.has_friction:
             continue

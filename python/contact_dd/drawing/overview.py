@@ -113,7 +113,7 @@ def colouring(mesh, values, panels, unit):
 
 
 def headings(figure, result, sides, scale):
-    """The scene's title, and below it what is drawn."""
+    """The scene's title, and below it the description of the picture."""
     what = "Von Mises stress and contact pressure" if sides else "Von Mises stress"
     step = f"Step {result.step} of {result.steps}: " if result.steps > 1 else ""
     words = what[0].lower() + what[1:] if step else what
@@ -155,7 +155,7 @@ def windows(part, moved, size, conditions):
 
 
 def surroundings(part, moved, size):
-    """A window on all bodies, or where the part is very small on what is around it."""
+    """A window on all bodies, or around a part that is very small."""
     low, high = window([moved], 0.02)
     width = max(part[1] - part[0])
     if width > SMALLER * size:
@@ -230,7 +230,7 @@ def columns_of(width):
 
 
 def entries(sides, largest, has_moved, is_turned, unit):
-    """Legend of pressures, friction, deformation, and what isn't body."""
+    """Legend of pressures, friction, deformation, obstacles and axes."""
     found = of_obstacles(sides)
     if is_turned:
         found.append(Line2D([], [], **AXIS, label="axis of rotation"))

@@ -255,7 +255,7 @@ def curve(axes, name, side, units):
 
 
 def pressures(report, found, sides, units):
-    """The curves of pressures with what they show; none in space."""
+    """The curves of pressures with their description; none in space."""
     shown = [contact["name"] for contact in found if contact["name"] in sides][:MOST_CURVES]
     if not shown:
         return ""
@@ -358,7 +358,7 @@ def quantities(report, units):
 
 
 def most(quantity):
-    """The parameter, of those that have a size of their own, that changes a quantity most, and by what part."""
+    """The parameter with the largest relative effect on a quantity, and that effect; without parameters of value 0."""
     shares = [
         (one["derivative"] * one["at"] / quantity["value"], one["parameter"])
         for one in quantity["derivatives"]

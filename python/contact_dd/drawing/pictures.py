@@ -50,7 +50,7 @@ PICTURES = {
 
 
 def draw(result, names=None, scale=None, circle=None):
-    """Draws pictures by their names, one after the other, without any those that there are; in space others than in
+    """Draws the pictures with these names, by default all, one after the other; those in space differ from those in
     the plane. Raises `InputError` where a number isn't finite, or for a `circle` in the plane."""
     check_finite(result)
     if result.is_in_space:

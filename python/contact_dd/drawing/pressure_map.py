@@ -47,8 +47,7 @@ class PressureMap:
         self.limits = [(max(at - half, of.min()), min(at + half, of.max())) for at, of in zip(middle, places)]
 
     def width(self, height):
-        """How wide the map is, with its axis and colours, where it has this height with what stands around it
-        (inches)."""
+        """Width of the map with its axis and colours, for this height including title and labels (inches)."""
         wide, tall = (most - least for least, most in self.limits)
         height = height - ABOVE
         return float(np.clip(height * wide / max(tall, 1e-9 * wide), NARROWEST, WIDEST)) + BESIDE
@@ -69,13 +68,13 @@ class PressureMap:
         axes.set_ylim(self.limits[1])
         axes.tick_params(labelsize=7)
         if chart.radius:
-            # The arc is drawn to scale, and said as an angle.
+            # The arc is drawn to scale, and labelled by its angle.
             axes.xaxis.set_major_locator(MultipleLocator(chart.radius * np.radians(self.step_of_angle())))
             axes.xaxis.set_major_formatter(lambda arc, _: degrees(arc / chart.radius))
-            axes.set_xlabel(f"{chart.labels[0]} [°]", fontsize=8)
+            axes.set_xlabel(chart.labels[0].with_unit("°"), fontsize=8)
         else:
-            axes.set_xlabel(f"{chart.labels[0]} [{length}]", fontsize=8)
-        axes.set_ylabel(f"{chart.labels[1]} [{length}]", fontsize=8)
+            axes.set_xlabel(chart.labels[0].with_unit(length), fontsize=8)
+        axes.set_ylabel(chart.labels[1].with_unit(length), fontsize=8)
         bar = axes.figure.colorbar(colours, ax=axes, shrink=0.85, pad=0.02)
         bar.set_label(f"pressure [{self.unit}]", fontsize=8)
         bar.ax.tick_params(labelsize=7)

@@ -1,4 +1,4 @@
-"""Faces in space as a picture, by samples of them and a depth buffer: what is behind is hidden, curved faces are
+"""Faces in space as a picture, by samples of them and a depth buffer: hidden parts aren't drawn, curved faces are
 curved, and values vary within them. A renderer of OpenGL needs libraries that clusters often lack."""
 
 from dataclasses import dataclass
@@ -160,7 +160,7 @@ class Raster:
                     self.lines[at_line] = np.maximum(self.lines[at_line], strength)
 
     def outline(self, strength=1.0):
-        """Draws the outlines of what stands before something farther away, or before nothing."""
+        """Draws outlines: edges of parts in front of others, or of the background."""
         is_there = np.isfinite(self.depth)
         depth = np.where(is_there, self.depth, self.depth[is_there].min(initial=0.0) - max(self.size))
         step = STEP * max(self.size)

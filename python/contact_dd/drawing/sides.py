@@ -64,7 +64,7 @@ def boundary_edges(result, tags):
 def curves_along(points, tags, edges):
     """The pieces of a side: rows in their order, and the arc length of each; a closed piece ends with its first row.
 
-    Lengths go on from piece to piece by their distance."""
+    Lengths continue from piece to piece by their distance."""
     pieces = [directed(points, piece) for piece in chains(tags, edges)]
     axis = np.ptp(points, axis=0).argmax()
     pieces.sort(key=lambda piece: points[piece[0], axis])
@@ -88,7 +88,7 @@ def chains(tags, edges):
             near[row[a]].append(row[b])
             near[row[b]].append(row[a])
     left = set(near)
-    # Ends of open pieces first; what is left then is closed.
+    # Ends of open pieces first; the remaining pieces are closed.
     for start in sorted(near, key=lambda k: (len(near[k]) > 1, k)):
         if start not in left:
             continue

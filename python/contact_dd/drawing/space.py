@@ -101,7 +101,7 @@ class Solid:
         return highest
 
     def supports_and_loads(self, axes, raster):
-        """Their symbols on what is seen of the surface, and a legend of them."""
+        """Symbols of supports and loads on the visible surface, with a legend."""
         pixel = raster.pixels(raster.points)
         is_before = raster.points[:, 2] + SEEN * max(raster.size) >= raster.depth.reshape(-1)[pixel]
         seen = self.conditions.seen(is_before)
@@ -147,7 +147,7 @@ class Solid:
         colours = plt.cm.ScalarMappable(plt.Normalize(0, most), COLOURS)
         colours.extend = "neither"
         raster = self.raster()
-        # What doesn't press is left out: it may lie before what does.
+        # Open parts are left out: they may lie before closed ones.
         loaded = [face for face in faces if values[face].max() > 0]
         raster.draw(loaded, values)
         raster.line(edges_of(loaded, self.points)[0], OF_BODIES)

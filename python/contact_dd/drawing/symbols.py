@@ -43,7 +43,7 @@ class Paper:
         return self.frame.shape[1] == 3
 
     def spread(self, rows, apart=APART, taken=()):
-        """Of these nodes at most MOST, far enough from each other and from those that are taken, corners last."""
+        """At most MOST of these nodes, far enough from each other and from those `taken`, corners last."""
         rows = np.asarray(rows, dtype=int)
         for other in taken:
             rows = rows[np.linalg.norm(self.places[rows] - self.places[other], axis=1) >= apart * self.size]
@@ -210,7 +210,7 @@ def ends(paper, conditions, length):
 
 
 def draw_bodies(axes, paper, centres, forces):
-    """An arrow in the middle of each body that has a body force, of many those that are spread over them."""
+    """Arrows in the middle of bodies with a body force; of many bodies, some that are far from each other."""
     there = Paper(centres, np.ones((len(centres), 1)), paper.frame, paper.size)
     chosen = there.spread(np.arange(len(centres)))
     directions = [paper.direction(forces[k]) for k in chosen]

@@ -33,7 +33,7 @@ pub struct Scaled {
 }
 
 impl Scaled {
-    /// `None` without load.
+    /// The scaled form of a problem; `None` without load.
     pub fn new(problem: &ConvexProblem<'_>) -> Option<Self> {
         let (n, all) = (problem.c.len(), problem.bounds.len());
         let mut scale = problem.scale.to_vec();
@@ -92,7 +92,7 @@ impl Scaled {
         })
     }
 
-    /// Jumps at their bounds, all products 1.
+    /// The first iterate: jumps at their bounds, all products of gaps and forces 1.
     pub fn start(&self) -> Iterate {
         let cone = |point: &GivenFriction| Cone {
             x: [1.0 / point.bound, 0.0, 0.0],
@@ -178,7 +178,7 @@ impl Scaled {
         matrix
     }
 
-    /// Predictor and corrector; `None` where round-off leaves no step.
+    /// The iterate after a predictor and a corrector step; `None` where round-off leaves no step.
     pub fn step(&self, at: &Iterate) -> Option<Iterate> {
         let scalings: Vec<Scaling> = at.cones.iter().map(Cone::scaling).collect();
         let matrix = self.matrix(at, &scalings);
@@ -218,7 +218,7 @@ impl Scaled {
     }
 }
 
-/// What a step changes the residuals by.
+/// The residuals, or their change in a step.
 struct Residual {
     /// c − H t − Σ forces.
     forces: Vec<f64>,

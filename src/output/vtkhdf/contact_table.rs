@@ -17,7 +17,7 @@ pub(super) struct ContactTables {
 #[derive(Debug)]
 struct Table {
     name: String,
-    /// Each with its index in `COLUMNS`.
+    /// The columns, each with its index in `COLUMNS`.
     columns: Vec<(usize, Written)>,
     written: Vec<bool>,
 }
@@ -27,9 +27,9 @@ struct Table {
 enum In {
     First,
     Each,
-    /// Each, if the contact has friction or is a tie.
+    /// Every load step, if the contact has friction or is a tie.
     EachWithFriction,
-    /// Each, if the contact is compliant.
+    /// Every load step, if the contact is compliant.
     EachOfCompliant,
 }
 

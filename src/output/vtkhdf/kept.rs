@@ -113,7 +113,8 @@ impl Kept {
 
 /// The error of a state with the right version and digest that can't be read.
 pub fn unreadable_state(state: &Path, error: &ciborium::de::Error<io::Error>) -> InputError {
-    let why = format!("it can't be read, as where another build of the program wrote it: {error}");
+    let why =
+        format!("it can't be read, perhaps as another build of the program wrote it: {error}");
     InputError::new(why).in_file(state)
 }
 

@@ -9,9 +9,9 @@ use super::super::result::{Of, PartitionSize};
 /// Sizes of all parts of a result file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// One entry for each subdomain.
+    /// Sizes of the subdomains.
     pub partitions: Vec<PartitionSize>,
-    /// One entry for each contact.
+    /// Sizes of the tables of contacts.
     pub contacts: Vec<ContactSummary>,
     /// Time of every load step; empty if the problem has no steps.
     pub times: Vec<f64>,

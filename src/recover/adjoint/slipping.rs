@@ -15,7 +15,7 @@ pub struct SlippingPoints(pub Vec<SlippingPoint>);
 pub struct SlippingPoint {
     /// The normal condition.
     pub normal: usize,
-    /// True if that is closed, so that its jump may depend on the slip.
+    /// True if the normal condition is closed, so that its jump may depend on the slip.
     pub is_closed: bool,
     /// The slipping conditions and the components e of the slip direction along them.
     pub tangents: Vec<(usize, f64)>,
@@ -23,7 +23,7 @@ pub struct SlippingPoint {
     pub coefficient: f64,
     /// κ (N/m): its force turns with the slip.
     pub turning: f64,
-    /// True if the matrix of the symmetric problem contains that.
+    /// True if the matrix of the symmetric problem contains this turning.
     pub turns_in_matrix: bool,
     /// Approximate stiffness of the bodies against a jump (N/m).
     pub stiffness: f64,

@@ -23,7 +23,7 @@ impl Solved<'_> {
         let why = if !is_ready {
             "the load step isn't converged"
         } else if solution.minimum_norm.has_released_modes {
-            "contacts leave a motion free whose place isn't told by the loads"
+            "the contacts leave a rigid-body motion that the loads don't determine"
         } else if !solution.friction_limit.is_empty() {
             "friction is at its limit"
         } else {

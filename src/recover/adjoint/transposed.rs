@@ -109,7 +109,7 @@ impl<'a> TransposedProblem<'a> {
         }
     }
 
-    /// The solution. Collective.
+    /// The solution of the transposed problem. Collective.
     pub fn solve(&self) -> Transposed {
         let context = &self.solved.fixed.context;
         let blocks = self.loads.blocks.iter().filter_map(|(&b, loads)| {

@@ -4,7 +4,7 @@ use faer::{Mat, Side};
 use super::*;
 use crate::schur::condensed::InterfaceDof;
 
-/// Number of jumps.
+/// Number of jumps of the front.
 const M: usize = 6;
 
 fn noise(seed: usize) -> f64 {

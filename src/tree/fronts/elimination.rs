@@ -115,8 +115,8 @@ impl ActiveSetFronts {
         let (merge, whole) = Merge::of(&children, &node.eliminated, own, &mut self.spare, par)
             .map_err(|free| {
                 Failure::ill_posed(format!(
-                    "a part of the scene can move although every contact that presses is held (found \
-                     at node {} of /interface/interface); expected supports or contact that hold it",
+                    "a part of the scene can move although all contacts under pressure are closed \
+                     (found at node {} of /interface/interface); expected supports or contact against it",
                     free.0.node
                 ))
             })?;

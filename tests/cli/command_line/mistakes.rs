@@ -68,7 +68,14 @@ fn bad_usage_ends_with_a_hint() {
         ),
         (&["a.h5", "--tolerance", "0"], "expected a positive number"),
         (&["a.h5", "--tolerance"], "'--tolerance <X>'"),
-        (&["a.h5", "--threads", "0"], "'--threads <N>'"),
+        (
+            &["a.h5", "--threads", "0"],
+            "'--threads <N>': expected a whole number from 1 to 65535",
+        ),
+        (
+            &["a.h5", "--max-sweeps", "1.5"],
+            "'--max-sweeps <N>': expected a whole number, 0 or more",
+        ),
         (&["a.h5", "-n", "2"], "'-n'"),
         (&["a.h5", "b.h5"], "'b.h5'"),
         (&["a.h5", "--generate", "man"], "cannot be used with"),

@@ -62,7 +62,7 @@ fn a_block_that_friction_holds_with_all_that_it_has_is_said_to_be_at_the_limit()
         let friction = &solution.report["friction"];
         assert_eq!(friction["at_limit"], is_at_limit, "{share}");
         let warnings = solution.report["warnings"].to_string();
-        let words = "limit of friction: friction alone holds 'b1' (translation along (0.0000, 1.0000, 0.0000))";
+        let words = "limit of friction: friction alone restrains 'b1' (translation along (0.0000, 1.0000, 0.0000))";
         assert_eq!(warnings.contains(words), is_at_limit, "{share}: {warnings}");
     }
 }

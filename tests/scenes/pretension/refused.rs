@@ -50,7 +50,7 @@ fn what_tightens_nothing_is_refused() {
         (
             &whole,
             force.clone() + "[[step]]\npretension.bolt = { lock = true }",
-            "nothing is reached yet",
+            "there is no force to lock",
         ),
         (
             &whole,

@@ -162,11 +162,27 @@ fn what_a_study_cannot_be_is_refused() {
         code == 2 && said.contains("case 1 has 1 values; expected 0"),
         "{said}"
     );
-    let (_, code, said) = table(&case, 0, &json!([1]), &[]);
-    assert!(
-        code == 2 && said.contains("expected {\"parameters\""),
-        "{said}"
-    );
+    for (asked, expected) in [
+        (
+            json!([1]),
+            "line 1: it is the number 1; expected a list; the file's form is {\"parameters\"",
+        ),
+        (
+            json!({"parameters": []}),
+            "line 1: the key 'cases' is missing",
+        ),
+        (
+            json!({"case": []}),
+            "line 1: unknown key 'case'; expected 'parameters' or 'cases'",
+        ),
+        (
+            json!({"parameters": [], "cases": [["1"]]}),
+            "line 1: it is the text \"1\"; expected a number",
+        ),
+    ] {
+        let (_, code, said) = table(&case, 0, &asked, &[]);
+        assert!(code == 2 && said.contains(expected), "{said}");
+    }
     let (_, code, said) = table(&case, 0, &asked(), &["--restart"]);
     assert!(code == 2 && said.contains("--restart"), "{said}");
 }

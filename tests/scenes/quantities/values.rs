@@ -107,7 +107,7 @@ fn quantities_are_those_of_every_load_step_and_friction_in_a_later_one_has_no_de
     let with = solved(super::COULOMB);
     assert!(with[0].report["without_derivatives"].is_null());
     let why = with[1].report["without_derivatives"].as_str().unwrap();
-    assert!(why.contains("friction remembers"), "{why}");
+    assert!(why.contains("friction depends on"), "{why}");
     assert!(
         pressed(&with[1])["derivatives"]
             .as_array()

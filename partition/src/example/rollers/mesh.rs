@@ -54,7 +54,7 @@ fn squares() -> Vec<Square> {
     squares
 }
 
-/// Both plates from the axis of the roller at `place` to `edge`.
+/// The two plates from the axis of the roller at `place` to `edge`.
 fn plates(place: &str, axis: f64, edge: f64, is_right: bool) -> [Square; 2] {
     let is_end = edge.abs() > APART;
     let piece = |body, face: f64, outer: f64, sides| {

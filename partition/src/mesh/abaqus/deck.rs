@@ -31,11 +31,11 @@ pub(crate) struct Deck {
     pub(crate) node_of: HashMap<i64, u32>,
     pub(crate) elements: Elements,
     pub(crate) element_tags: Vec<i64>,
-    /// For each element whether it can only be a side.
+    /// Flags of the elements that can only be sides.
     pub(crate) is_side: Vec<bool>,
-    /// For each element whether it has incompatible modes.
+    /// Flags of the elements with incompatible modes.
     pub(crate) has_modes: Vec<bool>,
-    /// For each element whether it has reduced integration.
+    /// Flags of the elements with reduced integration.
     pub(crate) is_reduced: Vec<bool>,
     pub(crate) element_of: HashMap<i64, u32>,
     /// The tags of elements that are left out, as they are neither cells nor sides.

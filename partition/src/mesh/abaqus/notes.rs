@@ -44,7 +44,7 @@ impl Notes {
         }
     }
 
-    /// One warning for each kind.
+    /// The warnings, one for each kind.
     pub(crate) fn warnings(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|(what, tally)| {
             let more = match tally.count - tally.first.len() {

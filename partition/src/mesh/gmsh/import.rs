@@ -142,7 +142,7 @@ fn distinct(mut listed: Vec<Listed<'_>>) -> Result<Distinct<'_>, InputError> {
     Ok(Distinct { elements, groups })
 }
 
-/// For each element the first one with the same nodes, in any order.
+/// The first element with the same nodes, in any order, for each element.
 fn first_of_same(listed: &[Listed]) -> Vec<u32> {
     let nodes = listed.iter().flat_map(|e| e.nodes).max();
     let nodes = nodes.map_or(0, |&n| n as usize + 1);

@@ -74,7 +74,7 @@ impl Diagnostics<'_> {
             let largest = values.map(f64::abs).fold(0.0, f64::max);
             if largest > extent {
                 warnings.push(format!(
-                    "{}: a displacement of {} {unit}, and the bodies measure {} {unit}; are their units the same?",
+                    "{}: a displacement of {} {unit}, and the bodies measure {} {unit}; are their units consistent?",
                     self.loads.names[support.condition as usize],
                     short(largest),
                     short(extent)
@@ -114,7 +114,7 @@ impl Diagnostics<'_> {
             strain,
             words: format!(
                 "{label}: forces of {} {} on bodies that measure {} {} and have a stiffness of up to {} {} make strains \
-                 of about {}, where small ones are meant; are their units the same?",
+                 of about {}, beyond small strains; are their units consistent?",
                 short((factor * sum).abs()),
                 units.force(dim),
                 short(extent),
@@ -138,7 +138,7 @@ impl Diagnostics<'_> {
                 strain: -gap / extent,
                 words: format!(
                     "contact '{}': a gap of {} {unit} presses bodies that measure {} {unit} into each other, and makes \
-                     strains of about {}, where small ones are meant; are their units the same?",
+                     strains of about {}, beyond small strains; are their units consistent?",
                     contact.name,
                     short(gap),
                     short(extent),
@@ -177,8 +177,8 @@ impl Diagnostics<'_> {
         let against = |what: String, strain: f64| Estimate {
             strain,
             words: format!(
-                "body '{name}': {what} of a stiffness of {} {} make strains of about {}, where small ones \
-                 are meant; are their units the same?",
+                "body '{name}': {what} of a stiffness of {} {} make strains of about {}, beyond small \
+                 strains; are their units consistent?",
                 short(stiffness),
                 units.stress(),
                 short(strain)
@@ -232,8 +232,8 @@ impl Diagnostics<'_> {
         Estimate {
             strain,
             words: format!(
-                "body '{name}': heat makes strains of about {}, where small ones are meant; is the expansion \
-                 that of one degree?",
+                "body '{name}': thermal strains are about {}, beyond small strains; is the expansion that \
+                 of one degree?",
                 short(strain)
             ),
         }
@@ -288,8 +288,8 @@ impl Diagnostics<'_> {
         Some(Estimate {
             strain: load / stiffness,
             words: format!(
-                "{label}: up to {} {unit} on '{name}' of a stiffness of {} {unit} make strains of about {}, where \
-                 small ones are meant; are their units the same?",
+                "{label}: up to {} {unit} on '{name}' of a stiffness of {} {unit} make strains of about {}, \
+                 beyond small strains; are their units consistent?",
                 short(load),
                 short(stiffness),
                 short(load / stiffness)

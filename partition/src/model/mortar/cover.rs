@@ -47,7 +47,7 @@ pub(super) struct Overlap {
 pub(super) enum Pieces {
     /// Quadrature points, segment by segment along the facet.
     Samples(Vec<Sample>),
-    /// One overlap for each facet of side b.
+    /// Overlaps, one for each facet of side b.
     Overlaps(Vec<Overlap>),
 }
 

@@ -28,7 +28,7 @@ pub(super) struct Row {
     area: f64,
     /// ∫ ψ N of the nodes of side a, in the order along it (m, in space m²).
     side_a: Vec<(u32, f64)>,
-    /// The same of side b.
+    /// ∫ ψ N of the nodes of side b (m, in space m²).
     side_b: Vec<(u32, f64)>,
     /// ∫ ψ g (m², in space m³).
     gap: f64,

@@ -89,7 +89,8 @@ impl Known<'_> {
         found.ok_or_else(|| "the contact has no condition at that node".into())
     }
 
-    /// The refusal of a position at this distance (m) from something, given in words as what is nearest of it.
+    /// The error of a position at this distance (m) from an object; `from` and the nearest part of it are given in
+    /// words.
     fn away(&self, distance: f64, from: &str, nearest: &str) -> String {
         format!(
             "'at' is {} {} away from {from}, the nearest {nearest}; expected a place on it, or 'node', the tag of a node",

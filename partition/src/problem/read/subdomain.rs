@@ -23,14 +23,14 @@ pub(super) struct Slices {
     pub(super) support_nodes: Slice<i64>,
     pub(super) support_directions: Slice<f64>,
     pub(super) support_values: Slice<f64>,
-    /// `None` for files without names of boundary conditions.
+    /// The boundary condition of every support; `None` for files without their names.
     pub(super) support_conditions: Option<Slice<i64>>,
     pub(super) spring_nodes: Slice<i64>,
     pub(super) spring_stiffness: Slice<f64>,
     pub(super) spring_conditions: Slice<i64>,
     pub(super) force_nodes: Slice<i64>,
     pub(super) force_values: Slice<f64>,
-    /// Empty if no cell has initial stress.
+    /// The initial stress of the cells; empty if none has any.
     pub(super) stress_of_cells: Slice<f64>,
     pub(super) stress_of_nodes: Slice<f64>,
     shares: ShareSlices,

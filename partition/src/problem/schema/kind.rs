@@ -25,7 +25,7 @@ pub enum Kind {
     UnitVectors,
     /// Lines of text.
     Lines,
-    /// At least one name.
+    /// Names, at least one.
     Names,
     /// Names of groups in the result file, all different.
     GroupNames,

@@ -28,9 +28,9 @@ pub const LETTERS: &[(char, &str)] = &[
     ('A', "crack tips"),
     ('X', "facets of crack faces"),
     ('J', "quantities"),
-    ('D', "numbers of what quantities are of"),
+    ('D', "indices of the objects of quantities"),
     ('O', "parameters"),
-    ('p', "numbers of what parameters are of"),
+    ('p', "indices of the objects of parameters"),
     (
         'w',
         "weights of nodes in quantities, summed over subdomains",

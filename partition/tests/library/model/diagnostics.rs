@@ -228,7 +228,7 @@ fn loads_far_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_ar
         ),
         (
             body("thermal = { expansion = 12, temperature = 80 }"),
-            "body 'lower': heat makes strains of about 960",
+            "body 'lower': thermal strains are about 960",
         ),
         (
             format!("{HELD}{CONTACT}gap = -1e10\n"),

@@ -53,8 +53,11 @@ fn displacements_that_agree_are_one_and_those_that_dont_are_named() {
     let model = square().model(&text("0.1000000000000001")).unwrap();
     assert_eq!(at(&model, 0).len(), 2);
     let error = square().model(&text("0.1000001")).unwrap_err();
-    says(&error, "node 1003: displacement[2] on 'b left' says 0.1");
-    says(&error, "displacement[1] on 'b bottom' says 0.1000001");
+    says(
+        &error,
+        "node 1003: displacement[2] on 'b left' prescribes 0.1",
+    );
+    says(&error, "displacement[1] on 'b bottom' prescribes 0.1000001");
     let error = square().model(&text("0")).unwrap_err();
     says(&error, "node 1003");
 }
@@ -77,14 +80,14 @@ fn a_condition_is_named_with_those_that_hold_a_part_of_it() {
     assert_eq!(clamped[0], "displacement[1] on 'b left'");
     assert_eq!(
         clamped[1],
-        "displacement[2] on 'b bottom', without what displacement[1] holds of it"
+        "displacement[2] on 'b bottom', except the part of displacement[1]"
     );
     // Bilateral sides that meet at an angle share its direction in part.
     let skewed = square().moved(|[x, y, z]| [x + 0.5 * y, y, z]);
     let sides = "[[bilateral]]\non = 'b left'\n[[bilateral]]\non = 'b bottom'\n";
     assert_eq!(
         names(&skewed, sides)[1],
-        "bilateral[2] on 'b bottom', without what bilateral[1] holds of it"
+        "bilateral[2] on 'b bottom', except the part of bilateral[1]"
     );
     assert_eq!(names(&square(), sides)[1], "bilateral[2] on 'b bottom'");
     // Conditions on other sides share no node.
@@ -160,7 +163,7 @@ fn what_is_prescribed_twice_is_dropped_or_contradicts() {
     let model = square().model(&text(0.0)).unwrap();
     assert_eq!(model.supports.len(), 3);
     let error = square().model(&text(1e-9)).unwrap_err();
-    says(&error, "bilateral[1] on 'b left' says 0");
+    says(&error, "bilateral[1] on 'b left' prescribes 0");
     says(&error, "displacement[1] on 'b left'");
 }
 

@@ -102,9 +102,9 @@ on = "bottom" =>
 ["axis", "side"] => ['a', 'a']
     line 24: bilateral[1].on: 'a' stands here twice
 ["axis", "side"] => 7
-    line 24: bilateral[1].on: invalid type: integer `7`, expected the name
+    line 24: bilateral[1].on: it is the number 7; expected the name
 0.6e7 => true
-    line 30: pressure[1].value: invalid type: boolean `true`, expected a number or an expression
+    line 30: pressure[1].value: it is true; expected a number or an expression
 name = "left crack" => name = "a/b"
     line 32: contact[1].name: 'a/b' holds a '/'
 name = "left crack" => name = ""
@@ -162,7 +162,7 @@ gap = 0.0 => gap = 0.0\nadjust = 1
 sides = ["left crack lower", ["left crack upper", "more"]] => between = ["block", "lft block"]
     line 33: contact[1] 'left crack'.between: there is no body 'lft block'; did you mean 'left block'?
 sides = ["left crack lower", ["left crack upper", "more"]] => between = 7
-    line 33: contact[1] 'left crack'.between: invalid type: integer `7`, expected the name
+    line 33: contact[1] 'left crack'.between: it is the number 7; expected the name
 , normal = [0.0, 2.0] =>
     line 41: contact[2] 'table'.obstacle: expected 'point' and 'normal'
 "2*pi" => 0
@@ -194,6 +194,57 @@ fn values_that_cannot_be_are_refused_at_their_line_and_key() {
     for (from, to, expected) in cases(VALUES) {
         let message = said(&from, &to);
         assert!(message.contains(&expected), "{to}: {message}");
+    }
+}
+
+const TYPES: &str = r#"
+title = "Loaded granite block with cracks" => title = 7
+    line 1: title: it is the number 7; expected a text in quotes
+mesh  = "block.msh" => mesh = 7
+    line 2: mesh: it is the number 7; expected the name of a file in quotes
+mesh  = "block.msh" => mesh = ["block.msh"]
+    line 2: mesh: it is a list; expected the name of a file in quotes
+plane = "strain" => plane = 2
+    line 3: plane: expected a word in quotes
+plane = "strain" => plane = "strain"\nlarge_strains = 1
+    line 4: large_strains: it is the number 1; expected true or false
+plane = "strain" => plane = "strain"\nsolver.max_sweeps = -1
+    line 4: solver.max_sweeps: it is the number -1; expected a whole number, 0 or more
+plane = "strain" => plane = "strain"\nsolver.max_sweeps = "many"
+    line 4: solver.max_sweeps: it is the text "many"; expected a whole number, 0 or more
+plane = "strain" => plane = "strain"\nsolver.tolerance = "small"
+    line 4: solver.tolerance: it is the text "small"; expected a number
+plane = "strain" => plane = "strain"\nsolver.method = 3
+    line 4: solver.method: expected a word in quotes
+out_of_plane = [1.0, 2.0, 0] => out_of_plane = 1
+    line 11: materials.wood.out_of_plane: it is the number 1; expected a list
+out_of_plane = [1.0, 2.0, 0] => out_of_plane = [1.0]
+    line 11: materials.wood.out_of_plane: the number of entries is 1; expected 3
+out_of_plane = [1.0, 2.0, 0] => out_of_plane = [1, 2, 3, 4]
+    line 11: materials.wood.out_of_plane: the number of entries is 4; expected 3
+material = "granite" => material = 1
+    line 14: bodies.block.material: it is the number 1; expected a text in quotes
+body_force = [0.0, -25e3] => body_force = -25e3
+    line 15: bodies.block.body_force: it is the number -25000.0; expected a list
+["axis", "side"] => ["axis", 7]
+    line 24: bilateral[1].on[2]: it is the number 7; expected a text in quotes
+sides = ["base"] => sides = "base"
+    line 39: contact[2] 'table'.sides: it is the text "base"; expected a list
+, normal = [0.0, 2.0] } => , normal = [0.0, 2.0], inside = "no" }
+    line 41: contact[2] 'table'.obstacle.inside: it is the text "no"; expected true or false
+gap = 0.0 => gap = [0.0]
+    line 34: contact[1] 'left crack'.gap: it is a list; expected a number or an expression
+[[bilateral]] => [[spring]]\nbetween = ["a", "b", "c"]\naxial = 1\n[[bilateral]]
+    line 24: spring[1].between: the number of entries is 3; expected 2
+[[bilateral]] => [[equation]]\nterms = [{ at = "a", component = "x", factor = "one" }]\n[[bilateral]]
+    line 24: equation[1].terms[1].factor: it is the text "one"; expected a number
+"#;
+
+#[test]
+fn a_value_of_another_type_is_refused_in_plain_words_at_its_line_and_key() {
+    for (from, to, expected) in cases(TYPES) {
+        let message = said(&from, &to);
+        assert!(message.starts_with(&expected), "{to}: {message}");
     }
 }
 
@@ -292,7 +343,7 @@ fn a_table_that_should_be_a_list_is_answered_with_double_brackets() {
         (
             "[[pressure]]",
             "[pressure]",
-            "line 28: pressure: invalid type: map, expected a sequence; expected [[pressure]] in double",
+            "line 28: pressure: it is a table; expected [[pressure]] in double",
         ),
         (
             "[[bilateral]]",

@@ -42,11 +42,11 @@ pub(super) enum Quantity {
 /// Position of a point's tangential force in its polygon.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// Inside: the point sticks.
+    /// A position inside the polygon: the point sticks.
     Sticks,
-    /// On a side, by the steep bound or not.
+    /// A position on a side of the polygon, with the steep bound or the other one.
     Side(usize, bool),
-    /// At a corner of two sides, by the steep bound or not.
+    /// A corner between two sides of the polygon, with the steep bound or the other one.
     Corner([usize; 2], bool),
 }
 
@@ -54,7 +54,7 @@ enum Place {
 pub(super) struct Path {
     /// Jumps of all limits, then their forces, for a unit of each zero quantity.
     responses: Responses,
-    /// The same with all zero quantities at 0: at θ = 0, and for every unit of θ.
+    /// Jumps and forces with all zero quantities at 0: at θ = 0, and their growth with θ.
     value: [Vec<f64>; 2],
     /// The system from which pivots start.
     start: Start,

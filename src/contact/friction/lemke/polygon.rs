@@ -176,7 +176,7 @@ impl FrictionPolygon {
         0..self.normals.len()
     }
 
-    /// Both neighbours of a side.
+    /// The two neighbours of a side.
     pub(super) fn neighbours(&self, side: usize) -> [usize; 2] {
         let sides = self.normals.len();
         [sides - 1, 1].map(|step| (side + step) % sides)
