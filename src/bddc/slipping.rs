@@ -143,7 +143,7 @@ impl Slipping<'_> {
             true => MAX_WITH_STALE.saturating_sub(before).clamp(1, CYCLE),
             false => CYCLE,
         };
-        let is_judged = !self.gradients.is_stale && self.gradients.is_judged;
+        let is_provisional = !self.gradients.is_stale && self.gradients.is_provisional;
         let mut basis = vec![residual.each_ref().map(|part| part.scaled(1.0 / size))];
         let mut h = Mat::<f64>::zeros(most + 1, most);
         let (mut weights, mut sizes) = (Vec::new(), vec![size]);
@@ -172,7 +172,7 @@ impl Slipping<'_> {
                 .done(done.clamp(f64::MIN_POSITIVE, 1.0));
             sizes.push(left);
             let ends = left <= enough || rest <= f64::EPSILON * size || left.is_nan();
-            let is_slow = is_judged && before + k + 1 == TRIAL && left > GOOD * size;
+            let is_slow = is_provisional && before + k + 1 == TRIAL && left > GOOD * size;
             let stalls = k >= TRIAL && left > STALLS * sizes[k + 1 - TRIAL];
             if ends || is_slow || stalls {
                 break;

@@ -210,4 +210,33 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_correction_cancels_the_residual_against_the_compliance_of_the_point_itself() {
+        let status = POINT.status(&at([2.0, 0.5, -0.9], [0.3, -0.7]), 0.0);
+        let one = PointLaw {
+            tangents: [Some(1), None],
+            ..POINT
+        };
+        for point in [POINT, one] {
+            let law = SlipLaw::new(&point, &status, true).unwrap();
+            assert!(law.turning() > 0.0);
+            let residual = [
+                0.0,
+                0.4,
+                if point.tangents[1].is_some() {
+                    -1.3
+                } else {
+                    0.0
+                },
+            ];
+            let (mut forces, mut found) = ([0.0; 3], [0.0; 3]);
+            law.set_correction(&residual, &mut forces);
+            let slip = |t: usize| -forces[t] / point.stiffness;
+            law.add_residual(&forces, slip, true, &mut found);
+            for t in 1..3 {
+                assert!((found[t] - residual[t]).abs() < 1e-14, "{t}: {}", found[t]);
+            }
+        }
+    }
 }
