@@ -1,5 +1,5 @@
 //! Linear constraints between displacements of bodies' nodes: `*EQUATION` after eliminating nodes without cells, and
-//! supports along local axes or in some of the steps only.
+//! supports along local axes or in some of the steps only, also those of reference points.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,17 +7,22 @@ use super::activation::Activation;
 use super::document::{Document, Names, quoted};
 use super::equations::Equation;
 use super::groups::Groups;
+use super::loads::Loads;
 use super::place::Places;
 use super::reference::NodeAxis;
 use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::LinePlace;
+use crate::scene::coupling::COMPONENTS;
+
+/// The plain name of equations.
+const EQUATION: &str = "prescribed";
 
 /// Relative size of coefficients that count as 0.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Coefficients by nodes and the axes of the scene.
-type Terms = BTreeMap<NodeAxis, f64>;
+/// Coefficients by nodes and the axes of the scene, or the components of reference points.
+pub(super) type Terms = BTreeMap<NodeAxis, f64>;
 
 /// Σ factor · displacement = value.
 pub(super) struct Condition {
@@ -31,13 +36,22 @@ pub(super) struct Condition {
     is_kept: bool,
 }
 
-/// A constraint in the syntax of the scene.
+/// A constraint, or with a stiffness a spring, in the syntax of the scene.
 pub(super) struct SceneEquation {
     name: Option<String>,
-    /// Groups, axes and coefficients.
-    terms: Vec<(String, usize, f64)>,
+    /// Key and value of the place, component and coefficient.
+    terms: Vec<(&'static str, String, usize, f64)>,
     values: Vec<Option<f64>>,
     is_kept: bool,
+    is_support: bool,
+    stiffness: Option<f64>,
+}
+
+/// Translation of terms to the scene.
+pub(super) struct Translator<'a, 'b, 'c> {
+    pub(super) groups: &'a mut Groups<'b, 'c>,
+    /// The names of couplings by their reference nodes.
+    pub(super) couplings: BTreeMap<u32, String>,
 }
 
 impl Condition {
@@ -60,25 +74,23 @@ impl Condition {
 /// supports that become constraints are removed from the steps.
 ///
 /// # Errors
-/// An equation of a reference node, one that contradicts supports of its nodes, a node without cells that is held in
-/// some of the steps only.
+/// An equation of a pretension's node, one that contradicts supports of its nodes.
 pub(super) fn all(
     places: &Places,
     equations: &[Equation],
     steps: &mut Steps,
 ) -> Result<Vec<Condition>, InputError> {
     let has_cell = places.with_cells();
+    let is_loose =
+        |node: u32| !has_cell[node as usize] && !steps.loads.references.contains_key(&node);
     let mut all = Vec::new();
     for equation in equations {
         all.push(along_axes(places, equation, steps)?);
     }
     let dofs = all.iter().flat_map(|condition| condition.terms.keys());
-    let loose: BTreeSet<NodeAxis> = dofs
-        .copied()
-        .filter(|dof| !has_cell[dof.0 as usize])
-        .collect();
+    let loose: BTreeSet<NodeAxis> = dofs.copied().filter(|dof| is_loose(dof.0)).collect();
     for dof in loose {
-        all = without(places, dof, all, &mut steps.done)?;
+        all = without(dof, &steps.loads, all, &mut steps.done);
     }
     let held = steps
         .done
@@ -113,9 +125,23 @@ fn along_axes(
 ) -> Result<Condition, InputError> {
     let mut terms = Terms::new();
     for &((node, axis), factor) in &equation.terms {
-        if steps.loads.references.contains_key(&node) {
-            let message = "an equation of the reference node of a coupling isn't supported; expected nodes of bodies";
-            return Err(places.source.error(equation.place, message));
+        let refused = |why: &str| {
+            let message = format!(
+                "*EQUATION: the degree of freedom {} of the node {} {why}",
+                axis + 1,
+                places.deck.node_tags[node as usize]
+            );
+            places.source.error(equation.place, message)
+        };
+        if let Some(reference) = steps.loads.references.get(&node) {
+            let component = reference.of_equation(axis, places.dim()).map_err(refused)?;
+            *terms.entry(component).or_default() += factor;
+            continue;
+        }
+        if axis >= places.dim() {
+            return Err(refused(
+                "is no displacement; expected one, or a reference node",
+            ));
         }
         for (k, part) in direction(places, steps, (node, axis))
             .into_iter()
@@ -130,7 +156,7 @@ fn along_axes(
         place: Some(equation.place),
         terms,
         values: vec![Some(0.0); steps.done.len()],
-        word: "prescribed",
+        word: EQUATION,
         is_kept: false,
     })
 }
@@ -145,14 +171,17 @@ fn direction(places: &Places, steps: &Steps, (node, axis): NodeAxis) -> [f64; 3]
 
 /// Eliminates a displacement of a node without cells from the constraints. If it is prescribed, it becomes part of the
 /// constraints' values; otherwise the first constraint with it is solved for it and substituted into the others, and
-/// its force is transferred to that constraint's other nodes.
+/// its force is transferred to that constraint's other nodes. A support in some of the steps is another constraint.
 fn without(
-    places: &Places,
     dof: NodeAxis,
+    Loads {
+        fixed, references, ..
+    }: &Loads,
     mut all: Vec<Condition>,
     steps: &mut [LoadStep],
-) -> Result<Vec<Condition>, InputError> {
+) -> Vec<Condition> {
     let (node, axis) = dof;
+    let is_kept = fixed.contains(&dof);
     let held = steps
         .iter()
         .map(|step| step.supports.get(&node).and_then(|held| held[axis]));
@@ -166,31 +195,30 @@ fn without(
                 *value = value.zip(*held).map(|(value, held)| value - factor * held);
             }
         }
-        return Ok(all);
+        return all;
     }
-    if let Some(step) = held
-        .iter()
-        .position(|other| other.is_some() != held[0].is_some())
-    {
-        let message = format!(
-            "supports of the node {}, which is of no body, begin or end in this step, which isn't supported; expected the same in \
-             every step",
-            places.deck.node_tags[node as usize]
-        );
-        return Err(places.source.error(steps[step].place, message));
+    if let Some(first) = held.iter().position(Option::is_some) {
+        all.push(support(dof, Some(steps[first].place), held, is_kept));
     }
     let Some(first) = all
         .iter()
         .position(|condition| condition.terms.contains_key(&dof))
     else {
-        return Ok(all);
+        return all;
     };
     let mut own = all.remove(first);
     let factor = own.terms.remove(&dof).unwrap_or(1.0);
     for step in steps {
         let load = step.forces.get(&node).map_or(0.0, |force| force[axis]);
         for (&(other, k), term) in own.terms.iter().filter(|_| load != 0.0) {
-            step.forces.entry(other).or_default()[k] -= term / factor * load;
+            let of_point = references
+                .contains_key(&other)
+                .then(|| step.references.entry(other).or_default());
+            let force = match of_point {
+                Some(at) => &mut at.load[..],
+                None => step.forces.entry(other).or_default(),
+            };
+            force[k] -= term / factor * load;
         }
     }
     for other in &mut all {
@@ -198,49 +226,52 @@ fn without(
             other.add(-term / factor, &own);
         }
     }
-    Ok(all)
+    all
 }
 
-/// Constraints for supports of bodies' nodes that hold in some of the steps only; they are removed from the steps.
+/// The constraint for a support that holds in some of the steps only.
+fn support(
+    dof: NodeAxis,
+    place: Option<LinePlace>,
+    values: Vec<Option<f64>>,
+    is_kept: bool,
+) -> Condition {
+    Condition {
+        place,
+        terms: BTreeMap::from([(dof, 1.0)]),
+        values,
+        word: "support",
+        is_kept,
+    }
+}
+
+/// Constraints for supports of bodies' nodes and of reference points of couplings that hold in some of the steps only;
+/// they are removed from the steps.
 fn passing(has_cell: &[bool], steps: &mut Steps) -> Vec<Condition> {
-    let (fixed, systems) = (&steps.loads.fixed, &steps.systems);
+    let (fixed, systems, references) =
+        (&steps.loads.fixed, &steps.systems, &steps.loads.references);
     // The axes of a node with a local system are local there.
     let is_kept = |(node, axis): NodeAxis| match systems.contains_key(&node) {
         true => (0..3).any(|local| fixed.contains(&(node, local))),
         false => fixed.contains(&(node, axis)),
     };
+    let is_here = |node: u32| match references.get(&node) {
+        Some(reference) => !reference.is_local && !reference.is_of_pretension(),
+        None => has_cell[node as usize],
+    };
     let steps = &mut steps.done;
-    let held = |step: &LoadStep, (node, axis): NodeAxis| {
-        step.supports.get(&node).and_then(|held| held[axis])
-    };
-    let of_step = |step: &LoadStep| {
-        let axes = step
-            .supports
-            .keys()
-            .flat_map(|&node| (0..3).map(move |axis| (node, axis)));
-        axes.filter(|dof| held(step, *dof).is_some())
-            .collect::<Vec<_>>()
-    };
-    let dofs: BTreeSet<NodeAxis> = steps.iter().flat_map(of_step).collect();
+    let dofs: BTreeSet<NodeAxis> = steps.iter().flat_map(LoadStep::held).collect();
     let mut all = Vec::new();
-    for dof in dofs.into_iter().filter(|dof| has_cell[dof.0 as usize]) {
-        let values: Vec<Option<f64>> = steps.iter().map(|step| held(step, dof)).collect();
+    for dof in dofs.into_iter().filter(|dof| is_here(dof.0)) {
+        let mut of_steps: Vec<_> = steps.iter_mut().map(|step| step.support(dof)).collect();
+        let values: Vec<Option<f64>> = (of_steps.iter())
+            .map(|held| held.as_deref().copied().flatten())
+            .collect();
         if values.iter().all(Option::is_some) {
             continue;
         }
-        for of_node in steps
-            .iter_mut()
-            .filter_map(|step| step.supports.get_mut(&dof.0))
-        {
-            of_node[dof.1] = None;
-        }
-        all.push(Condition {
-            place: None,
-            terms: BTreeMap::from([(dof, 1.0)]),
-            values,
-            word: "support",
-            is_kept: is_kept(dof),
-        });
+        of_steps.iter_mut().flatten().for_each(|held| **held = None);
+        all.push(support(dof, None, values, is_kept(dof)));
     }
     for step in steps {
         (step.supports).retain(|_, held| held.iter().any(Option::is_some));
@@ -276,7 +307,7 @@ fn turned(places: &Places, steps: &Steps) -> Vec<Condition> {
 /// `names`.
 pub(super) fn in_scene(
     conditions: &[Condition],
-    groups: &mut Groups,
+    translator: &mut Translator,
     names: &mut Names,
 ) -> Vec<SceneEquation> {
     let mut known: BTreeMap<(&str, bool, Vec<Option<u64>>), String> = BTreeMap::new();
@@ -290,30 +321,57 @@ pub(super) fn in_scene(
                 .or_insert_with(|| names.unique(condition.word))
                 .clone()
         });
-        let terms = condition
-            .terms
-            .iter()
-            .filter_map(|(&(node, axis), &factor)| {
-                Some((groups.of_nodes(&[node], "equation")?, axis, factor))
-            });
         SceneEquation {
             name,
-            terms: terms.collect(),
+            terms: translator.terms(&condition.terms),
             values: condition.values.clone(),
             is_kept: condition.is_kept,
+            is_support: condition.word != EQUATION,
+            stiffness: None,
         }
     };
     conditions.iter().map(equation).collect()
 }
 
+impl Translator<'_, '_, '_> {
+    /// The terms in the syntax of the scene.
+    fn terms(&mut self, terms: &Terms) -> Vec<(&'static str, String, usize, f64)> {
+        let term = |(&(node, axis), &factor): (&NodeAxis, &f64)| {
+            let (key, place) = match self.couplings.get(&node) {
+                Some(coupling) => ("coupling", coupling.clone()),
+                None => ("at", self.groups.of_nodes(&[node], "equation")?),
+            };
+            Some((key, place, axis, factor))
+        };
+        terms.iter().filter_map(term).collect()
+    }
+
+    /// A spring whose force is `stiffness` times the sum of the terms.
+    pub(super) fn spring(&mut self, name: String, terms: &Terms, stiffness: f64) -> SceneEquation {
+        SceneEquation {
+            name: Some(name),
+            terms: self.terms(terms),
+            values: Vec::new(),
+            is_kept: false,
+            is_support: false,
+            stiffness: Some(stiffness),
+        }
+    }
+}
+
 impl SceneEquation {
+    /// Its name if it is a support, whose force is a reaction.
+    pub(super) fn support(&self) -> Option<&str> {
+        self.name.as_deref().filter(|_| self.is_support)
+    }
+
     /// Writes the equation.
     pub(super) fn write(&self, document: &mut Document) {
-        let term = |(group, axis, factor): &(String, usize, f64)| {
-            let component = ["x", "y", "z"][*axis];
+        let term = |(key, place, axis, factor): &(&str, String, usize, f64)| {
             format!(
-                "{{ at = {}, component = \"{component}\", factor = {factor:?} }}",
-                quoted(group)
+                "{{ {key} = {}, component = \"{}\", factor = {factor:?} }}",
+                quoted(place),
+                COMPONENTS[*axis]
             )
         };
         let terms: Vec<String> = self.terms.iter().map(term).collect();
@@ -328,6 +386,9 @@ impl SceneEquation {
         }
         if self.values.iter().any(Option::is_none) && !self.is_kept {
             document.key("absolute", "true");
+        }
+        if let Some(stiffness) = self.stiffness {
+            document.key("stiffness", format!("{stiffness:?}"));
         }
     }
 

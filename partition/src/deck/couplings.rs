@@ -142,6 +142,7 @@ impl Couplings {
                 node: own,
                 first: 3,
                 coupled: [true; FREEDOMS],
+                is_local: false,
             };
             self.refer(places, block, node, rotations)?;
         }
@@ -160,6 +161,7 @@ impl Couplings {
             node,
             first: 0,
             coupled: [true; FREEDOMS],
+            is_local: false,
         };
         self.refer(places, block, node, own)?;
         self.all.push(Coupling {
@@ -246,6 +248,7 @@ impl Couplings {
         }
         if let Some(reference) = self.references.get_mut(&open.node) {
             reference.coupled = coupled;
+            reference.is_local = kind == Kind::Distributing && open.orientation.is_some();
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use super::groups::Groups;
 use super::place::Places;
 use super::reference::Reference;
 use super::steps::{LoadStep, Steps};
+use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, LinePlace};
 
@@ -34,8 +35,12 @@ enum Given {
 
 /// A pretension section in the syntax of the scene.
 pub(super) struct ScenePretension {
+    /// Number of its node, and the sign of the node's force where the bolt is pulled.
+    tag: i64,
+    sense: f64,
     name: String,
     on: String,
+    /// Away from the elements of the surface, whose nodes on the cut get new numbers, as in CalculiX.
     direction: Option<String>,
     /// Force or displacement by step.
     given: Vec<Given>,
@@ -67,6 +72,11 @@ impl Pretensions {
             direction: direction.filter(|direction| *direction != [0.0; 3]),
         });
         Ok(())
+    }
+
+    /// The nodes of the sections.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.0.iter().map(|section| section.node)
     }
 
     /// Adds the nodes of pretension sections to the other reference nodes.
@@ -119,12 +129,23 @@ impl Pretensions {
                 let message = format!("*PRE-TENSION SECTION {wrong}");
                 return Err(groups.error(section.place, &message));
             }
-            let given = section.given(groups, steps, thickness)?;
+            let outward = groups.outward(&section.surface);
+            let direction = section.direction.unwrap_or(outward);
+            // A positive force is tensile if the direction points away from the elements of the surface.
+            let sense = if dot(direction, outward) < 0.0 {
+                -1.0
+            } else {
+                1.0
+            };
+            let given = section.given(groups, steps, (thickness, sense))?;
             let dim = groups.dim();
             all.push(ScenePretension {
+                tag,
+                sense,
                 name: names.unique(&format!("bolt of {}", section.surface)),
                 on: groups.of_surface(&section.surface),
-                direction: section.direction.map(|direction| vector(&direction, dim)),
+                direction: (direction != [0.0; 3])
+                    .then(|| vector(&direction.map(|c| sense * c), dim)),
                 given,
             });
         }
@@ -138,13 +159,8 @@ impl Section {
         &self,
         groups: &Groups,
         steps: &Steps,
-        thickness: f64,
+        (thickness, sense): (f64, f64),
     ) -> Result<Vec<Given>, InputError> {
-        // A positive force is tensile if the direction points away from the elements of the surface.
-        let sense = match groups.points_outward(&self.surface, self.direction) {
-            true => 1.0,
-            false => -1.0,
-        };
         let in_step = |step: &LoadStep| {
             let at = step.references.get(&self.node).cloned().unwrap_or_default();
             match at.held[0] {
@@ -173,6 +189,11 @@ impl Section {
 }
 
 impl ScenePretension {
+    /// The number of its node, with its name and the sign of the node's force where the bolt is pulled.
+    pub(super) fn printed(&self) -> (i64, (String, f64)) {
+        (self.tag, (self.name.clone(), self.sense))
+    }
+
     /// Writes the section, with its force or displacement in the first step.
     pub(super) fn write(&self, document: &mut Document) {
         document.table("[[pretension]]");
