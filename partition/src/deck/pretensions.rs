@@ -10,7 +10,7 @@ use super::reference::Reference;
 use super::steps::{LoadStep, Steps};
 use crate::element::geometry::dot;
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, LinePlace};
+use crate::mesh::abaqus::{Block, LinePlace, Position};
 
 /// A pretension section.
 struct Section {
@@ -60,6 +60,13 @@ impl Pretensions {
         let direction = match block.data.first() {
             None => None,
             Some(data) => {
+                let is_turned = |(_, position): &(String, Position)| position.is_turned();
+                if places.instances().iter().any(is_turned) {
+                    let message = "*PRE-TENSION SECTION gives a direction in a part whose instances are turned, where it isn't \
+                                   said whether it turns; expected none, for the normal of the faces, or the section outside \
+                                   of the part";
+                    return Err(source.error(data.place, message));
+                }
                 let mut direction = numbers(source, data, "a component of the direction")?;
                 direction.resize(3, 0.0);
                 Some([direction[0], direction[1], direction[2]])

@@ -253,8 +253,14 @@ fn springs_at_a_reference_node_act_like_their_forces() {
     let element =
         |kind: &str, nodes: &str| format!("*ELEMENT, TYPE={kind}, ELSET=S\n20, {nodes}\n");
     let loads = "100, 3, 3.\n100, 4, 1.\n6, 1, 2.\n";
-    type Stretch = fn(&Solution) -> f64;
-    let cases: [(String, &str, Stretch, &[(&str, f64)]); 4] = [
+    // The element, its degrees of freedom, its stretch, and the directions of its forces.
+    type Case = (
+        String,
+        &'static str,
+        fn(&Solution) -> f64,
+        &'static [(&'static str, f64)],
+    );
+    let cases: [Case; 4] = [
         (
             element("SPRING1", "100"),
             "3\n",

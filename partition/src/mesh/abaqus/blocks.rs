@@ -231,7 +231,8 @@ impl Source {
     fn included(&mut self, at: LinePlace, input: &str) -> Result<usize, InputError> {
         // Relative to the main deck, as in Abaqus.
         let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
-        let path = folder.join(input);
+        // Decks that were written on Windows have backslashes.
+        let path = folder.join(input.replace('\\', "/"));
         self.inclusions += 1;
         if self.inclusions > INCLUSIONS {
             let message = format!(
