@@ -169,10 +169,12 @@ def test_a_bolt_has_its_shortening_and_its_force(tmp_path, monkeypatch):
         deck = tmp_path / "part.inp"
         deck.write_text(
             f"*NODE\n{nodes}99, 0, 0, 0\n*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
-            f"2, 5, 6, 7, 8, 9, 10, 11, 12\n*NSET, NSET=P\n99\n*NSET, NSET=CUT\n5, 6, 7, 8\n*SURFACE, NAME=S\n{surface}\n"
+            "2, 5, 6, 7, 8, 9, 10, 11, 12\n*NSET, NSET=P\n99\n*NSET, NSET=CUT\n5, 6, 7, 8\n"
+            f"*SURFACE, NAME=S\n{surface}\n"
             "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=E, MATERIAL=M\n"
             f"*PRE-TENSION SECTION, SURFACE=S, NODE=99\n0., 0., 1.\n*BOUNDARY\n{walls}{lift.format('0.')}"
-            f"*STEP\n*STATIC\n*CLOAD\n99, 1, {20 * sense}.\n*NODE PRINT, NSET=P\nU, RF\n*NODE PRINT, NSET=CUT\nU\n*END STEP\n"
+            f"*STEP\n*STATIC\n*CLOAD\n99, 1, {20 * sense}.\n*NODE PRINT, NSET=P\nU, RF\n*NODE PRINT, NSET=CUT\nU\n"
+            "*END STEP\n"
             f"*STEP\n*STATIC\n*BOUNDARY, FIXED\n99, 1\n{lift.format('0.01')}*END STEP\n"
         )
         run(monkeypatch, "run", deck, "--ranks", 1, "--folder", tmp_path)
