@@ -152,11 +152,11 @@ def test_supports_of_some_steps_have_their_reactions(tmp_path, monkeypatch):
     run(monkeypatch, "run", deck, "--ranks", 1, "--folder", tmp_path)
     tables = printed(tmp_path / "part.dat")
     held, free = (tables["forces", "R", time][0, 1:] for time in (1.0, 2.0))
-    assert held[2] > 1e4
-    np.testing.assert_allclose(held[:2], [2e3, 0.0], atol=1e-4 * held[2])
-    np.testing.assert_allclose(free, [2e3, 0.0, 0.0], atol=1e-4 * held[2])
+    assert abs(held[2]) > 100
+    np.testing.assert_allclose(held[:2], [2e3, 0.0], atol=0.1)
+    np.testing.assert_allclose(free, [2e3, 0.0, 0.0], atol=0.1)
     for time in (1.0, 2.0):
-        np.testing.assert_allclose(tables["total force", "N", time][0], 0.0, atol=1e-4 * held[2])
+        np.testing.assert_allclose(tables["total force", "N", time][0], 0.0, atol=0.1)
 
 
 @pytest.mark.filterwarnings("ignore")

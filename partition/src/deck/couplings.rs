@@ -100,8 +100,7 @@ impl Couplings {
         block: &Block,
     ) -> Result<(), InputError> {
         let source = places.source;
-        let surface = source.required(block, "SURFACE")?.to_uppercase();
-        places.check_surface(block.place, &surface)?;
+        let surface = places.surface(block.place, source.required(block, "SURFACE")?)?;
         let name = block.parameter("CONSTRAINT NAME").unwrap_or("coupling");
         self.push(places, block, (name, Coupled::Surface(surface)), None)?;
         if let Some(open) = self.all.last_mut() {

@@ -54,8 +54,7 @@ impl Pretensions {
             let message = "*PRE-TENSION SECTION of an ELEMENT, a beam, isn't read; expected SURFACE=… across a bolt of solids";
             return Err(source.error(block.place, message));
         }
-        let surface = source.required(block, "SURFACE")?.to_uppercase();
-        places.check_surface(block.place, &surface)?;
+        let surface = places.surface(block.place, source.required(block, "SURFACE")?)?;
         let node = places.one_node(block, "NODE")?;
         let direction = match block.data.first() {
             None => None,
