@@ -7,8 +7,11 @@ use crate::mesh::abaqus::{Block, Data, Source};
 use crate::name;
 
 /// The keywords whose entries are counted here.
-const COUNTED: [&str; 12] = [
+const COUNTED: [&str; 15] = [
     "NODE",
+    "INSTANCE",
+    "SOLID SECTION",
+    "PRE-TENSION SECTION",
     "BOUNDARY",
     "CLOAD",
     "DLOAD",
@@ -124,6 +127,11 @@ fn taken(source: &Source, block: &Block, data: &Data) -> Option<(usize, &'static
         ("TEMPERATURE", _) => (2, "nodes and a temperature"),
         ("INITIAL CONDITIONS", _) if kind == "TEMPERATURE" => (2, "nodes and a temperature"),
         ("NODE", _) => (4, "a number and three coordinates"),
+        ("INSTANCE", _) if block.data.first().map(|first| first.place) == Some(data.place) => {
+            (3, "a shift")
+        }
+        ("SOLID SECTION", _) if block.parameter("COMPOSITE").is_none() => (1, "a thickness"),
+        ("PRE-TENSION SECTION", _) => (3, "a direction"),
         ("EXPANSION", _) if kind.is_empty() || kind.starts_with("ISO") => {
             (2, "a coefficient and a temperature")
         }
@@ -180,7 +188,16 @@ mod tests {
         ] {
             assert!(check_of(text).is_ok(), "{text}");
         }
-        let error = check_of("*NODE\n1, 0,5, 0, 1").unwrap_err().to_string();
-        assert!(error.contains("behind its 4 entries"), "{error}");
+        for (text, entries) in [
+            ("*NODE\n1, 0,5, 0, 1", 4),
+            ("*INSTANCE, NAME=I, PART=P\n0, 1,5, 2", 3),
+            ("*SOLID SECTION, ELSET=E, MATERIAL=M\n2,5", 1),
+        ] {
+            let error = check_of(text).unwrap_err().to_string();
+            assert!(
+                error.contains(&format!("behind its {entries} entries")),
+                "{error}"
+            );
+        }
     }
 }
