@@ -112,6 +112,10 @@ fn split<'a>(block: &Block, text: &'a str) -> Option<[&'a str; 2]> {
 /// The number of entries that a line takes, and their meaning; `None` where its reader counts them, or where further ones
 /// are no matter.
 fn taken(source: &Source, block: &Block, data: &Data) -> Option<(usize, &'static str)> {
+    // Decks have many of these lines.
+    if block.keyword == "NODE" {
+        return Some((4, "a number and three coordinates"));
+    }
     let label = item(source, data, 1).to_uppercase();
     let kind = block.parameter("TYPE").unwrap_or_default().to_uppercase();
     let taken = match (block.keyword.as_str(), label.as_str()) {
@@ -126,7 +130,6 @@ fn taken(source: &Source, block: &Block, data: &Data) -> Option<(usize, &'static
         ("DSLOAD", "P") => (3, "a surface, the kind of a load and its magnitude"),
         ("TEMPERATURE", _) => (2, "nodes and a temperature"),
         ("INITIAL CONDITIONS", _) if kind == "TEMPERATURE" => (2, "nodes and a temperature"),
-        ("NODE", _) => (4, "a number and three coordinates"),
         ("INSTANCE", _) if block.data.first().map(|first| first.place) == Some(data.place) => {
             (3, "a shift")
         }
