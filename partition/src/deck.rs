@@ -162,12 +162,12 @@ fn translate(path: &Path) -> Result<Translation, InputError> {
             "{place}: NLGEOM is left out: displacements and strains are taken as small, and nodes keep what they face"
         ));
     }
-    let (scene, thickness) = scene::text(&mut places, &content, &mut warnings)?;
+    let (scene, of_scene) = scene::text(&mut places, &content, &mut warnings)?;
     let prints = content.prints.tables(
         &places,
         content.steps.done.len(),
-        thickness,
         &content.couplings.nodes(),
+        of_scene,
     );
     Ok(Translation {
         scene,

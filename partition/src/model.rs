@@ -127,13 +127,15 @@ impl Model {
         let mut warnings = mesh.warnings.clone();
         let mut on = LoadedBodies::new(scene, mesh, plane, &mut warnings)?;
         let declared = touching::contacts(scene, &mut on.bodies, &on.topology, &mut warnings)?;
-        let mut constraints = Constraints::new(scene, &on, plane, &declared, &mut warnings)?;
+        let couplings = couplings::couplings(scene, (&on.bodies.mesh, &on.topology))?;
+        let declared_and_coupled = (&declared[..], &couplings[..]);
+        let mut constraints =
+            Constraints::new(scene, &on, plane, declared_and_coupled, &mut warnings)?;
         let goals = goals(scene, &on, &constraints)?;
         let mesh = &on.bodies.mesh;
         let between = springs_between::springs_between(scene, mesh, constraints.count())?;
         constraints.equations.extend(between);
         let count = constraints.count();
-        let couplings = couplings::couplings(scene, (mesh, &on.topology), count)?;
         let absent_contacts = constraints.absent(scene);
         let contacts = &constraints.contacts;
         let diagnostics = Diagnostics::new(scene, &on, contacts, &declared);
@@ -147,7 +149,7 @@ impl Model {
         let mut support_names = on.take_support_names();
         let mesh = &mut on.bodies.mesh;
         let (coupled, reference_nodes) =
-            couplings::attach(couplings, mesh, &mut on.loads, &mut support_names);
+            couplings::attach((couplings, count), mesh, &mut on.loads, &mut support_names);
         Ok(Self {
             title: scene.title.clone(),
             solver: scene.solver,

@@ -87,8 +87,18 @@ class Printed:
         for number in set(numbers) & self._frames.keys():
             frame = values[self._frames[number]]
             found[number] = frame[0] if label == "U" else frame.sum(axis=0)
+        found.update({number: values for number, values in self._bolts(label).items() if number in numbers})
         numbers = [number for number in numbers if number in found]
         return numbers, [None] * len(numbers), np.array([found[number] for number in numbers]).reshape(-1, 3)
+
+    def _bolts(self, label: str) -> dict[int, Floats]:
+        """The shortening or the force of pretensions by their nodes, along the first axis."""
+        report = self.result.report
+        steps = report.get("steps") or [report]
+        of_step = {bolt["name"]: bolt for bolt in steps[self.result.step - 1]["pretensions"]}
+        key, unit = ("shortening", 1.0) if label == "U" else ("force", self.prints["thickness"])
+        bolts = self.prints.get("bolts", {}).items()
+        return {int(number): np.array([sense * unit * of_step[name][key], 0, 0]) for number, (name, sense) in bolts}
 
     @cached_property
     def _frames(self) -> dict[int, NDArray[np.intp]]:
@@ -206,6 +216,8 @@ class Printed:
             force, along = np.zeros((len(owner), 3)), np.zeros(len(owner))
             for number, name in enumerate(names):
                 table, own = self.result.contacts[name], owner == number
+                if name in self.prints.get("supports", []):
+                    continue
                 of_point = table[place[own]]
                 along[own] = of_point["force"]
                 force[own, :dimension] = of_point["force"][:, None] * group["normal"][:][own]

@@ -137,6 +137,55 @@ def test_a_reference_node_has_its_motion_and_its_force(tmp_path, monkeypatch):
     np.testing.assert_allclose(tables["total force", "N", 1.0][0], 0.0, atol=1e-4 * abs(force[2]))
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_supports_of_some_steps_have_their_reactions(tmp_path, monkeypatch):
+    deck = tmp_path / "part.inp"
+    foot = "1, 1, 3\n2, 1, 3\n3, 1, 3\n4, 1, 3\n"
+    deck.write_text(
+        f"*NODE, NSET=N\n{HEXAHEDRON}20, 0.5, 0.5, 3\n"
+        "*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+        f"{MATERIAL}*SURFACE, NAME=ROOF\nE, S2\n*COUPLING, CONSTRAINT NAME=C, REF NODE=20, SURFACE=ROOF\n*KINEMATIC\n"
+        f"*BOUNDARY\n{foot}*NSET, NSET=R\n20\n*STEP\n*STATIC\n*BOUNDARY\n20, 3, 3, 1e-3\n*CLOAD\n20, 1, 2e3\n"
+        "*NODE PRINT, NSET=R\nRF\n*NODE PRINT, NSET=N, TOTALS=ONLY\nRF\n*END STEP\n"
+        f"*STEP\n*STATIC\n*BOUNDARY, OP=NEW\n{foot}*END STEP\n"
+    )
+    run(monkeypatch, "run", deck, "--ranks", 1, "--folder", tmp_path)
+    tables = printed(tmp_path / "part.dat")
+    held, free = (tables["forces", "R", time][0, 1:] for time in (1.0, 2.0))
+    assert abs(held[2]) > 100
+    np.testing.assert_allclose(held[:2], [2e3, 0.0], atol=0.1)
+    np.testing.assert_allclose(free, [2e3, 0.0, 0.0], atol=0.1)
+    for time in (1.0, 2.0):
+        np.testing.assert_allclose(tables["total force", "N", time][0], 0.0, atol=0.1)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_bolt_has_its_shortening_and_its_force(tmp_path, monkeypatch):
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    nodes = "".join(f"{4 * z + k}, {x}, {y}, {z}\n" for z in range(3) for k, (x, y) in enumerate(corners, start=1))
+    walls = "1, 1, 3\n2, 1, 3\n3, 1, 3\n4, 1, 3\n9, 1, 2\n10, 1, 2\n11, 1, 2\n12, 1, 2\n"
+    lift = "*BOUNDARY\n" + "".join(f"{node}, 3, 3, {{0}}\n" for node in range(9, 13))
+    for surface, sense in ("1, S2", 1), ("2, S1", -1):
+        deck = tmp_path / "part.inp"
+        deck.write_text(
+            f"*NODE\n{nodes}99, 0, 0, 0\n*ELEMENT, TYPE=C3D8, ELSET=E\n1, 1, 2, 3, 4, 5, 6, 7, 8\n"
+            "2, 5, 6, 7, 8, 9, 10, 11, 12\n*NSET, NSET=P\n99\n*NSET, NSET=CUT\n5, 6, 7, 8\n"
+            f"*SURFACE, NAME=S\n{surface}\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=E, MATERIAL=M\n"
+            f"*PRE-TENSION SECTION, SURFACE=S, NODE=99\n0., 0., 1.\n*BOUNDARY\n{walls}{lift.format('0.')}"
+            f"*STEP\n*STATIC\n*CLOAD\n99, 1, {20 * sense}.\n*NODE PRINT, NSET=P\nU, RF\n*NODE PRINT, NSET=CUT\nU\n"
+            "*END STEP\n"
+            f"*STEP\n*STATIC\n*BOUNDARY, FIXED\n99, 1\n{lift.format('0.01')}*END STEP\n"
+        )
+        run(monkeypatch, "run", deck, "--ranks", 1, "--folder", tmp_path)
+        tables = printed(tmp_path / "part.dat")
+        # E A / L = 500 of the whole bar.
+        for time, force in (1.0, 20.0), (2.0, 25.0):
+            np.testing.assert_allclose(tables["displacements", "P", time], [[99, 0.04 * sense, 0, 0]], rtol=1e-5)
+            np.testing.assert_allclose(tables["forces", "P", time], [[99, force * sense, 0, 0]], rtol=1e-5)
+        np.testing.assert_allclose(tables["displacements", "CUT", 1.0][:, 3], -0.02 * sense, rtol=1e-5)
+
+
 def test_times_are_those_of_fortran():
     assert [time_of(time) for time in (0.0, 1.0, 12.5, 0.05)] == [
         " 0.0000000E+00", " 0.1000000E+01", " 0.1250000E+02", " 0.5000000E-01"

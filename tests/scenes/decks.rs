@@ -3,6 +3,7 @@
 mod conditions;
 mod couplings;
 mod node_surface;
+mod parts;
 mod pretension;
 
 use contact_dd_partition::deck;

@@ -77,8 +77,15 @@ impl System {
             ));
         };
         let origin: Vector = match *rest {
-            [x, y, z, ..] => [x, y, z],
-            _ => [0.0; 3],
+            [x, y, z] => [x, y, z],
+            _ if rest.iter().all(|&number| number == 0.0) => [0.0; 3],
+            _ => {
+                return refuse(format!(
+                    "*{} has {} coordinates; expected 6 or 9, with points in numbers, not commas",
+                    block.keyword,
+                    points.len()
+                ));
+            }
         };
         let (a, b) = ([a, b, c], [d, e, f]);
         match system

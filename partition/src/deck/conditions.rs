@@ -1,23 +1,27 @@
 //! Linear constraints between displacements of bodies' nodes: `*EQUATION` after eliminating nodes without cells, and
-//! supports along local axes or in some of the steps only.
+//! supports along local axes or in some of the steps only, also those of reference points.
+
+mod scene_equation;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::activation::Activation;
-use super::document::{Document, Names, quoted};
+pub(super) use self::scene_equation::{SceneEquation, Translator, in_scene, write_step};
 use super::equations::Equation;
-use super::groups::Groups;
+use super::loads::Loads;
 use super::place::Places;
 use super::reference::NodeAxis;
 use super::steps::{LoadStep, Steps};
 use crate::error::InputError;
 use crate::mesh::abaqus::LinePlace;
 
+/// The plain name of equations.
+const EQUATION: &str = "prescribed";
+
 /// Relative size of coefficients that count as 0.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Coefficients by nodes and the axes of the scene.
-type Terms = BTreeMap<NodeAxis, f64>;
+/// Coefficients by nodes and the axes of the scene, or the components of reference points.
+pub(super) type Terms = BTreeMap<NodeAxis, f64>;
 
 /// Σ factor · displacement = value.
 pub(super) struct Condition {
@@ -28,15 +32,6 @@ pub(super) struct Condition {
     /// The plain name of constraints with values.
     word: &'static str,
     /// True if activation fixes the current displacements.
-    is_kept: bool,
-}
-
-/// A constraint in the syntax of the scene.
-pub(super) struct SceneEquation {
-    name: Option<String>,
-    /// Groups, axes and coefficients.
-    terms: Vec<(String, usize, f64)>,
-    values: Vec<Option<f64>>,
     is_kept: bool,
 }
 
@@ -60,25 +55,23 @@ impl Condition {
 /// supports that become constraints are removed from the steps.
 ///
 /// # Errors
-/// An equation of a reference node, one that contradicts supports of its nodes, a node without cells that is held in
-/// some of the steps only.
+/// An equation of a pretension's node, one that contradicts supports of its nodes.
 pub(super) fn all(
     places: &Places,
     equations: &[Equation],
     steps: &mut Steps,
 ) -> Result<Vec<Condition>, InputError> {
     let has_cell = places.with_cells();
+    let is_loose =
+        |node: u32| !has_cell[node as usize] && !steps.loads.references.contains_key(&node);
     let mut all = Vec::new();
     for equation in equations {
         all.push(along_axes(places, equation, steps)?);
     }
     let dofs = all.iter().flat_map(|condition| condition.terms.keys());
-    let loose: BTreeSet<NodeAxis> = dofs
-        .copied()
-        .filter(|dof| !has_cell[dof.0 as usize])
-        .collect();
+    let loose: BTreeSet<NodeAxis> = dofs.copied().filter(|dof| is_loose(dof.0)).collect();
     for dof in loose {
-        all = without(places, dof, all, &mut steps.done)?;
+        all = without(dof, &steps.loads, all, &mut steps.done);
     }
     let held = steps
         .done
@@ -113,9 +106,23 @@ fn along_axes(
 ) -> Result<Condition, InputError> {
     let mut terms = Terms::new();
     for &((node, axis), factor) in &equation.terms {
-        if steps.loads.references.contains_key(&node) {
-            let message = "an equation of the reference node of a coupling isn't supported; expected nodes of bodies";
-            return Err(places.source.error(equation.place, message));
+        let refused = |why: &str| {
+            let message = format!(
+                "*EQUATION: the degree of freedom {} of the node {} {why}",
+                axis + 1,
+                places.deck.node_tags[node as usize]
+            );
+            places.source.error(equation.place, message)
+        };
+        if let Some(reference) = steps.loads.references.get(&node) {
+            let component = reference.of_equation(axis, places.dim()).map_err(refused)?;
+            *terms.entry(component).or_default() += factor;
+            continue;
+        }
+        if axis >= places.dim() {
+            return Err(refused(
+                "is no displacement; expected one, or a reference node",
+            ));
         }
         for (k, part) in direction(places, steps, (node, axis))
             .into_iter()
@@ -130,7 +137,7 @@ fn along_axes(
         place: Some(equation.place),
         terms,
         values: vec![Some(0.0); steps.done.len()],
-        word: "prescribed",
+        word: EQUATION,
         is_kept: false,
     })
 }
@@ -145,14 +152,17 @@ fn direction(places: &Places, steps: &Steps, (node, axis): NodeAxis) -> [f64; 3]
 
 /// Eliminates a displacement of a node without cells from the constraints. If it is prescribed, it becomes part of the
 /// constraints' values; otherwise the first constraint with it is solved for it and substituted into the others, and
-/// its force is transferred to that constraint's other nodes.
+/// its force is transferred to that constraint's other nodes. A support in some of the steps is another constraint.
 fn without(
-    places: &Places,
     dof: NodeAxis,
+    Loads {
+        fixed, references, ..
+    }: &Loads,
     mut all: Vec<Condition>,
     steps: &mut [LoadStep],
-) -> Result<Vec<Condition>, InputError> {
+) -> Vec<Condition> {
     let (node, axis) = dof;
+    let is_kept = fixed.contains(&dof);
     let held = steps
         .iter()
         .map(|step| step.supports.get(&node).and_then(|held| held[axis]));
@@ -166,31 +176,30 @@ fn without(
                 *value = value.zip(*held).map(|(value, held)| value - factor * held);
             }
         }
-        return Ok(all);
+        return all;
     }
-    if let Some(step) = held
-        .iter()
-        .position(|other| other.is_some() != held[0].is_some())
-    {
-        let message = format!(
-            "supports of the node {}, which is of no body, begin or end in this step, which isn't supported; expected the same in \
-             every step",
-            places.deck.node_tags[node as usize]
-        );
-        return Err(places.source.error(steps[step].place, message));
+    if let Some(first) = held.iter().position(Option::is_some) {
+        all.push(support(dof, Some(steps[first].place), held, is_kept));
     }
     let Some(first) = all
         .iter()
         .position(|condition| condition.terms.contains_key(&dof))
     else {
-        return Ok(all);
+        return all;
     };
     let mut own = all.remove(first);
     let factor = own.terms.remove(&dof).unwrap_or(1.0);
     for step in steps {
         let load = step.forces.get(&node).map_or(0.0, |force| force[axis]);
         for (&(other, k), term) in own.terms.iter().filter(|_| load != 0.0) {
-            step.forces.entry(other).or_default()[k] -= term / factor * load;
+            let of_point = references
+                .contains_key(&other)
+                .then(|| step.references.entry(other).or_default());
+            let force = match of_point {
+                Some(at) => &mut at.load[..],
+                None => step.forces.entry(other).or_default(),
+            };
+            force[k] -= term / factor * load;
         }
     }
     for other in &mut all {
@@ -198,49 +207,52 @@ fn without(
             other.add(-term / factor, &own);
         }
     }
-    Ok(all)
+    all
 }
 
-/// Constraints for supports of bodies' nodes that hold in some of the steps only; they are removed from the steps.
+/// The constraint for a support that holds in some of the steps only.
+fn support(
+    dof: NodeAxis,
+    place: Option<LinePlace>,
+    values: Vec<Option<f64>>,
+    is_kept: bool,
+) -> Condition {
+    Condition {
+        place,
+        terms: BTreeMap::from([(dof, 1.0)]),
+        values,
+        word: "support",
+        is_kept,
+    }
+}
+
+/// Constraints for supports of bodies' nodes and of reference points of couplings that hold in some of the steps only;
+/// they are removed from the steps.
 fn passing(has_cell: &[bool], steps: &mut Steps) -> Vec<Condition> {
-    let (fixed, systems) = (&steps.loads.fixed, &steps.systems);
+    let (fixed, systems, references) =
+        (&steps.loads.fixed, &steps.systems, &steps.loads.references);
     // The axes of a node with a local system are local there.
     let is_kept = |(node, axis): NodeAxis| match systems.contains_key(&node) {
         true => (0..3).any(|local| fixed.contains(&(node, local))),
         false => fixed.contains(&(node, axis)),
     };
+    let is_here = |node: u32| match references.get(&node) {
+        Some(reference) => !reference.is_local && !reference.is_of_pretension(),
+        None => has_cell[node as usize],
+    };
     let steps = &mut steps.done;
-    let held = |step: &LoadStep, (node, axis): NodeAxis| {
-        step.supports.get(&node).and_then(|held| held[axis])
-    };
-    let of_step = |step: &LoadStep| {
-        let axes = step
-            .supports
-            .keys()
-            .flat_map(|&node| (0..3).map(move |axis| (node, axis)));
-        axes.filter(|dof| held(step, *dof).is_some())
-            .collect::<Vec<_>>()
-    };
-    let dofs: BTreeSet<NodeAxis> = steps.iter().flat_map(of_step).collect();
+    let dofs: BTreeSet<NodeAxis> = steps.iter().flat_map(LoadStep::held).collect();
     let mut all = Vec::new();
-    for dof in dofs.into_iter().filter(|dof| has_cell[dof.0 as usize]) {
-        let values: Vec<Option<f64>> = steps.iter().map(|step| held(step, dof)).collect();
+    for dof in dofs.into_iter().filter(|dof| is_here(dof.0)) {
+        let mut of_steps: Vec<_> = steps.iter_mut().map(|step| step.support(dof)).collect();
+        let values: Vec<Option<f64>> = (of_steps.iter())
+            .map(|held| held.as_deref().copied().flatten())
+            .collect();
         if values.iter().all(Option::is_some) {
             continue;
         }
-        for of_node in steps
-            .iter_mut()
-            .filter_map(|step| step.supports.get_mut(&dof.0))
-        {
-            of_node[dof.1] = None;
-        }
-        all.push(Condition {
-            place: None,
-            terms: BTreeMap::from([(dof, 1.0)]),
-            values,
-            word: "support",
-            is_kept: is_kept(dof),
-        });
+        of_steps.iter_mut().flatten().for_each(|held| **held = None);
+        all.push(support(dof, None, values, is_kept(dof)));
     }
     for step in steps {
         (step.supports).retain(|_, held| held.iter().any(Option::is_some));
@@ -270,89 +282,4 @@ fn turned(places: &Places, steps: &Steps) -> Vec<Condition> {
         }
     };
     dofs.into_iter().map(condition).collect()
-}
-
-/// The constraints with the groups of their nodes; those with the same values in all steps share a name that isn't in
-/// `names`.
-pub(super) fn in_scene(
-    conditions: &[Condition],
-    groups: &mut Groups,
-    names: &mut Names,
-) -> Vec<SceneEquation> {
-    let mut known: BTreeMap<(&str, bool, Vec<Option<u64>>), String> = BTreeMap::new();
-    let equation = |condition: &Condition| {
-        let bits = condition.values.iter().map(|value| value.map(f64::to_bits));
-        let is_plain = condition.values.iter().all(|value| *value == Some(0.0));
-        let name = (!is_plain || condition.place.is_none()).then(|| {
-            let key = (condition.word, condition.is_kept, bits.collect());
-            known
-                .entry(key)
-                .or_insert_with(|| names.unique(condition.word))
-                .clone()
-        });
-        let terms = condition
-            .terms
-            .iter()
-            .filter_map(|(&(node, axis), &factor)| {
-                Some((groups.of_nodes(&[node], "equation")?, axis, factor))
-            });
-        SceneEquation {
-            name,
-            terms: terms.collect(),
-            values: condition.values.clone(),
-            is_kept: condition.is_kept,
-        }
-    };
-    conditions.iter().map(equation).collect()
-}
-
-impl SceneEquation {
-    /// Writes the equation.
-    pub(super) fn write(&self, document: &mut Document) {
-        let term = |(group, axis, factor): &(String, usize, f64)| {
-            let component = ["x", "y", "z"][*axis];
-            format!(
-                "{{ at = {}, component = \"{component}\", factor = {factor:?} }}",
-                quoted(group)
-            )
-        };
-        let terms: Vec<String> = self.terms.iter().map(term).collect();
-        document.table("[[equation]]");
-        if let Some(name) = &self.name {
-            document.key("name", quoted(name));
-        }
-        document.key("terms", format!("[\n    {},\n]", terms.join(",\n    ")));
-        let mut values = self.values.iter().copied().flatten();
-        if let Some(value) = values.next().filter(|value| *value != 0.0) {
-            document.key("value", format!("{value:?}"));
-        }
-        if self.values.iter().any(Option::is_none) && !self.is_kept {
-            document.key("absolute", "true");
-        }
-    }
-
-    /// The steps in which it is active; `None` if it is active in all.
-    pub(super) fn activation(&self) -> Option<Activation> {
-        let name = self.name.clone().filter(|_| self.values.contains(&None))?;
-        let steps = self.values.iter().map(Option::is_some).collect();
-        Some(Activation { name, steps })
-    }
-}
-
-/// Writes the values of a step, if they vary.
-pub(super) fn write_step(all: &[SceneEquation], step: usize, document: &mut Document) {
-    let varies = |of: &&SceneEquation| {
-        let mut values = of.values.iter().flatten();
-        let first = values.next();
-        values.any(|value| Some(value) != first)
-    };
-    let own = all.iter().filter(varies);
-    let values: BTreeMap<&str, f64> =
-        (own.filter_map(|of| Some((of.name.as_deref()?, of.values[step]?)))).collect();
-    if !values.is_empty() {
-        document.table("[step.equation]");
-    }
-    for (name, value) in values {
-        document.key(&quoted(name), format!("{value:?}"));
-    }
 }

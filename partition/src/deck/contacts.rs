@@ -253,11 +253,9 @@ impl Contacts {
                 );
                 return Err(source.error(data.place, message));
             }
-            places.check_surface(data.place, &slave)?;
-            places.check_surface(data.place, &master)?;
             self.pairs.push(Pair {
-                slave,
-                master,
+                slave: places.surface(data.place, &slave)?,
+                master: places.surface(data.place, &master)?,
                 interaction: interaction.clone(),
                 place: data.place,
                 adjust,

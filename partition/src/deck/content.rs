@@ -174,7 +174,8 @@ impl Content {
         let step = self.steps.number();
         match block.keyword.as_str() {
             "NODE PRINT" | "EL PRINT" => {
-                let references = self.couplings.nodes();
+                let mut references = self.couplings.nodes();
+                references.extend(self.pretensions.nodes());
                 self.prints.read(places, block, step, &references)
             }
             "MODEL CHANGE" => (self.changes).read(places, block, &self.contacts.pairs, step),
@@ -228,6 +229,16 @@ impl Content {
             &self.steps.loads,
             warnings,
         )?;
+        for dof in self.couplings.without_effect(&self.orientations.all) {
+            for held in self
+                .steps
+                .done
+                .iter_mut()
+                .filter_map(|step| step.support(dof))
+            {
+                *held = None;
+            }
+        }
         self.conditions = conditions::all(places, &self.equations.all, &mut self.steps)?;
         Ok(())
     }

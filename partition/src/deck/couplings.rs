@@ -100,8 +100,7 @@ impl Couplings {
         block: &Block,
     ) -> Result<(), InputError> {
         let source = places.source;
-        let surface = source.required(block, "SURFACE")?.to_uppercase();
-        places.check_surface(block.place, &surface)?;
+        let surface = places.surface(block.place, source.required(block, "SURFACE")?)?;
         let name = block.parameter("CONSTRAINT NAME").unwrap_or("coupling");
         self.push(places, block, (name, Coupled::Surface(surface)), None)?;
         if let Some(open) = self.all.last_mut() {
@@ -142,6 +141,7 @@ impl Couplings {
                 node: own,
                 first: 3,
                 coupled: [true; FREEDOMS],
+                is_local: false,
             };
             self.refer(places, block, node, rotations)?;
         }
@@ -160,6 +160,7 @@ impl Couplings {
             node,
             first: 0,
             coupled: [true; FREEDOMS],
+            is_local: false,
         };
         self.refer(places, block, node, own)?;
         self.all.push(Coupling {
@@ -246,6 +247,7 @@ impl Couplings {
         }
         if let Some(reference) = self.references.get_mut(&open.node) {
             reference.coupled = coupled;
+            reference.is_local = kind == Kind::Distributing && open.orientation.is_some();
         }
         Ok(())
     }

@@ -51,9 +51,8 @@ impl Sectors {
     pub(super) fn tie(&mut self, places: &Places, block: &Block) -> Result<(), InputError> {
         let source = places.source;
         for data in &block.data {
-            let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
-            places.check_surface(data.place, &slave)?;
-            places.check_surface(data.place, &master)?;
+            let slave = places.surface(data.place, item(source, data, 0))?;
+            let master = places.surface(data.place, item(source, data, 1))?;
             self.ties.push(CyclicTie {
                 place: block.place,
                 name: block.parameter("NAME").unwrap_or_default().to_uppercase(),

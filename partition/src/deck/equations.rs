@@ -69,11 +69,11 @@ impl Equations {
                     let nodes = places.members(line.place, Of::Nodes, item(source, line, at))?;
                     let freedom = item(source, line, at + 1);
                     let axis = match freedom.parse::<usize>() {
-                        Ok(freedom @ 1..=3) if freedom <= places.dim() => freedom - 1,
+                        Ok(freedom @ 1..=6) => freedom - 1,
                         _ => {
                             let freedom = name::shown(freedom);
                             let message = format!(
-                                "the degree of freedom {freedom} is no displacement; expected 1 to {}",
+                                "the degree of freedom {freedom} is no displacement; expected 1 to {}, of reference nodes to 6",
                                 places.dim()
                             );
                             return Err(source.error(line.place, message));

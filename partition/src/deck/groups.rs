@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::place::Places;
-use crate::element::geometry::dot;
 use crate::error::InputError;
 use crate::mesh::abaqus::{Face, LinePlace};
 
@@ -170,10 +169,9 @@ impl<'a, 'b> Groups<'a, 'b> {
         Some(surface.members.list().to_vec())
     }
 
-    /// True if a direction points out of a surface of faces; `None` counts as outward.
-    pub(super) fn points_outward(&self, surface: &str, direction: Option<[f64; 3]>) -> bool {
-        let outward = self.places.deck.outward(surface);
-        direction.is_none_or(|direction| dot(direction, outward) >= 0.0)
+    /// The mean outward direction of a surface of faces.
+    pub(super) fn outward(&self, surface: &str) -> [f64; 3] {
+        self.places.deck.outward(surface)
     }
 
     /// The group of cells, which are all or some of the set `word`.

@@ -67,7 +67,7 @@ const READ: [&str; 54] = [
 ];
 
 /// Keywords without effect on the solution.
-const NOT_NEEDED: [&str; 36] = [
+const NOT_NEEDED: [&str; 38] = [
     "CONDUCTIVITY",
     "ELECTRICAL CONDUCTIVITY",
     "SPECIFIC HEAT",
@@ -75,6 +75,8 @@ const NOT_NEEDED: [&str; 36] = [
     "GAP HEAT GENERATION",
     "PHYSICAL CONSTANTS",
     "DAMPING",
+    "DAMPING CONTROLS",
+    "GLOBAL DAMPING",
     "PREPRINT",
     "RESTART",
     "OUTPUT",
@@ -108,10 +110,11 @@ const NOT_NEEDED: [&str; 36] = [
 
 const NOT_LINEAR: &str = "bodies are linear elastic here";
 const NOT_STATIC: &str = "loads are static here: expected *STATIC";
+const NO_DAMPING: &str = "it damps motions, and nothing moves fast under static loads";
 const NOT_YET: &str = "isn't supported yet";
 
 /// Keywords that would change the solution: the message, and the advice.
-const REFUSED: [(&[&str], &str, &str); 20] = [
+const REFUSED: [(&[&str], &str, &str); 21] = [
     (
         &[
             "PLASTIC",
@@ -239,15 +242,16 @@ const REFUSED: [(&[&str], &str, &str); 20] = [
         NOT_STATIC,
         "leave it out",
     ),
+    (&["VALUES AT INFINITY"], NOT_STATIC, "leave it out"),
     (
         &[
             "DASHPOT",
             "CONTACT DAMPING",
             "CONTACT STABILIZATION",
             "SURFACE INTERACTION DAMPING",
-            "VALUES AT INFINITY",
+            "CONNECTOR DAMPING",
         ],
-        NOT_STATIC,
+        NO_DAMPING,
         "leave it out",
     ),
     (
@@ -324,7 +328,13 @@ pub(super) fn meaning(source: &Source, block: &Block) -> Result<Meaning, InputEr
             let others = REFUSED.iter().flat_map(|(names, ..)| *names);
             let known = READ.iter().chain(&NOT_NEEDED).chain(others).copied();
             let near = nearest(keyword, known).filter(|near| near.get(..2) == keyword.get(..2));
-            let hint = near.map_or_else(String::new, |near| format!("; did you mean *{near}?"));
+            let hint = match near {
+                Some(near) => format!("; did you mean *{near}?"),
+                None if keyword.contains("DAMP") => {
+                    format!("; if it is damping, leave it out: {NO_DAMPING}")
+                }
+                None => String::new(),
+            };
             format!("the keyword *{shown} isn't known, and may change the answer{hint}")
         }
     };

@@ -142,9 +142,8 @@ impl Loads {
         origin: &Origin,
     ) -> Result<(), InputError> {
         let source = places.source;
-        let surface = item(source, data, 0).to_uppercase();
+        let surface = places.surface(data.place, item(source, data, 0))?;
         let label = item(source, data, 1).to_uppercase();
-        places.check_surface(data.place, &surface)?;
         let value = source.real(data.place, item(source, data, 2), "the magnitude of a load")?;
         let origin = Origin {
             place: data.place,

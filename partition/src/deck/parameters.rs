@@ -222,12 +222,22 @@ pub(super) fn spell(block: &mut Block) {
 /// An unknown parameter or type, with its line.
 pub(super) fn check(source: &Source, block: &Block) -> Result<(), InputError> {
     let keyword = block.keyword.as_str();
-    let mut names = block.parameter_names();
+    let mut names = block.parameters().map(|(name, _)| name);
     let unknown = known(keyword).and_then(|known| names.find(|name| !known.contains(name)));
     let kind = block.parameter("TYPE").filter(|kind| {
         let is_known = PAIRS.iter().any(|pair| letters(pair) == letters(kind));
         keyword == "CONTACT PAIR" && !is_known
     });
+    let parameters: Vec<(&str, &str)> = block.parameters().collect();
+    let number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+    let mut pairs = parameters.windows(2);
+    let parted = pairs.find(|pair| number(pair[0].1) && number(pair[1].0));
+    if let Some(&[(name, whole), (digits, _)]) = parted {
+        let message = format!(
+            "*{keyword} has {name}={whole},{digits}; expected a decimal point: {name}={whole}.{digits}"
+        );
+        return Err(source.error(block.place, message));
+    }
     let name = match (unknown, kind) {
         (None, None) => return Ok(()),
         (Some(name), _) => name::shown(name),
@@ -235,4 +245,22 @@ pub(super) fn check(source: &Source, block: &Block) -> Result<(), InputError> {
     };
     let message = format!("*{keyword} with {name} isn't read, and may change the answer");
     Err(source.error(block.place, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_decimal_comma_in_a_parameter_is_answered_with_the_number() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("part.inp");
+        std::fs::write(&path, "*CLEARANCE, MASTER=A, SLAVE=B, VALUE=0,15\n").unwrap();
+        let source = Source::read(&path).unwrap();
+        let error = check(&source, &source.blocks[0]).unwrap_err().to_string();
+        assert!(
+            error.contains("expected a decimal point: VALUE=0.15"),
+            "{error}"
+        );
+    }
 }

@@ -153,16 +153,30 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// An error if there is no surface of this name.
-    pub(super) fn check_surface(&self, at: LinePlace, name: &str) -> Result<(), InputError> {
-        let is_there =
-            self.deck.surfaces.get(name).is_some() || self.deck.node_surfaces.get(name).is_some();
-        match is_there {
-            true => Ok(()),
-            false => Err(self
-                .source
-                .error(at, format!("there is no surface '{}'", name::shown(name)))),
-        }
+    /// The name of a surface in capitals, in a part with that of its only instance before it.
+    ///
+    /// # Errors
+    /// A surface that doesn't exist, or one of each of several instances.
+    pub(super) fn surface(&self, at: LinePlace, name: &str) -> Result<String, InputError> {
+        let name = name.to_uppercase();
+        let deck = &self.deck;
+        let is_there = |name: &String| {
+            deck.surfaces.get(name).is_some() || deck.node_surfaces.get(name).is_some()
+        };
+        let instances = self.instances().into_iter();
+        let own = instances.map(|(instance, _)| format!("{instance}.{name}"));
+        let own: Vec<String> = own.filter(is_there).collect();
+        let shown = name::shown(&name);
+        let message = match &own[..] {
+            [own] => return Ok(own.clone()),
+            [] if is_there(&name) => return Ok(name),
+            [] => format!("there is no surface '{shown}'"),
+            _ => format!(
+                "each of {} instances has a surface '{shown}'; expected one, behind *END INSTANCE",
+                own.len()
+            ),
+        };
+        Err(self.source.error(at, message))
     }
 
     /// The dimension of the cells; 0 without cells.

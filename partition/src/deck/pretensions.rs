@@ -8,8 +8,9 @@ use super::groups::Groups;
 use super::place::Places;
 use super::reference::Reference;
 use super::steps::{LoadStep, Steps};
+use crate::element::geometry::dot;
 use crate::error::InputError;
-use crate::mesh::abaqus::{Block, LinePlace};
+use crate::mesh::abaqus::{Block, LinePlace, Position};
 
 /// A pretension section.
 struct Section {
@@ -34,8 +35,12 @@ enum Given {
 
 /// A pretension section in the syntax of the scene.
 pub(super) struct ScenePretension {
+    /// Number of its node, and the sign of the node's force where the bolt is pulled.
+    tag: i64,
+    sense: f64,
     name: String,
     on: String,
+    /// Away from the elements of the surface, whose nodes on the cut get new numbers, as in CalculiX.
     direction: Option<String>,
     /// Force or displacement by step.
     given: Vec<Given>,
@@ -49,12 +54,18 @@ impl Pretensions {
             let message = "*PRE-TENSION SECTION of an ELEMENT, a beam, isn't read; expected SURFACE=… across a bolt of solids";
             return Err(source.error(block.place, message));
         }
-        let surface = source.required(block, "SURFACE")?.to_uppercase();
-        places.check_surface(block.place, &surface)?;
+        let surface = places.surface(block.place, source.required(block, "SURFACE")?)?;
         let node = places.one_node(block, "NODE")?;
         let direction = match block.data.first() {
             None => None,
             Some(data) => {
+                let is_turned = |(_, position): &(String, Position)| position.is_turned();
+                if places.instances().iter().any(is_turned) {
+                    let message = "*PRE-TENSION SECTION gives a direction in a part whose instances are turned, where it isn't \
+                                   said whether it turns; expected none, for the normal of the faces, or the section outside \
+                                   of the part";
+                    return Err(source.error(data.place, message));
+                }
                 let mut direction = numbers(source, data, "a component of the direction")?;
                 direction.resize(3, 0.0);
                 Some([direction[0], direction[1], direction[2]])
@@ -67,6 +78,11 @@ impl Pretensions {
             direction: direction.filter(|direction| *direction != [0.0; 3]),
         });
         Ok(())
+    }
+
+    /// The nodes of the sections.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = u32> {
+        self.0.iter().map(|section| section.node)
     }
 
     /// Adds the nodes of pretension sections to the other reference nodes.
@@ -119,12 +135,23 @@ impl Pretensions {
                 let message = format!("*PRE-TENSION SECTION {wrong}");
                 return Err(groups.error(section.place, &message));
             }
-            let given = section.given(groups, steps, thickness)?;
+            let outward = groups.outward(&section.surface);
+            let direction = section.direction.unwrap_or(outward);
+            // A positive force is tensile if the direction points away from the elements of the surface.
+            let sense = if dot(direction, outward) < 0.0 {
+                -1.0
+            } else {
+                1.0
+            };
+            let given = section.given(groups, steps, (thickness, sense))?;
             let dim = groups.dim();
             all.push(ScenePretension {
+                tag,
+                sense,
                 name: names.unique(&format!("bolt of {}", section.surface)),
                 on: groups.of_surface(&section.surface),
-                direction: section.direction.map(|direction| vector(&direction, dim)),
+                direction: (direction != [0.0; 3])
+                    .then(|| vector(&direction.map(|c| sense * c), dim)),
                 given,
             });
         }
@@ -138,13 +165,8 @@ impl Section {
         &self,
         groups: &Groups,
         steps: &Steps,
-        thickness: f64,
+        (thickness, sense): (f64, f64),
     ) -> Result<Vec<Given>, InputError> {
-        // A positive force is tensile if the direction points away from the elements of the surface.
-        let sense = match groups.points_outward(&self.surface, self.direction) {
-            true => 1.0,
-            false => -1.0,
-        };
         let in_step = |step: &LoadStep| {
             let at = step.references.get(&self.node).cloned().unwrap_or_default();
             match at.held[0] {
@@ -173,6 +195,11 @@ impl Section {
 }
 
 impl ScenePretension {
+    /// The number of its node, with its name and the sign of the node's force where the bolt is pulled.
+    pub(super) fn printed(&self) -> (i64, (String, f64)) {
+        (self.tag, (self.name.clone(), self.sense))
+    }
+
     /// Writes the section, with its force or displacement in the first step.
     pub(super) fn write(&self, document: &mut Document) {
         document.table("[[pretension]]");

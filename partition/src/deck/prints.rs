@@ -19,6 +19,8 @@ const OF_ELEMENTS: [&str; 3] = ["S", "E", "EVOL"];
 pub struct Prints {
     /// Thickness of plane sections, by which loads are divided; 1 in space and around an axis.
     pub thickness: f64,
+    /// The names of equations of the scene that are supports, whose forces are reactions.
+    pub supports: BTreeSet<String>,
     /// The tables at the end of each step.
     pub steps: Vec<Vec<Table>>,
     /// Numbers of the nodes of sets, by name.
@@ -29,6 +31,9 @@ pub struct Prints {
     pub cells: BTreeMap<i64, Cell>,
     /// Numbers of the reference nodes of couplings, in the order of the couplings in the scene.
     pub references: Vec<i64>,
+    /// The pretensions by the numbers of their nodes: the name in the scene, and 1 or −1 times which the force and the
+    /// shortening are those of the node.
+    pub bolts: BTreeMap<i64, (String, f64)>,
 }
 
 /// A table.
@@ -194,13 +199,14 @@ impl Requests {
         }
     }
 
-    /// The tables at the end of every step: nodal and element requests each stay valid until a step replaces them.
+    /// The tables at the end of every step, with what is known `of_scene`: nodal and element requests each stay valid
+    /// until a step replaces them.
     pub(super) fn tables(
         &mut self,
         places: &Places,
         steps: usize,
-        thickness: f64,
         references: &[u32],
+        of_scene: Prints,
     ) -> Prints {
         let mut current = [Vec::new(), Vec::new()];
         let of_step = |step: usize| {
@@ -234,7 +240,6 @@ impl Requests {
         let tag = |node: u32| deck.node_tags[node as usize];
         let nodes = std::mem::take(&mut self.nodes).into_iter();
         Prints {
-            thickness,
             steps,
             nodes: nodes
                 .map(|(set, members)| (set, members.into_iter().map(tag).collect()))
@@ -242,6 +247,7 @@ impl Requests {
             elements,
             cells,
             references: references.iter().map(|&node| tag(node)).collect(),
+            ..of_scene
         }
     }
 }

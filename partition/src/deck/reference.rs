@@ -22,6 +22,8 @@ pub(super) struct Reference {
     pub(super) first: usize,
     /// The components that are coupled.
     pub(super) coupled: [bool; FREEDOMS],
+    /// True if its components are along the axes of an orientation.
+    pub(super) is_local: bool,
 }
 
 /// The loads on a reference node at the end of a step, and its prescribed displacements.
@@ -38,12 +40,32 @@ impl Reference {
             node,
             first: 0,
             coupled: std::array::from_fn(|freedom| freedom == 0),
+            is_local: false,
         }
     }
 
     /// True for a pretension: couplings have more than one component.
     pub(super) fn is_of_pretension(&self) -> bool {
         self.coupled.iter().filter(|&&coupled| coupled).count() == 1
+    }
+
+    /// The component of a degree of freedom, from 0, in an equation or a spring.
+    ///
+    /// # Errors
+    /// A component that doesn't exist or isn't coupled, a reference point that equations can't refer to.
+    pub(super) fn of_equation(&self, freedom: usize, dim: usize) -> Result<NodeAxis, &'static str> {
+        match self.component(freedom, dim) {
+            _ if self.is_of_pretension() => {
+                Err("is one of a *PRE-TENSION SECTION, which takes loads and supports only")
+            }
+            _ if self.is_local => Err(
+                "is one of a *DISTRIBUTING coupling with ORIENTATION, which takes loads only; expected no orientation",
+            ),
+            Some(component) => Ok(component),
+            None => Err(
+                "doesn't move its coupling along this degree of freedom; expected one that is coupled",
+            ),
+        }
     }
 
     /// The reference node and its component for a degree of freedom, from 0; `None` if the component doesn't exist in

@@ -10,6 +10,7 @@ use super::initial;
 use super::loads::{BodyKind, BodyLoad};
 use super::material::Material;
 use super::place::Places;
+use super::prints::Prints;
 use super::scene_tables::SceneTables;
 use super::sections::{self, Body, Section};
 use super::steps::LoadStep;
@@ -25,12 +26,12 @@ pub(super) const MESH: &str = "mesh.msh";
 /// pictures.
 const OF_MILLIMETRES: f64 = 1e8;
 
-/// The text of the scene, and the thickness by which its forces are divided; required sets are added to the deck.
+/// The text of the scene, and what tables need to know of it; required sets are added to the deck.
 pub(super) fn text(
     places: &mut Places,
     content: &Content,
     warnings: &mut Vec<String>,
-) -> Result<(String, f64), InputError> {
+) -> Result<(String, Prints), InputError> {
     let source = places.source;
     let plane = plane(places)?;
     (content.couplings).check_plane(places, plane == Some(PlaneState::Axisymmetric))?;
@@ -73,7 +74,13 @@ pub(super) fn text(
             tables.write_step(number, &mut document);
         }
     }
-    Ok((document.text(), thickness))
+    let of_scene = Prints {
+        thickness,
+        supports: tables.supports(),
+        bolts: tables.bolts(),
+        ..Prints::default()
+    };
+    Ok((document.text(), of_scene))
 }
 
 /// The plane state, from the types of elements; `None` in space.

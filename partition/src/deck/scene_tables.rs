@@ -1,7 +1,9 @@
 //! The tables of a deck's scene: its content on named groups of the mesh, before it is written.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::activation::Activation;
-use super::conditions::{self, SceneEquation};
+use super::conditions::{self, SceneEquation, Translator};
 use super::content::Content;
 use super::couplings::SceneCoupling;
 use super::cyclic::SceneCyclic;
@@ -71,16 +73,30 @@ impl SceneTables {
             .map(|[slave, master]| taken.unique(&format!("{slave} on {master}")))
             .collect();
         let (steps, systems) = (&content.steps, &content.steps.systems);
+        let couplings = content.couplings.in_scene(
+            &mut groups,
+            (&steps.done, thickness),
+            (systems, content.orientations()),
+            &mut taken,
+        )?;
+        let mut translator = Translator {
+            couplings: (couplings.iter().map(|of| (of.node, of.name.clone()))).collect(),
+            groups: &mut groups,
+        };
+        let mut equations = conditions::in_scene(&content.conditions, &mut translator, &mut taken);
+        let references = &steps.loads.references;
+        let (springs, others) = (content.springs).in_scene(
+            &mut translator,
+            thickness,
+            (systems, references),
+            &mut taken,
+        )?;
+        equations.extend(others);
         Ok(Self {
+            equations,
+            springs,
+            couplings,
             // The names depend on the order of these fields.
-            equations: conditions::in_scene(&content.conditions, &mut groups, &mut taken),
-            springs: (content.springs).in_scene(&mut groups, thickness, systems, &mut taken)?,
-            couplings: content.couplings.in_scene(
-                &mut groups,
-                (&steps.done, thickness),
-                (systems, content.orientations()),
-                &mut taken,
-            )?,
             sectors: content.sectors.in_scene(&mut groups, &mut taken)?,
             bolts: (content.pretensions).in_scene(&mut groups, steps, thickness, &mut taken)?,
             bodies,
@@ -98,6 +114,17 @@ impl SceneTables {
         let equations = self.equations.iter().filter_map(SceneEquation::activation);
         let bodies = self.bodies.iter().zip(&self.names);
         equations.chain(bodies.filter_map(|(body, name)| body.activation(name)))
+    }
+
+    /// The names of equations that are supports.
+    pub(super) fn supports(&self) -> BTreeSet<String> {
+        let supports = self.equations.iter().filter_map(SceneEquation::support);
+        supports.map(str::to_owned).collect()
+    }
+
+    /// The pretensions by the numbers of their nodes.
+    pub(super) fn bolts(&self) -> BTreeMap<i64, (String, f64)> {
+        self.bolts.iter().map(ScenePretension::printed).collect()
     }
 
     /// Appends the constraints between groups, except contacts and ties.

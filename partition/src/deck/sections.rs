@@ -21,6 +21,8 @@ pub(super) struct Section {
     /// Names in capitals.
     pub(super) material: String,
     pub(super) orientation: Option<String>,
+    /// The orientation that the deck names; that of a part is another one in each instance.
+    named: Option<String>,
     /// Thickness of plane elements; 1 by default.
     pub(super) thickness: f64,
     pub(super) place: LinePlace,
@@ -39,11 +41,13 @@ impl Section {
             Some(data) => source.real(data.place, item(source, data, 0), "the thickness")?,
             None => 0.0,
         };
+        let orientation = block.parameter("ORIENTATION").map(str::to_uppercase);
         Ok(Self {
             elements,
             set,
             material: source.required(block, "MATERIAL")?.to_uppercase(),
-            orientation: block.parameter("ORIENTATION").map(str::to_uppercase),
+            orientation: orientation.clone(),
+            named: orientation,
             thickness: if thickness > 0.0 { thickness } else { 1.0 },
             place: block.place,
         })
@@ -52,7 +56,7 @@ impl Section {
     /// True for a section of another block with other properties.
     fn contradicts(&self, other: &Self) -> bool {
         let differs = self.material != other.material
-            || self.orientation != other.orientation
+            || self.named != other.named
             || self.thickness != other.thickness;
         differs && self.place != other.place
     }

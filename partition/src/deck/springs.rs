@@ -4,11 +4,14 @@
 use std::collections::BTreeMap;
 
 use super::axes::System;
+use super::conditions::{SceneEquation, Terms, Translator};
 use super::document::{Document, Names, quoted, vector};
 use super::groups::Groups;
 use super::loads::item;
 use super::parameters;
 use super::place::Places;
+use super::reference::Reference;
+use crate::element::geometry::{difference, unit};
 use crate::error::InputError;
 use crate::mesh::abaqus::{Block, Data, LinePlace, Of};
 use crate::name;
@@ -38,8 +41,8 @@ struct Property {
     place: LinePlace,
     /// Set by name in capitals.
     set: String,
-    /// The axis; `None` for the line between the ends.
-    axis: Option<usize>,
+    /// The degree of freedom of each end, from 0; `None` for the line between the ends.
+    axes: Option<[usize; 2]>,
     stiffness: f64,
 }
 
@@ -129,7 +132,7 @@ impl Springs {
             self.properties.push(Property {
                 place: block.place,
                 set,
-                axis: None,
+                axes: None,
                 stiffness,
             });
             return Ok(());
@@ -142,24 +145,17 @@ impl Springs {
             );
             return Err(source.error(block.place, message));
         };
-        let freedom = source.tag(head.place, item(source, head, 0), "a degree of freedom")?;
-        let dim = places.dim();
-        if freedom > dim as i64 {
-            let message =
-                format!("*SPRING along the degree of freedom {freedom}; expected 1 to {dim}");
-            return Err(source.error(head.place, message));
-        }
-        if kind == ALONG_AXIS && item(source, head, 1) != item(source, head, 0) {
-            let message = format!(
-                "*SPRING of {ALONG_AXIS} between different degrees of freedom isn't read; expected the same one of both nodes"
-            );
-            return Err(source.error(head.place, message));
+        let mut axes = [0; 2];
+        for (at, axis) in axes.iter_mut().enumerate() {
+            let end = if kind == ALONG_AXIS { at } else { 0 };
+            let freedom = source.tag(head.place, item(source, head, end), "a degree of freedom")?;
+            *axis = freedom as usize - 1;
         }
         let stiffness = self.stiffness(places, row)?;
         self.properties.push(Property {
             place: block.place,
             set,
-            axis: Some(freedom as usize - 1),
+            axes: Some(axes),
             stiffness,
         });
         Ok(())
@@ -179,17 +175,18 @@ impl Springs {
     }
 
     /// The springs with the groups of their nodes, which may have none of the local `systems`, under names that aren't
-    /// in `names`; per `thickness` of plane sections.
+    /// in `names`, and those of reference points or between different axes; per `thickness` of plane sections.
     ///
     /// # Errors
     /// Elements without a stiffness, a stiffness without elements, nodes without cells or with local axes.
     pub(super) fn in_scene(
         &self,
-        groups: &mut Groups,
+        translator: &mut Translator,
         thickness: f64,
-        systems: &BTreeMap<u32, System>,
+        (systems, references): (&BTreeMap<u32, System>, &BTreeMap<u32, Reference>),
         names: &mut Names,
-    ) -> Result<Vec<SceneSpring>, InputError> {
+    ) -> Result<(Vec<SceneSpring>, Vec<SceneEquation>), InputError> {
+        let groups = &mut *translator.groups;
         let lacks = |of: &&Elements| {
             !self
                 .properties
@@ -204,7 +201,7 @@ impl Springs {
             return Err(groups.error(of.place, &message));
         }
         let mut at_nodes: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
-        let mut between = Vec::new();
+        let (mut between, mut others) = (Vec::new(), Vec::new());
         for property in &self.properties {
             let elements = self.elements.iter().filter(|of| of.set == property.set);
             let ends: Vec<&(i64, Vec<u32>)> = elements.flat_map(|of| &of.ends).collect();
@@ -216,19 +213,27 @@ impl Springs {
                 return Err(groups.error(property.place, &message));
             }
             for (number, nodes) in ends {
-                property.check(groups, nodes, systems)?;
-                match (&nodes[..], property.axis) {
-                    ([node], Some(axis)) => {
+                let terms = property.terms(groups, nodes, (systems, references))?;
+                let is_plain = property.axes.is_none_or(|[a, b]| a == b)
+                    && !nodes.iter().any(|node| references.contains_key(node));
+                match (&nodes[..], property.axes) {
+                    ([node], Some([axis, _])) if is_plain => {
                         at_nodes.entry(*node).or_default()[axis] += property.stiffness / thickness;
                     }
                     _ if property.stiffness == 0.0 => {}
-                    _ => between.push(property.between(groups, (*number, nodes), thickness, names)),
+                    _ if is_plain => {
+                        between.push(property.between(groups, (*number, nodes), thickness, names));
+                    }
+                    _ => others.push((*number, terms, property.stiffness / thickness)),
                 }
             }
         }
         let mut all = to_ground(groups, at_nodes);
         all.extend(between);
-        Ok(all)
+        let other = |(number, terms, stiffness): (i64, Terms, f64)| {
+            translator.spring(names.unique(&format!("spring {number}")), &terms, stiffness)
+        };
+        Ok((all, others.into_iter().map(other).collect()))
     }
 }
 
@@ -254,27 +259,64 @@ fn to_ground(groups: &mut Groups, at_nodes: BTreeMap<u32, [f64; 3]>) -> Vec<Scen
 }
 
 impl Property {
-    /// Checks the ends of a spring.
+    /// The displacement along a spring, by components of its ends.
     ///
     /// # Errors
-    /// A node without cells, or with local axes.
-    fn check(
+    /// A node without cells, with local axes, or without the degree of freedom; ends at one place.
+    fn terms(
         &self,
         groups: &Groups,
         nodes: &[u32],
-        systems: &BTreeMap<u32, System>,
-    ) -> Result<(), InputError> {
-        for &node in nodes {
-            let is_turned = self.axis.is_some() && systems.contains_key(&node);
-            let why = match (groups.is_of_body(node), is_turned) {
-                (true, false) => continue,
-                (true, true) => "has *TRANSFORM; expected springs along x, y and z",
-                (false, _) => "is none of a body; expected nodes of solids",
+        (systems, references): (&BTreeMap<u32, System>, &BTreeMap<u32, Reference>),
+    ) -> Result<Terms, InputError> {
+        let dim = groups.dim();
+        let along = match (self.axes, nodes) {
+            (None, &[a, b]) => {
+                let along = unit(difference(groups.position(a), groups.position(b)));
+                let refused =
+                    || "*SPRING: its nodes lie at one place; expected a spring along axes";
+                along.ok_or_else(|| groups.error(self.place, refused()))?
+            }
+            _ => [0.0; 3],
+        };
+        let mut terms = Terms::new();
+        for (end, &node) in nodes.iter().enumerate() {
+            let sign = if end == 0 { 1.0 } else { -1.0 };
+            let reference = references.get(&node);
+            let refused = |why: &str| {
+                let message = format!("*SPRING: the node {} {why}", groups.tag(node));
+                groups.error(self.place, &message)
             };
-            let message = format!("*SPRING: the node {} {why}", groups.tag(node));
-            return Err(groups.error(self.place, &message));
+            if reference.is_none() && !groups.is_of_body(node) {
+                return Err(refused(
+                    "is none of a body; expected nodes of solids, or reference nodes of couplings",
+                ));
+            }
+            if self.axes.is_some() && systems.contains_key(&node) {
+                return Err(refused("has *TRANSFORM; expected springs along x, y and z"));
+            }
+            let parts: Vec<(usize, f64)> = match self.axes {
+                Some(axes) => vec![(axes[end], 1.0)],
+                None => (along.into_iter().enumerate().take(dim))
+                    .filter(|(_, part)| *part != 0.0)
+                    .collect(),
+            };
+            for (freedom, part) in parts {
+                let component = match reference {
+                    Some(reference) => reference.of_equation(freedom, dim).map_err(refused)?,
+                    None if freedom < dim => (node, freedom),
+                    None => {
+                        let why = format!(
+                            "has no degree of freedom {}; expected 1 to {dim}, of reference nodes to 6",
+                            freedom + 1
+                        );
+                        return Err(refused(&why));
+                    }
+                };
+                *terms.entry(component).or_default() += sign * part;
+            }
         }
-        Ok(())
+        Ok(terms)
     }
 
     /// A spring between two nodes.
@@ -292,8 +334,8 @@ impl Property {
                 .filter_map(|&node| groups.of_points(&[node], "end of spring"))
                 .collect(),
             name: names.unique(&format!("spring {number}")),
-            stiffness: self.axis.map_or([0.0; 3], along),
-            axial: self.axis.is_none().then_some(stiffness),
+            stiffness: self.axes.map_or([0.0; 3], |[axis, _]| along(axis)),
+            axial: self.axes.is_none().then_some(stiffness),
             dim: groups.dim(),
         }
     }

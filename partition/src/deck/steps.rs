@@ -34,6 +34,30 @@ pub(super) struct LoadStep {
     pub(super) references: BTreeMap<u32, AtReference>,
 }
 
+impl LoadStep {
+    /// The components that are held, of nodes along the axes of the scene and of reference points.
+    pub(super) fn held(&self) -> Vec<NodeAxis> {
+        let of_nodes = self.supports.iter().map(|(node, held)| (*node, &held[..]));
+        let of_points = self
+            .references
+            .iter()
+            .map(|(node, at)| (*node, &at.held[..]));
+        let of_one = |(node, held): (u32, &[Option<f64>])| {
+            let held = (0..).zip(held).filter(|(_, value)| value.is_some());
+            held.map(|(k, _)| (node, k)).collect::<Vec<_>>()
+        };
+        of_nodes.chain(of_points).flat_map(of_one).collect()
+    }
+
+    /// The prescribed displacement of a component.
+    pub(super) fn support(&mut self, (node, k): NodeAxis) -> Option<&mut Option<f64>> {
+        match self.references.get_mut(&node) {
+            Some(at) => at.held.get_mut(k),
+            None => self.supports.get_mut(&node)?.get_mut(k),
+        }
+    }
+}
+
 /// The steps of a deck, and the step being read.
 #[derive(Default)]
 pub(super) struct Steps {

@@ -86,7 +86,7 @@ impl Loads {
     /// `*BOUNDARY, FIXED`: a node is held at its current displacement, a pretension at its current shortening.
     ///
     /// # Errors
-    /// Displacements that the same block ends, a reference node of a coupling.
+    /// Displacements that the same block ends.
     fn fix(
         &mut self,
         places: &Places,
@@ -94,23 +94,19 @@ impl Loads {
         key: NodeAxis,
         origin: &Origin,
     ) -> Result<(), InputError> {
-        let of_pretension = self.references.get(&key.0).map(Reference::is_of_pretension);
-        let is_held = self.supports.place(&key).is_some();
-        let wrong = match (of_pretension, block.parameter("OP")) {
-            (Some(false), _) if !is_held => "of the reference node of a coupling",
-            (None, Some(op)) if op.eq_ignore_ascii_case("NEW") => "and OP=NEW",
-            _ => {
-                // Supports that are active already don't change.
-                if of_pretension == Some(true) || !is_held {
-                    self.fixed.insert(key);
-                    self.supports.set(key, 0.0, origin);
-                }
-                return Ok(());
-            }
-        };
-        let message =
-            format!("*BOUNDARY with FIXED {wrong} isn't read; expected displacements of nodes");
-        Err(places.source.error(origin.place, message))
+        let is_bolt = (self.references.get(&key.0)).is_some_and(Reference::is_of_pretension);
+        let op = block.parameter("OP").unwrap_or_default();
+        if !is_bolt && op.eq_ignore_ascii_case("NEW") {
+            let message =
+                "*BOUNDARY with FIXED and OP=NEW isn't read; expected displacements of nodes";
+            return Err(places.source.error(origin.place, message));
+        }
+        // Supports that are active already don't change.
+        if is_bolt || self.supports.place(&key).is_none() {
+            self.fixed.insert(key);
+            self.supports.set(key, 0.0, origin);
+        }
+        Ok(())
     }
 
     /// Prescribes a displacement.
@@ -124,7 +120,7 @@ impl Loads {
         value: f64,
         origin: &Origin,
     ) -> Result<(), InputError> {
-        let is_free = self.references.contains_key(&key.0);
+        let is_free = (self.references.get(&key.0)).is_some_and(Reference::is_of_pretension);
         if self.fixed.remove(&key) && !is_free {
             let message = format!(
                 "the node {} has been FIXED in a step before; expected that alone, or displacements in all steps",

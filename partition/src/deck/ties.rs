@@ -43,9 +43,8 @@ impl Ties {
             .transpose()?;
         let adjust = block.parameter("ADJUST").unwrap_or("YES");
         for data in &block.data {
-            let [slave, master] = [0, 1].map(|place| item(source, data, place).to_uppercase());
-            places.check_surface(data.place, &slave)?;
-            places.check_surface(data.place, &master)?;
+            let slave = places.surface(data.place, item(source, data, 0))?;
+            let master = places.surface(data.place, item(source, data, 1))?;
             let plain = format!("{slave} on {master}");
             self.0.push(Tie {
                 name: block.parameter("NAME").map_or(plain, str::to_owned),

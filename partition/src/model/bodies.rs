@@ -277,7 +277,13 @@ fn used_groups(scene: &Scene) -> BTreeSet<&str> {
         .chain(scene.spring.iter().flat_map(|spring| spring.groups()))
         .chain(explicit.flat_map(Contact::sides))
         .chain(scene.tie.iter().flat_map(|tie| &tie.sides))
-        .chain(scene.equation.iter().flat_map(|e| &e.terms).map(|t| &t.at))
+        .chain(
+            scene
+                .equation
+                .iter()
+                .flat_map(|e| &e.terms)
+                .flat_map(|t| &t.at),
+        )
         .chain(scene.pretension.iter().map(|bolt| &bolt.on))
         .chain(scene.cyclic.iter().flat_map(|sector| &sector.sides))
         .flat_map(Names::iter)

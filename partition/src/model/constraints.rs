@@ -2,6 +2,7 @@
 
 use super::activation;
 use super::contact::Contacts;
+use super::couplings::CoupledFrame;
 use super::crack_tips::CrackTips;
 use super::cyclic;
 use super::equations;
@@ -29,7 +30,8 @@ pub(super) struct Constraints<'a> {
 }
 
 impl<'a> Constraints<'a> {
-    /// The contacts that are `declared`, and the equations of the scene, cyclic symmetry included.
+    /// The contacts that are `declared`, and the equations of the scene, also of the points of couplings, cyclic symmetry
+    /// included.
     ///
     /// # Errors
     /// Sides that don't match, supports that press sides into each other, contacts with bodies that are added later, or
@@ -38,7 +40,7 @@ impl<'a> Constraints<'a> {
         scene: &Scene,
         on: &LoadedBodies,
         plane: Option<PlaneState>,
-        declared: &'a [Declared],
+        (declared, couplings): (&'a [Declared], &[CoupledFrame]),
         warnings: &mut Vec<String>,
     ) -> Result<Self, InputError> {
         let (bodies, topology) = (&on.bodies, &on.topology);
@@ -54,7 +56,7 @@ impl<'a> Constraints<'a> {
             &all.contacts,
         );
         all.found.extend(all.tips.remark());
-        all.equations = equations::equations(scene, &bodies.mesh, all.contacts.len())?;
+        all.equations = equations::equations(scene, (&bodies.mesh, couplings), all.contacts.len())?;
         let count = all.count();
         let of_sectors = cyclic::cyclic(scene, bodies, &mut all.contacts, count)?;
         all.equations.extend(of_sectors);

@@ -14,7 +14,8 @@ mod partial;
 
 use nalgebra::{Matrix3, Vector3};
 
-use self::frame::{Acting, Form, Frame, FrameLoads};
+pub(super) use self::frame::Form;
+use self::frame::{Acting, Frame, FrameLoads};
 use self::partial::{FollowingNode, NO_INERTIA, Uncoupled};
 use super::loads::surface_load;
 use super::steps::Loads;
@@ -26,23 +27,52 @@ use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
-use crate::scene::coupling::{Coupling, CouplingKind, CouplingLoads};
+use crate::scene::coupling::{COMPONENTS, Coupling, CouplingKind, CouplingLoads};
 use crate::scene::step::{LoadStep, Scale};
 
 /// A coupling on the mesh.
 pub(super) struct CoupledFrame {
+    frame: Frame,
+    /// The components of the point's motion without coupling.
+    uncoupled: Option<Uncoupled>,
     /// The equations.
     pub contact: Contact,
-    /// Positions of the frame's nodes (m).
-    pub corners: Vec<[f64; 3]>,
     /// A cell of the body that the frame belongs to.
     pub cell: u32,
     /// The loads in every load step, or a single entry without load steps.
     pub loads: Vec<FrameLoads>,
 }
 
-/// The couplings of a scene, whose equations are numbered from `first` on; the nodes of their frames follow those of
-/// the mesh.
+impl CoupledFrame {
+    /// A component of the point's motion, from 0, as a vector of coefficients for each node.
+    ///
+    /// # Errors
+    /// A component without coupling.
+    pub fn component(&self, component: usize) -> Result<Form, String> {
+        let unit = std::array::from_fn(|k| f64::from(u8::from(k == component)));
+        if let Some(uncoupled) = &self.uncoupled
+            && !uncoupled.is_coupled(unit)
+        {
+            return Err(format!(
+                "'{}' of the coupling '{}' isn't coupled to any node; expected a component that is, or more 'directions'",
+                COMPONENTS[component], self.contact.name
+            ));
+        }
+        let mut form = Form::new();
+        match component {
+            0..3 => self.frame.add(&mut form, 0, component, 1.0),
+            _ => self.frame.add_rotation(&mut form, component - 3, 1.0),
+        }
+        Ok(form)
+    }
+
+    /// The point (m).
+    pub fn point(&self) -> [f64; 3] {
+        self.frame.origin
+    }
+}
+
+/// The couplings of a scene; the nodes of their frames follow those of the mesh.
 ///
 /// # Errors
 /// Groups that don't exist, nodes that don't determine the rotation of the point, values of components that aren't
@@ -50,7 +80,6 @@ pub(super) struct CoupledFrame {
 pub(super) fn couplings(
     scene: &Scene,
     (mesh, topology): (&Mesh, &Topology),
-    first: usize,
 ) -> Result<Vec<CoupledFrame>, InputError> {
     let mut node = mesh.points.len() as u32;
     let mut all = Vec::new();
@@ -63,7 +92,7 @@ pub(super) fn couplings(
             coupling.name
         )));
     }
-    for (index, coupling) in scene.coupling.iter().enumerate() {
+    for coupling in &scene.coupling {
         let what = format!("coupling '{}'", coupling.name);
         let of = CouplingOnMesh {
             scene,
@@ -72,25 +101,28 @@ pub(super) fn couplings(
             coupling,
             what,
         };
-        let frame = of.frame((first + index) as u32, node)?;
-        node += frame.corners.len() as u32;
-        all.push(frame);
+        let coupled = of.frame(node)?;
+        node += mesh.dim as u32;
+        all.push(coupled);
     }
     Ok(all)
 }
 
 /// Appends the nodes of the frames to a mesh, their loads and supports to `loads`, and the names of their boundary
-/// conditions to `names`; returns the equations, and for every new node a cell of its body.
+/// conditions to `names`; returns the equations, numbered from `number` on, and for every new node a cell of its body.
 pub(super) fn attach(
-    frames: Vec<CoupledFrame>,
+    (frames, number): (Vec<CoupledFrame>, usize),
     mesh: &mut Mesh,
     loads: &mut Loads,
     names: &mut Vec<String>,
 ) -> (Vec<Contact>, Vec<u32>) {
     let (mut contacts, mut cells) = (Vec::new(), Vec::new());
-    for frame in frames {
-        let first = mesh.points.len() as u32;
-        for corner in frame.corners {
+    for (number, mut frame) in (number as u32..).zip(frames) {
+        let first = frame.frame.first;
+        for point in &mut frame.contact.points {
+            point.contact = number;
+        }
+        for corner in frame.frame.corners() {
             let tag = mesh.node_tags.iter().max().map_or(1, |last| last + 1);
             mesh.points.push(corner);
             mesh.node_tags.push(tag);
@@ -135,8 +167,8 @@ struct CouplingOnMesh<'a> {
 }
 
 impl CouplingOnMesh<'_> {
-    /// The frame of coupling `number` of the contacts, whose nodes are numbered from `first` on.
-    fn frame(&self, number: u32, first: u32) -> Result<CoupledFrame, InputError> {
+    /// The coupling with its frame, whose nodes are numbered from `first` on.
+    fn frame(&self, first: u32) -> Result<CoupledFrame, InputError> {
         let mesh = self.mesh;
         let weights = self.weights()?;
         let origin = self.coupling.point.value;
@@ -153,9 +185,14 @@ impl CouplingOnMesh<'_> {
             return Err(self.refused("its nodes belong to no cell of a body"));
         };
         let mut steps = self.steps();
+        let mut uncoupled = None;
         let mut forms = match (self.coupling.kind, &self.coupling.directions[..]) {
             (CouplingKind::Rigid, []) => self.rigid(&frame, &weights)?,
-            (CouplingKind::Rigid, _) => self.partial(&frame, &weights, &mut steps)?,
+            (CouplingKind::Rigid, _) => {
+                let (forms, others) = self.partial(&frame, &weights, &mut steps)?;
+                uncoupled = Some(others);
+                forms
+            }
             (CouplingKind::Distributing, _) => self.distributing(&frame, &weights)?,
         };
         forms.extend(frame.rigid());
@@ -163,7 +200,7 @@ impl CouplingOnMesh<'_> {
             (forms.iter()).map(|form| frame.point(form, &[])).collect();
         points.extend(frame.turned(&steps));
         for (place, point) in (0..).zip(&mut points) {
-            (point.contact, point.place) = (number, place);
+            point.place = place;
         }
         Ok(CoupledFrame {
             contact: Contact {
@@ -171,9 +208,10 @@ impl CouplingOnMesh<'_> {
                 points,
                 probes: Vec::new(),
             },
-            corners: frame.corners(),
             cell: cell as u32,
             loads: steps.iter().map(|step| frame.loads(step)).collect(),
+            frame,
+            uncoupled,
         })
     }
 
@@ -270,14 +308,14 @@ impl CouplingOnMesh<'_> {
         Ok(weights.iter().flat_map(of_node).collect())
     }
 
-    /// The equations of nodes that follow the point along some directions; prescribed components without coupling are
-    /// removed from the `steps`.
+    /// The equations of nodes that follow the point along some directions, and the components without coupling; where
+    /// these are prescribed, they are removed from the `steps`.
     fn partial(
         &self,
         frame: &Frame,
         weights: &[(u32, f64)],
         steps: &mut [Acting],
-    ) -> Result<Vec<Form>, InputError> {
+    ) -> Result<(Vec<Form>, Uncoupled), InputError> {
         let mut directions = Vec::new();
         for direction in &self.coupling.directions {
             let size = length(direction.value);
@@ -321,7 +359,7 @@ impl CouplingOnMesh<'_> {
         forms.extend(
             rest.ok_or_else(|| self.refused("its nodes don't determine how the point turns"))?,
         );
-        Ok(forms)
+        Ok((forms, uncoupled))
     }
 
     /// The equations of a distributing coupling: Σ w u is the displacement of the nodes' centre, and Σ w r × u

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::couplings::CoupledFrame;
 use super::{Contact, groups};
 use crate::contact_point::{ContactPoint, Law};
 use crate::element::geometry::{advance, length};
@@ -17,17 +18,18 @@ const NOTHING: f64 = 1e-14;
 /// The equations of a scene, grouped by name, numbered from `first` on.
 ///
 /// # Errors
-/// Groups that don't exist, terms that cancel.
+/// Groups that don't exist, components of reference points without coupling, terms that cancel, equations and springs of
+/// one name.
 pub(super) fn equations(
     scene: &Scene,
-    mesh: &Mesh,
+    (mesh, couplings): (&Mesh, &[CoupledFrame]),
     first: usize,
 ) -> Result<Vec<Contact>, InputError> {
     let mut all: Vec<Contact> = Vec::new();
     for (index, equation) in scene.equation.iter().enumerate() {
         let what = format!("equation[{}]", index + 1);
         let name = &equation.name;
-        let point = point((equation, &scene.step), mesh, &what)?;
+        let point = point((equation, &scene.step), (mesh, couplings), &what)?;
         let place = match all.iter().position(|of| of.name == *name) {
             Some(place) => place,
             None => {
@@ -40,6 +42,12 @@ pub(super) fn equations(
             }
         };
         let of_name = &mut all[place].points;
+        if (of_name.first()).is_some_and(|other| other.is_compliant() != point.is_compliant()) {
+            return Err(InputError::new(format!(
+                "{what}: another equation '{name}' has no stiffness, or only that one has; expected another name for those \
+                 with a stiffness"
+            )));
+        }
         of_name.push(ContactPoint {
             contact: (first + place) as u32,
             place: of_name.len() as u32,
@@ -52,23 +60,42 @@ pub(super) fn equations(
 /// The point of an equation.
 fn point(
     (equation, steps): (&Equation, &[LoadStep]),
-    mesh: &Mesh,
+    (mesh, couplings): (&Mesh, &[CoupledFrame]),
     what: &str,
 ) -> Result<ContactPoint<u32>, InputError> {
     let mut nodes = Vec::new();
     let mut factors: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     let mut scale = 0.0;
+    let mut position = None;
     for term in &equation.terms {
-        let of_term = groups::nodes(mesh, &term.at, what)?;
-        let axis = std::array::from_fn(|k| f64::from(k == term.component as usize));
-        let factor = term.factor / of_term.len() as f64;
-        scale = f64::max(scale, factor.abs());
-        for node in of_term {
+        let component = term.component as usize;
+        let of_coupling = term.coupling.as_ref();
+        let coupling = couplings
+            .iter()
+            .find(|of| Some(&of.contact.name) == of_coupling);
+        let form = match (coupling, &term.at) {
+            (Some(coupling), _) => {
+                position.get_or_insert(coupling.point());
+                let form = coupling.component(component);
+                form.map_err(InputError::about(what))?
+            }
+            (None, at) => {
+                let of_term = match at {
+                    Some(at) => groups::nodes(mesh, at, what)?,
+                    None => Vec::new(),
+                };
+                let part = 1.0 / of_term.len() as f64;
+                let axis = std::array::from_fn(|k| part * f64::from(u8::from(k == component)));
+                of_term.into_iter().map(|node| (node, axis)).collect()
+            }
+        };
+        for (node, vector) in form {
+            scale = f64::max(scale, (term.factor * length(vector)).abs());
             let of_node = factors.entry(node).or_insert_with(|| {
                 nodes.push(node);
                 [0.0; 3]
             });
-            *of_node = advance(*of_node, factor, axis);
+            *of_node = advance(*of_node, term.factor, vector);
         }
     }
     nodes.retain(|node| length(factors[node]) > NOTHING * scale);
@@ -82,7 +109,14 @@ fn point(
         .map(|node| factors[node].map(|c| c / size(node)))
         .collect();
     let entries = nodes.iter().map(|node| (*node, size(node))).collect();
-    let position = mesh.points[node as usize];
+    let at_first = mesh.points.get(node as usize).copied();
+    let position = at_first.or(position).unwrap_or_default();
+    // Reference points follow the nodes of the mesh.
+    let tag = mesh.node_tags.get(node as usize).copied();
+    let tag = tag.unwrap_or_else(|| {
+        let last = mesh.node_tags.iter().max().copied().unwrap_or_default();
+        last + 1 + i64::from(node) - mesh.points.len() as i64
+    });
     let values: Vec<f64> = (steps.iter())
         .map(|step| {
             step.equation
@@ -106,6 +140,7 @@ fn point(
         law: Law::Tied,
         is_absolute: equation.absolute,
         axes: axes.clone(),
-        ..ContactPoint::new(entries, axes[0], position, mesh.node_tags[node as usize])
+        stiffness: [equation.stiffness.as_ref().map_or(0.0, |k| k.0), 0.0],
+        ..ContactPoint::new(entries, axes[0], position, tag)
     })
 }

@@ -4,6 +4,9 @@ use serde::{Deserialize, Deserializer};
 
 use super::condition::Names;
 use super::contact::contact_name;
+use super::coupling::Coupling;
+use super::number::{Constant, OR_IN_SPACE};
+use super::suggest;
 
 /// The equation Σ factor · displacement = value.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -21,22 +24,29 @@ pub struct Equation {
     /// True if displacements are absolute, even if the equation is added in a load step.
     #[serde(default)]
     pub absolute: bool,
+    /// Force per difference of the sum from its value, for a spring (N/m); the equation holds exactly without it.
+    pub stiffness: Option<Constant>,
 }
 
-/// A multiple of a displacement.
+/// A multiple of a displacement or a rotation.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table of at, component and factor")]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table of at or coupling, component and factor"
+)]
 pub struct Term {
     /// A point, or a group whose average displacement it is.
-    pub at: Names,
-    /// The component of the displacement.
+    pub at: Option<Names>,
+    /// The coupling whose reference point it is of, instead.
+    pub coupling: Option<String>,
+    /// The component of the motion.
     pub component: Component,
     /// The factor.
     #[serde(default = "one")]
     pub factor: f64,
 }
 
-/// A component of a displacement.
+/// A component of a displacement, or of the rotation of a reference point; in the order of the components of a coupling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Component {
@@ -46,6 +56,12 @@ pub enum Component {
     Y,
     /// Along z.
     Z,
+    /// About x.
+    Rx,
+    /// About y.
+    Ry,
+    /// About z.
+    Rz,
 }
 
 fn one() -> f64 {
@@ -62,11 +78,49 @@ fn terms<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Term>, D::Err
     if terms.is_empty() {
         return wrong("expected a term at least");
     }
+    if terms
+        .iter()
+        .any(|term| term.at.is_some() == term.coupling.is_some())
+    {
+        return wrong("expected either 'at' or 'coupling' in a term");
+    }
     match terms
         .iter()
         .all(|term| term.factor.is_finite() && term.factor != 0.0)
     {
         true => Ok(terms),
         false => wrong("expected factors that are finite numbers and not 0"),
+    }
+}
+
+impl Equation {
+    /// The invalid key for `dim` dimensions, and the reason.
+    pub(super) fn fault(
+        &self,
+        dim: usize,
+        couplings: &[Coupling],
+    ) -> Option<(&'static str, String)> {
+        if let Some(Constant(k)) = self.stiffness.as_ref().filter(|k| k.0 <= 0.0) {
+            return Some((
+                "stiffness",
+                format!("the stiffness is {k}; expected more than 0"),
+            ));
+        }
+        let known = || couplings.iter().map(|of| &of.name[..]);
+        let wrong = |term: &Term| match (&term.coupling, term.component) {
+            (_, Component::Z) if dim == 2 => Some(format!("a plane scene has no 'z'{OR_IN_SPACE}")),
+            (_, Component::Rx | Component::Ry) if dim == 2 => Some(format!(
+                "a plane scene has rotations about z only{OR_IN_SPACE}"
+            )),
+            (None, Component::Rx | Component::Ry | Component::Rz) => Some(
+                "points have no rotations; expected 'coupling', whose reference point has".into(),
+            ),
+            (Some(name), _) if known().all(|other| other != name) => {
+                let hint = suggest::hint_and_known(name, known());
+                Some(format!("there is no coupling '{name}'{hint}"))
+            }
+            _ => None,
+        };
+        Some(("terms", self.terms.iter().find_map(wrong)?))
     }
 }

@@ -4,7 +4,6 @@ use std::collections::HashMap;
 
 use super::condition::{Displacement, Force, Pressure, Traction};
 use super::contact::{Contact, Declaration, Partner};
-use super::equation::Component;
 use super::material::{Elasticity, PlaneState};
 use super::number::OR_IN_SPACE;
 use super::place::{self, Step};
@@ -190,9 +189,9 @@ impl Scene {
             }
         }
         for (index, equation) in self.equation.iter().enumerate() {
-            let is_wrong = dim == 2 && equation.terms.iter().any(|t| t.component == Component::Z);
-            let fault = is_wrong.then(|| format!("a plane scene has no 'z'{OR_IN_SPACE}"));
-            check(entry("equation", index, "terms"), fault);
+            if let Some((key, fault)) = equation.fault(dim, &self.coupling) {
+                check(entry("equation", index, key), Some(fault));
+            }
         }
         for (index, quantity) in self.quantity.iter().enumerate() {
             if let Some((key, fault)) = quantity.fault(dim) {

@@ -43,6 +43,26 @@ fn a_node_of_no_body_moves_others_and_hands_on_its_force() {
     }
 }
 
+#[test]
+fn a_node_of_no_body_is_held_in_some_of_the_steps() {
+    let deck: String = (15..19)
+        .map(|tag| format!("*EQUATION\n2\n{tag}, 3, 2., 100, 3, -1.\n"))
+        .collect();
+    let deck = format!("{BAR}*NODE\n100, 0., 0., 9.\n{deck}");
+    let foot = "*BOUNDARY, OP=NEW\nFoot, 1, 3\n";
+    let steps = [
+        "100, 3, 3, 0.02\n*CLOAD, OP=NEW\n5, 1, 1.\n",
+        "*CLOAD, OP=NEW\n100, 3, 3.\n",
+        "100, 3, 3, -0.01\n*CLOAD, OP=NEW\n6, 2, 1.\n",
+    ]
+    .map(|loads| step(&format!("{foot}{loads}")));
+    let found = solved(&format!("{deck}{}", steps.concat()));
+    for (found, own) in found.iter().zip(&steps) {
+        same(found, &solved(&format!("{deck}{own}"))[0], 1e-9);
+    }
+    close(found[0].displacement[&15][2], 0.01, 1e-10);
+}
+
 /// A fixed node keeps its displacement when the loads are removed, also if it was held before.
 #[test]
 fn what_is_fixed_stays_where_it_was() {

@@ -154,3 +154,154 @@ fn the_foot_bears_what_acts_on_a_reference_node() {
         }
     }
 }
+
+/// A coupling of the roof whose reference node lies at the place of node 15.
+const AT_15: &str = "*NODE\n100, 0., 0., 2.\n*COUPLING, CONSTRAINT NAME=Grip, REF NODE=100, SURFACE=Roof\n*KINEMATIC\n1, 3\n";
+
+fn step(loads: &str) -> String {
+    format!("*STEP\n*STATIC\n{loads}*END STEP\n")
+}
+
+/// Without friction the load path doesn't matter: every step has the solution of a deck with this step only.
+#[test]
+fn supports_of_a_reference_node_come_and_go_with_the_steps() {
+    let node = "*NODE\n100, 0.4, 0.7, 3.\n";
+    let foot = "*BOUNDARY, OP=NEW\nFoot, 1, 3\n";
+    let steps = [
+        "100, 3, 3, 0.01\n100, 4, 4, 2e-3\n*CLOAD, OP=NEW\n",
+        "*CLOAD, OP=NEW\n100, 1, 2.\n100, 5, 4.\n",
+        "100, 1, 2, 0.02\n100, 6, 6, -3e-3\n*CLOAD, OP=NEW\n100, 3, 1.\n5, 2, 3.\n",
+        "100, 1, 1, 0.03\n*BOUNDARY, AMPLITUDE=Half\n100, 5, 5, 8e-3\n*CLOAD, OP=NEW\n100, 2, 1.\n",
+    ]
+    .map(|loads| step(&format!("{foot}{loads}")));
+    for coupling in [
+        "*COUPLING, CONSTRAINT NAME=Grip, REF NODE=100, SURFACE=Roof\n*KINEMATIC\n1, 3\n",
+        "*COUPLING, CONSTRAINT NAME=Hook, REF NODE=100, SURFACE=Roof\n*DISTRIBUTING\n1, 6\n",
+        "*RIGID BODY, NSET=Top, REF NODE=100\n",
+    ] {
+        let found = solved(&format!("{BAR}{node}{coupling}{}", steps.concat()));
+        for (found, own) in found.iter().zip(&steps) {
+            let alone = solved(&format!("{BAR}{node}{coupling}{own}"));
+            same(found, &alone[0], 1e-9);
+        }
+    }
+    // Along x nothing follows this point, so that a support along x has no effect.
+    let slides = format!(
+        "{BAR}{node}*COUPLING, CONSTRAINT NAME=Grip, REF NODE=100, SURFACE=Roof\n*KINEMATIC\n3\n"
+    );
+    let push = "*CLOAD\n15, 1, 2.\n";
+    let free = solved(&format!("{slides}{}", step(push)));
+    let held = solved(&format!(
+        "{slides}{}{}",
+        step(push),
+        step("*BOUNDARY\n100, 1, 1\n")
+    ));
+    same(&held[1], &free[0], 1e-9);
+}
+
+#[test]
+fn a_reference_node_that_is_fixed_stays_where_it_was() {
+    let steps = [
+        step("*CLOAD\n100, 3, 3.\n100, 4, 1.\n"),
+        step("*BOUNDARY, FIXED\n100, 1, 6\n*CLOAD, OP=NEW\n5, 1, 1.\n"),
+        step("*BOUNDARY, OP=NEW\nFoot, 1, 3\n"),
+    ];
+    let found = solved(&format!("{BAR}{AT_15}{}", steps.concat()));
+    for tag in 15..19 {
+        let [before, after] = [0, 1].map(|step: usize| found[step].displacement[&tag]);
+        assert!(before[2] != 0.0);
+        (0..3).for_each(|k| close(after[k], before[k], 1e-12));
+    }
+    let expected = solved(&format!("{BAR}{AT_15}{}", step("*CLOAD\n5, 1, 1.\n")));
+    same(&found[2], &expected[0], 1e-9);
+}
+
+/// The roof is rigid, so that the differences of its nodes are the rotations of the reference node.
+#[test]
+fn equations_refer_to_the_motion_of_a_reference_node() {
+    let loads = step("*CLOAD\n100, 3, 3.\n100, 4, 1.\n6, 2, 2.\n");
+    for [own, other] in [
+        ["2\n100, 3, 1., 6, 1, -2.\n", "2\n15, 3, 1., 6, 1, -2.\n"],
+        [
+            "2\n100, 4, 1., 6, 1, -1.\n",
+            "3\n18, 3, 1., 15, 3, -1., 6, 1, -1.\n",
+        ],
+        [
+            "3\n6, 1, 1., 100, 6, 2., 100, 2, 1.\n",
+            "4\n6, 1, 1., 16, 2, 2., 15, 2, -2., 15, 2, 1.\n",
+        ],
+    ] {
+        let [found, expected] =
+            [own, other].map(|terms| solved(&format!("{BAR}{AT_15}*EQUATION\n{terms}{loads}")));
+        same(&found[0], &expected[0], 1e-9);
+    }
+    for (terms, reason) in [
+        ("2\n100, 7, 1., 6, 1, -1.\n", "degree of freedom 7"),
+        (
+            "2\n6, 4, 1., 100, 1, -1.\n",
+            "4 of the node 6 is no displacement",
+        ),
+    ] {
+        let error = super::refused(&format!("{BAR}{AT_15}*EQUATION\n{terms}{loads}"));
+        assert!(error.contains(reason), "{error}");
+    }
+}
+
+/// A spring acts like the forces that its stretch determines.
+#[test]
+fn springs_at_a_reference_node_act_like_their_forces() {
+    let element =
+        |kind: &str, nodes: &str| format!("*ELEMENT, TYPE={kind}, ELSET=S\n20, {nodes}\n");
+    let loads = "100, 3, 3.\n100, 4, 1.\n6, 1, 2.\n";
+    // The element, its degrees of freedom, its stretch, and the directions of its forces.
+    type Case = (
+        String,
+        &'static str,
+        fn(&Solution) -> f64,
+        &'static [(&'static str, f64)],
+    );
+    let cases: [Case; 4] = [
+        (
+            element("SPRING1", "100"),
+            "3\n",
+            |u| u.displacement[&15][2],
+            &[("100, 3", 1.0)],
+        ),
+        (
+            element("SPRING1", "100"),
+            "4\n",
+            |u| u.displacement[&18][2] - u.displacement[&15][2],
+            &[("100, 4", 1.0)],
+        ),
+        (
+            element("SPRING2", "100, 6"),
+            "3, 1\n",
+            |u| u.displacement[&15][2] - u.displacement[&6][0],
+            &[("100, 3", 1.0), ("6, 1", -1.0)],
+        ),
+        (
+            element("SPRINGA", "100, 5"),
+            "\n",
+            |u| u.displacement[&15][2] - u.displacement[&5][2],
+            &[("100, 3", 1.0), ("5, 3", -1.0)],
+        ),
+    ];
+    for (element, freedoms, stretch, ends) in cases {
+        let spring = format!("{element}*SPRING, ELSET=S\n{freedoms}70.\n");
+        let found = solved(&format!(
+            "{BAR}{AT_15}{spring}{}",
+            step(&format!("*CLOAD\n{loads}"))
+        ));
+        let force = -70.0 * stretch(&found[0]);
+        assert!(force.abs() > 0.1, "{element}");
+        let forces = ends
+            .iter()
+            .map(|(end, sign)| format!("{end}, {:?}\n", sign * force));
+        let forces = step(&format!("*CLOAD\n{loads}{}", forces.collect::<String>()));
+        same(
+            &solved(&format!("{BAR}{AT_15}{forces}"))[0],
+            &found[0],
+            1e-9,
+        );
+    }
+}

@@ -83,6 +83,19 @@ Ends, 1, 3
     close(bolt["force"].as_f64().unwrap(), 20.0, 1e-10);
 }
 
+/// As in CalculiX, nodes on the cut stay with the elements beyond those of the surface.
+#[test]
+fn nodes_of_a_cut_move_with_the_elements_beyond_the_surface() {
+    let step = "*STEP\n*STATIC\n*CLOAD\n99, 1, 20.\n*END STEP\n";
+    for (surface, expected) in [("1, S2", -0.02), ("2, S1", 0.02)] {
+        let deck = BOLT.replace("1, S2", surface);
+        let solution = &solved(&format!("{deck}{step}"))[0];
+        for tag in 5..9 {
+            close(solution.displacement[&tag][2], expected, 1e-12);
+        }
+    }
+}
+
 /// A quarter of a square under torsion at its outer faces: the displacements of its sides are equal after rotation.
 #[test]
 fn a_quarter_of_a_square_does_what_the_others_do() {

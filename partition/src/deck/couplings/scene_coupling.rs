@@ -7,7 +7,7 @@ use crate::deck::axes::System;
 use crate::deck::document::{Document, Names, quoted, vector};
 use crate::deck::groups::Groups;
 use crate::deck::place::Places;
-use crate::deck::reference::{AtReference, FREEDOMS};
+use crate::deck::reference::{AtReference, FREEDOMS, NodeAxis};
 use crate::deck::steps::LoadStep;
 use crate::element::geometry::difference;
 use crate::error::InputError;
@@ -16,7 +16,9 @@ use crate::scene::coupling::COMPONENTS;
 
 /// A coupling in the syntax of the scene.
 pub(in crate::deck) struct SceneCoupling {
-    name: String,
+    /// The reference node.
+    pub(in crate::deck) node: u32,
+    pub(in crate::deck) name: String,
     on: String,
     point: [f64; 3],
     is_rigid: bool,
@@ -34,8 +36,8 @@ impl Couplings {
     /// that aren't in `names`.
     ///
     /// # Errors
-    /// A reference node that belongs to a body or has one of the local `systems`, nodes without cells, supports that
-    /// hold in some of the steps only.
+    /// A reference node that belongs to a body or has one of the local `systems`, nodes without cells, supports along
+    /// local axes of a distributing coupling.
     pub(in crate::deck) fn in_scene(
         &self,
         groups: &mut Groups,
@@ -55,6 +57,7 @@ impl Couplings {
                 _ => None,
             };
             Ok(SceneCoupling {
+                node: coupling.node,
                 name: names.unique(&coupling.name),
                 on,
                 point: groups.position(coupling.node),
@@ -115,6 +118,34 @@ impl Couplings {
             Coupled::Nodes(_) => "RIGID BODY",
         };
         Err(groups.error(coupling.place, &format!("*{keyword}: {message}")))
+    }
+
+    /// The translations of reference nodes that no node follows: supports along them have no effect.
+    pub(in crate::deck) fn without_effect(
+        &self,
+        orientations: &BTreeMap<String, System>,
+    ) -> Vec<NodeAxis> {
+        let of_coupling = |coupling: &Coupling| {
+            let name = coupling.orientation.as_ref();
+            let axes = match name.and_then(|name| orientations.get(name)) {
+                None => coupling.follows.map(|follows| !follows),
+                Some(System::Rectangular(axes)) => std::array::from_fn(|k| {
+                    let followed = axes
+                        .iter()
+                        .zip(coupling.follows)
+                        .filter(|(_, follows)| *follows);
+                    followed.into_iter().all(|(axis, _)| axis[k].abs() < 1e-12)
+                }),
+                Some(System::Cylindrical(..)) => [false; 3],
+            };
+            let free = (0..3).filter(|&k| axes[k]).map(|k| (coupling.node, k));
+            free.collect::<Vec<_>>()
+        };
+        let rigid = self
+            .all
+            .iter()
+            .filter(|coupling| coupling.kind == Some(Kind::Rigid));
+        rigid.flat_map(of_coupling).collect()
     }
 
     /// Refuses couplings around an axis that are impossible there.
@@ -197,15 +228,6 @@ impl Coupling {
                 let along =
                     |from: usize, i: usize| (0..3).map(|p| at.load[from + p] * axes[p][i]).sum();
                 at.load = std::array::from_fn(|k| along(k / 3 * 3, k % 3));
-            }
-            let held = |at: &AtReference| at.held.map(|value| value.is_some());
-            if acting.first().is_some_and(|first| held(first) != held(&at)) {
-                let message = format!(
-                    "supports of the reference node {} begin or end in this step, which isn't supported yet; expected the same \
-                     degrees of freedom in every step",
-                    groups.tag(self.node)
-                );
-                return Err(groups.error(step.place, &message));
             }
             acting.push(at);
         }

@@ -50,9 +50,9 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// The names of its parameters.
-    pub(crate) fn parameter_names(&self) -> impl Iterator<Item = &str> {
-        self.parameters.iter().map(|(name, _)| name.as_str())
+    /// The names and the values of its parameters.
+    pub(crate) fn parameters(&self) -> impl Iterator<Item = (&str, &str)> {
+        (self.parameters.iter()).map(|(name, value)| (name.as_str(), value.as_str()))
     }
 
     /// Replaces the names of parameters by those that `spelled` returns.
@@ -113,9 +113,14 @@ impl Source {
         InputError::new(format!("line {}: {message}", at.line)).in_file(&self.files[at.file].0)
     }
 
+    /// A line of data as text.
+    pub(crate) fn text(&self, data: &Data) -> &str {
+        self.files[data.place.file].1[data.text.clone()].trim()
+    }
+
     /// Comma-separated items of a line of data, without an empty last one.
     pub(crate) fn items(&self, data: &Data) -> impl Iterator<Item = &str> {
-        let text = self.files[data.place.file].1[data.text.clone()].trim();
+        let text = self.text(data);
         let text = text.strip_suffix(',').unwrap_or(text);
         text.split(',').map(|item| unquoted(item.trim()))
     }
@@ -226,7 +231,8 @@ impl Source {
     fn included(&mut self, at: LinePlace, input: &str) -> Result<usize, InputError> {
         // Relative to the main deck, as in Abaqus.
         let folder = self.files[0].0.parent().unwrap_or(Path::new(""));
-        let path = folder.join(input);
+        // Decks that were written on Windows have backslashes.
+        let path = folder.join(input.replace('\\', "/"));
         self.inclusions += 1;
         if self.inclusions > INCLUSIONS {
             let message = format!(

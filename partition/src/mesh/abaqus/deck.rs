@@ -7,7 +7,7 @@ use super::element_type::{self, ElementType};
 use super::notes::Notes;
 use super::sets::Sets;
 use crate::element::Elements;
-use crate::element::geometry::{advance, difference};
+use crate::element::geometry::{advance, cross, difference, dot};
 use crate::error::InputError;
 use crate::name;
 
@@ -293,8 +293,7 @@ impl Deck {
         Ok(self.push_tag(*tag, found.is_side, (found.has_modes, found.is_reduced)))
     }
 
-    /// A direction out of a surface of faces: the sum of the vectors from the centres of the elements to those of their
-    /// faces.
+    /// The outward normal of a surface of faces, times its area.
     pub(crate) fn outward(&self, surface: &str) -> [f64; 3] {
         let middle = |nodes: &[u32]| {
             let points = nodes.iter().map(|&node| self.points[node as usize]);
@@ -311,10 +310,16 @@ impl Deck {
             );
             let corners = element_type::face(kind, number)?.iter().map(|&i| nodes[i]);
             let corners: Vec<u32> = corners.collect();
-            Some(difference(
-                middle(&corners),
-                middle(&nodes[..kind.corners()]),
-            ))
+            let out = difference(middle(&corners), middle(&nodes[..kind.corners()]));
+            let at = |k: usize| self.points[corners[k] as usize];
+            let normal = match corners.len() {
+                2 => cross(difference(at(1), at(0)), [0.0, 0.0, 1.0]),
+                3 => cross(difference(at(1), at(0)), difference(at(2), at(0))),
+                _ => cross(difference(at(2), at(0)), difference(at(3), at(1))),
+            };
+            // Half the product is the area; edges of plane cells have their length.
+            let size = if corners.len() == 2 { 1.0 } else { 0.5 };
+            Some(normal.map(|c| c * size * dot(normal, out).signum()))
         };
         let directions = faces.into_iter().flatten().filter_map(direction);
         directions.fold([0.0; 3], |sum, direction| advance(sum, 1.0, direction))

@@ -15,7 +15,7 @@ pub(in crate::model) struct FrameLoads {
 }
 
 /// A linear form of displacements: a vector of coefficients for each node.
-pub(super) type Form = BTreeMap<u32, [f64; 3]>;
+pub(in crate::model) type Form = BTreeMap<u32, [f64; 3]>;
 
 /// The frame of a coupling.
 pub(super) struct Frame {
@@ -43,7 +43,7 @@ impl Frame {
     }
 
     /// Adds a multiple of the displacement of a corner along an axis.
-    fn add(&self, form: &mut Form, corner: u32, axis: usize, factor: f64) {
+    pub fn add(&self, form: &mut Form, corner: u32, axis: usize, factor: f64) {
         form.entry(self.first + corner).or_default()[axis] += factor;
     }
 

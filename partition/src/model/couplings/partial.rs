@@ -125,6 +125,11 @@ impl Uncoupled {
         squares.sum::<f64>().sqrt()
     }
 
+    /// True if a unit motion has no part without coupling.
+    pub fn is_coupled(&self, motion: [f64; 6]) -> bool {
+        self.part(motion) < NOTHING
+    }
+
     /// Removes prescribed components without coupling from the loads of the point.
     ///
     /// # Errors

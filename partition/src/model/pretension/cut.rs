@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::disjoint_sets::DisjointSets;
+use crate::element::geometry::{advance, difference, dot};
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Group, Mesh};
@@ -29,7 +30,9 @@ pub(in crate::model) fn cut(
     for pretension in &scene.pretension {
         let what = format!("pretension '{}'", pretension.name);
         let facets = groups::facets(&bodies.mesh, &pretension.on, &what)?;
-        let cut = Cut::new(&bodies.mesh, &facets, &what)?;
+        let direction = pretension.direction.as_ref();
+        let direction = direction.map_or([0.0; 3], |direction| direction.value);
+        let cut = Cut::new(&bodies.mesh, &facets, direction, &what)?;
         cut.check_groups(scene, &bodies.mesh)?;
         all.push(cut.open(scene, &mut bodies.mesh, other_side(pretension)));
     }
@@ -47,11 +50,16 @@ struct Cut<'a> {
 }
 
 impl<'a> Cut<'a> {
-    /// The cut along `facets` of a mesh.
+    /// The cut along `facets` of a mesh; a `direction` that isn't zero points away from the cells behind it.
     ///
     /// # Errors
     /// A facet that isn't between two cells, cells that stay connected around the facets.
-    fn new(mesh: &Mesh, facets: &'a [u32], what: &'a str) -> Result<Self, InputError> {
+    fn new(
+        mesh: &Mesh,
+        facets: &'a [u32],
+        direction: [f64; 3],
+        what: &'a str,
+    ) -> Result<Self, InputError> {
         let topology = Topology::new(mesh);
         let listed = |facet: &u32| mesh.facets.nodes_of(*facet as usize);
         let mut pairs = Vec::with_capacity(facets.len());
@@ -63,6 +71,11 @@ impl<'a> Cut<'a> {
                 )));
             };
             pairs.push([a.cell, b.cell]);
+        }
+        if let Some([a, b]) = pairs.first_mut()
+            && dot(direction, difference(middle(mesh, *b), middle(mesh, *a))) > 0.0
+        {
+            std::mem::swap(a, b);
         }
         let nodes: BTreeSet<u32> = facets.iter().flat_map(listed).copied().collect();
         let around: Vec<u32> = (0..mesh.cells.len() as u32)
@@ -94,7 +107,7 @@ impl<'a> Cut<'a> {
         let terms = scene.equation.iter().flat_map(|equation| &equation.terms);
         let on = (forces.map(|force| &force.on).chain(springs))
             .chain(couplings)
-            .chain(terms.map(|term| &term.at));
+            .chain(terms.flat_map(|term| &term.at));
         for name in on.flat_map(|names| names.iter()) {
             let points = mesh
                 .groups
@@ -179,6 +192,14 @@ fn hold_doubles(scene: &Scene, mesh: &mut Mesh, double: &BTreeMap<u32, u32>) {
             group.members.extend(doubles);
         }
     }
+}
+
+/// The middle of a cell's nodes.
+fn middle(mesh: &Mesh, cell: u32) -> [f64; 3] {
+    let nodes = mesh.cells.nodes_of(cell as usize);
+    let part = 1.0 / nodes.len() as f64;
+    let sum = |sum, &node: &u32| advance(sum, part, mesh.points[node as usize]);
+    nodes.iter().fold([0.0; 3], sum)
 }
 
 /// True if the members of a group are nodes.
