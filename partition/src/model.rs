@@ -209,6 +209,7 @@ fn goals(scene: &Scene, on: &LoadedBodies, constraints: &Constraints) -> Result<
     let known = quantities::Known {
         scene,
         bodies,
+        topology,
         materials,
         contacts,
         tips: &constraints.tips,

@@ -193,8 +193,20 @@ impl Functional {
     fn weigh_forces(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let share = match quantity.kind {
-            QuantityKind::MeanPressure => 1.0 / area(context.catalog, quantity.of[0]),
+            QuantityKind::MeanPressure => {
+                1.0 / (area(context.catalog, quantity, |_| true) + quantity.length)
+            }
             _ => 1.0,
+        };
+        // Nodes that both sides share have the pressure of the points beside them.
+        let beside = &quantity.of[1..];
+        let is_beside = |point: &ContactPoint<u32>| beside.contains(&point.place);
+        let of_beside = match beside.is_empty() {
+            true => 1.0,
+            false => {
+                1.0 + quantity.length
+                    / area(context.catalog, quantity, |place| beside.contains(&place))
+            }
         };
         let is_moment = quantity.kind == QuantityKind::ContactMoment;
         let is_normal = quantity.direction == [0.0; 3] && !is_moment;
@@ -205,18 +217,24 @@ impl Functional {
         let mut parts = BTreeMap::new();
         for (&g, of_group) in &solved.solution.discrete.groups {
             let group = &context.groups[&g];
-            let weight = |condition: Condition| match (
-                group.points[condition.point].contact == quantity.of[0],
-                is_normal,
-            ) {
-                (false, _) => 0.0,
-                (true, true) if condition.is_tangential => 0.0,
-                (true, true) => share,
-                (true, false) if is_moment => {
-                    let arm = difference(group.points[condition.point].force_point, quantity.point);
-                    -along(cross(arm, condition.direction), axis)
+            let weight = |condition: Condition| {
+                let point = &group.points[condition.point];
+                if point.contact != quantity.of[0] {
+                    return 0.0;
                 }
-                (true, false) => -share * along(condition.direction, quantity.direction),
+                let part = match is_normal {
+                    true if condition.is_tangential => 0.0,
+                    true => share,
+                    false if is_moment => {
+                        let arm = difference(point.force_point, quantity.point);
+                        -along(cross(arm, condition.direction), axis)
+                    }
+                    false => -share * along(condition.direction, quantity.direction),
+                };
+                match is_beside(point) {
+                    true => of_beside * part,
+                    false => part,
+                }
             };
             let weights: Vec<f64> = group.conditions().map(weight).collect();
             parts.insert(g, dot(&weights, &of_group.forces));
@@ -310,12 +328,10 @@ impl Functional {
     }
 }
 
-/// The area of all points of a contact.
-fn area(catalog: &Catalog, contact: u32) -> f64 {
-    let points = catalog
-        .points
-        .iter()
-        .filter(|point| point.contact == contact);
+/// The area of the points of a quantity's contact at some places.
+fn area(catalog: &Catalog, quantity: &Quantity, is_one: impl Fn(u32) -> bool) -> f64 {
+    let points = catalog.points.iter();
+    let points = points.filter(|of| of.contact == quantity.of[0] && is_one(of.place));
     points.map(|point| point.area).sum()
 }
 
