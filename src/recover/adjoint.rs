@@ -127,8 +127,7 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
                 ));
             } else {
                 found = derivatives(&sensitivity(parts, &problem, &state));
-                let of = (quantity, functional.value);
-                if let Some(of_mesh) = MeshError::new(solved, of, &state) {
+                if let Some(of_mesh) = MeshError::new(solved, &functional, &state) {
                     error = Some(of_mesh.error);
                     error_bar = Some(of_mesh.bar);
                     if number == 0 {

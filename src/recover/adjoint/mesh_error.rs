@@ -16,9 +16,10 @@
 
 use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::quantity::{Quantity, QuantityKind};
+use contact_dd_partition::quantity::QuantityKind;
 
 use super::contact_edges::edges;
+use super::functional::Functional;
 use super::solved::Solved;
 use super::transposed::Transposed;
 use crate::context::Context;
@@ -50,13 +51,11 @@ pub struct MeshError {
 }
 
 impl MeshError {
-    /// The error of a quantity of this value, whose transposed problem is solved; `None` without stresses, and for the
-    /// pressure of a single point or a quantity of a crack tip. Collective.
-    pub fn new(
-        solved: Solved<'_>,
-        (quantity, value): (&Quantity, f64),
-        of: &Transposed,
-    ) -> Option<Self> {
+    /// The error of a quantity whose transposed problem is solved; `None` without stresses, and for the pressure of a
+    /// single point or a quantity of a crack tip. Collective.
+    pub fn new(solved: Solved<'_>, functional: &Functional, of: &Transposed) -> Option<Self> {
+        let context = &solved.fixed.context;
+        let quantity = &context.catalog.quantities[functional.number];
         let has_estimate = match quantity.kind {
             QuantityKind::LargestPressure => quantity.length > 0.0,
             QuantityKind::OpeningIntensity
@@ -74,7 +73,6 @@ impl MeshError {
             }
         }
         (of_cells.values_mut().flatten()).for_each(|error| *error = -*error);
-        let context = &solved.fixed.context;
         let (mut error, mut sizes) = (0.0, 0.0);
         context.comm.gather(
             &context.plan.owners(),
@@ -94,7 +92,9 @@ impl MeshError {
         };
         Some(Self {
             error,
-            bar: matching * (least + OF_EDGES * edges(solved, of)) + ROUND_OFF * value.abs(),
+            bar: matching * (least + OF_EDGES * edges(solved, of))
+                + functional.beside
+                + ROUND_OFF * functional.value.abs(),
             of_cells,
         })
     }
