@@ -40,7 +40,7 @@ def comparisons(scene, kind):
         for key, one in solved(scene, kind, fine).items():
             exact = truth[key]["value"]
             error, own = one["value"] - exact, abs(near[key]["value"] - exact)
-            if one["error_bar"] is not None and abs(error) > LEAST * abs(exact) and own < UNCERTAIN * abs(error):
+            if one["error_bar"] and abs(error) > LEAST * abs(exact) and own < UNCERTAIN * abs(error):
                 yield f"{key[1]}, {kind}, {fine}", error, one["error"], one["error_bar"]
 
 

@@ -55,8 +55,8 @@ pub struct MeshError {
 }
 
 impl MeshError {
-    /// The error of a quantity whose transposed problem is solved; `None` without stresses, and for the pressure of a
-    /// single point or a quantity of a crack tip. Collective.
+    /// The error of a quantity whose transposed problem is solved; `None` without stresses, where nothing changes the
+    /// quantity, and for the pressure of a single point or a quantity of a crack tip. Collective.
     pub fn new(solved: Solved<'_>, functional: &Functional, of: &Transposed) -> Option<Self> {
         let context = &solved.fixed.context;
         let quantity = &context.catalog.quantities[functional.number];
@@ -68,6 +68,12 @@ impl MeshError {
             _ => true,
         };
         let own = solved.solution.stress.as_ref().filter(|_| has_estimate)?;
+        // As of the force of a contact that is open on this mesh.
+        let w = of.discrete.blocks.values().flat_map(|of_block| &of_block.u);
+        let has_weights = context.comm.largest(w) > 0.0;
+        if !has_weights && quantity.kind != QuantityKind::Energy {
+            return None;
+        }
         let mut of_cells = products(solved, of);
         (of_cells.values_mut().flatten()).for_each(|error| *error = -*error);
         let (mut error, mut sizes) = sums(context, &of_cells);
