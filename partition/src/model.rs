@@ -211,6 +211,7 @@ fn goals(scene: &Scene, on: &LoadedBodies, constraints: &Constraints) -> Result<
     let known = quantities::Known {
         scene,
         bodies,
+        topology,
         materials,
         contacts,
         tips: &constraints.tips,

@@ -12,7 +12,8 @@ pub struct Quantity {
     pub direction: [f64; 3],
     /// The reference point of a moment (m); zero for other kinds.
     pub point: [f64; 3],
-    /// The smoothing length of a largest pressure (m); 0 for the pressure of a point.
+    /// The smoothing length of a largest pressure (m); 0 for the pressure of a point. For the forces of a contact the
+    /// area of the nodes that both of its sides share (m, in space m²).
     pub length: f64,
     /// The constant part in every load step, a single one without steps: the contribution of initial stress to an
     /// average stress.
@@ -69,6 +70,14 @@ impl QuantityKind {
         Self::EnergyReleaseRate,
         Self::ContactMoment,
     ];
+
+    /// True of the forces of a contact, added up.
+    pub fn adds_forces(self) -> bool {
+        matches!(
+            self,
+            Self::ContactForce | Self::ContactMoment | Self::MeanPressure
+        )
+    }
 
     /// The word in scenes and reports.
     pub fn word(self) -> &'static str {

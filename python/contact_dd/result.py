@@ -199,6 +199,12 @@ class Result:
         errors = {one["name"]: one.get("error") for one in self._report_of_step().get("quantities") or []}
         return {name: None if error is None else number(error) for name, error in errors.items()}
 
+    @property
+    def quantity_error_bars(self) -> dict[str, float | None]:
+        """How far the exact quantities may be from their values, by their names; `None` where there is no estimate."""
+        bars = {one["name"]: one.get("error_bar") for one in self._report_of_step().get("quantities") or []}
+        return {name: None if bar is None else number(bar) for name, bar in bars.items()}
+
     def gradient(self, name: str) -> dict[str, float]:
         """The derivatives of a quantity, by the names of the parameters: loads (of a factor), Young's moduli, gaps,
         prescribed displacements and coefficients of friction.

@@ -4,6 +4,9 @@ use contact_dd_partition::id::OnBlocks;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Estimate of an error, relative to its bar, from which on its sign can be trusted.
+const TRUSTED: f64 = 0.5;
+
 /// A quantity that the scene requests.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityValue {
@@ -15,10 +18,33 @@ pub struct QuantityValue {
     pub value: f64,
     /// Estimated discretization error: approximately the value less the exact one; `null` without an estimate.
     pub error: Option<f64>,
+    /// The bar of that estimate: the exact value is expected at most this far from `value`. Where `error` is smaller
+    /// than half of it, its sign can't be trusted; `null` without an estimate.
+    pub error_bar: Option<f64>,
     /// Tag of the node whose value it is, or that has the largest pressure; `null` of other quantities.
     pub node: Option<i64>,
     /// The derivatives with respect to the parameters of the scene; empty without parameters.
     pub derivatives: Vec<Derivative>,
+}
+
+impl QuantityValue {
+    /// The estimate, if its sign can be trusted; else the bar.
+    pub fn told_error(&self) -> Option<ToldError> {
+        let (error, bar) = (self.error?, self.error_bar?);
+        Some(match error.abs() >= TRUSTED * bar {
+            true => ToldError::Signed(error),
+            false => ToldError::Within(bar),
+        })
+    }
+}
+
+/// The estimated error of a quantity as it is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ToldError {
+    /// With its sign: the value less the exact one.
+    Signed(f64),
+    /// The exact value is expected at most this far from the value.
+    Within(f64),
 }
 
 /// Derivative of a quantity with respect to a parameter of the scene, with fixed contact status.

@@ -16,6 +16,7 @@
 //! whose solution gives the derivative w·(df − dK u) + ν·dg + η·dv − τ'·dφ for all parameters at once. M = μ e and, in
 //! space, Q = κ (I − e eᵀ). Slipping points are not symmetric: M is in the conditions here, in the forces there.
 
+mod contact_edges;
 mod crack_tip;
 mod derivatives;
 mod functional;
@@ -114,7 +115,7 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
     for number in 0..catalog.quantities.len() {
         let functional = Functional::new(solved, number, &forces);
         let quantity = &catalog.quantities[number];
-        let (mut found, mut error) = (Vec::new(), None);
+        let (mut found, mut error, mut error_bar) = (Vec::new(), None, None);
         if has_derivatives {
             let problem = TransposedProblem::new(solved, &functional, (&slipping, &directions));
             let parts = (solved, &functional, &forces);
@@ -126,8 +127,9 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
                 ));
             } else {
                 found = derivatives(&sensitivity(parts, &problem, &state));
-                if let Some(of_mesh) = MeshError::new(solved, quantity, &state) {
+                if let Some(of_mesh) = MeshError::new(solved, &functional, &state) {
                     error = Some(of_mesh.error);
+                    error_bar = Some(of_mesh.bar);
                     if number == 0 {
                         all.errors_of_cells = of_mesh.of_cells;
                     }
@@ -135,7 +137,11 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
             }
         }
         let value = value(quantity, &functional, &catalog.parameters, &found);
-        all.values.push(QuantityValue { error, ..value });
+        all.values.push(QuantityValue {
+            error,
+            error_bar,
+            ..value
+        });
     }
     all
 }
@@ -193,5 +199,6 @@ fn value(
         node: Some(functional.node).filter(|&node| node != -1),
         derivatives: parameters.iter().zip(found).map(derivative).collect(),
         error: None,
+        error_bar: None,
     }
 }

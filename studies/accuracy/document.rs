@@ -12,7 +12,8 @@ const HEAD: &str = "\
 # Run time against error
 
 Which cells reach an error of 1 % in the least time, and which tolerance the sweeps need. Measured and written
-by `scripts/accuracy`. [Adaptive refinement](adapting.md) finds the cells by itself.
+by `scripts/accuracy`. [Adaptive refinement](adapting.md) finds the cells by itself. How far the
+stated errors of quantities can be trusted is on [another page](trust.md#the-stated-error-of-a-quantity).
 
 ";
 

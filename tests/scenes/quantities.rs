@@ -1,5 +1,6 @@
 //! Quantities of interest, and their derivatives.
 
+mod bars;
 mod mesh_error;
 mod study;
 mod tips;

@@ -1,5 +1,6 @@
 //! Warnings of probable mistakes in an otherwise valid scene.
 
+mod facets;
 mod hinges;
 mod strains;
 mod undeclared;
@@ -63,6 +64,7 @@ impl<'a> Diagnostics<'a> {
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
         warnings.extend(self.hinges());
+        warnings.extend(self.facets_of_curves());
         Ok(warnings)
     }
 

@@ -1,6 +1,7 @@
 //! Quantities of a scene, resolved on its mesh.
 
 mod places;
+mod shared_nodes;
 
 use super::bodies::Bodies;
 use super::crack_tips::CrackTips;
@@ -8,6 +9,7 @@ use super::initial_stress::{InitialStress, mean_weights};
 use super::{Contact, Material, PlaneState};
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
+use crate::mesh::topology::Topology;
 use crate::quantity::{NodeWeight, Quantity, QuantityKind};
 use crate::scene::Scene;
 use crate::scene::number::ConstantVector;
@@ -19,6 +21,7 @@ use crate::scene::suggest::hint_and_known;
 pub(super) struct Known<'a> {
     pub scene: &'a Scene,
     pub bodies: &'a Bodies,
+    pub topology: &'a Topology,
     pub materials: &'a [Material],
     pub contacts: &'a [Contact],
     /// The crack tips.
@@ -100,7 +103,7 @@ impl Known<'_> {
                 quantity.kind = QuantityKind::ContactForce;
                 let along = along.as_ref().map(|along| self.of_force(along));
                 quantity.direction = along.transpose()?.unwrap_or_default();
-                quantity.of = vec![self.contact(contact, true)?.0];
+                self.set_forces(contact, true, quantity)?;
             }
             Target::ContactMoment {
                 contact,
@@ -113,7 +116,7 @@ impl Known<'_> {
                 quantity.kind = QuantityKind::ContactMoment;
                 quantity.direction = axis.as_ref().map_or([0.0; 3], |axis| axis.value);
                 quantity.point = about.value;
-                quantity.of = vec![self.contact(contact, true)?.0];
+                self.set_forces(contact, true, quantity)?;
             }
             Target::Pressure {
                 contact,
@@ -121,7 +124,10 @@ impl Known<'_> {
                 over,
             } => {
                 (quantity.kind, quantity.length) = (*kind, *over);
-                quantity.of = vec![self.contact(contact, false)?.0];
+                match kind {
+                    QuantityKind::MeanPressure => self.set_forces(contact, false, quantity)?,
+                    _ => quantity.of = vec![self.contact(contact, false)?.0],
+                }
             }
             Target::Opening { contact, at } => {
                 quantity.kind = QuantityKind::Opening;
@@ -131,6 +137,18 @@ impl Known<'_> {
                 quantity.of = vec![number, point.place];
             }
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// Sets the contact whose forces a quantity adds up, and what of it belongs to nodes that both sides share.
+    fn set_forces(&self, name: &str, or_tie: bool, quantity: &mut Quantity) -> Result<(), String> {
+        let (number, points) = self.contact(name, or_tie)?;
+        let shared = self.shared_nodes(points);
+        quantity.of = vec![number];
+        if !shared.beside.is_empty() {
+            quantity.length = shared.area;
+            quantity.of.extend(shared.beside);
         }
         Ok(())
     }

@@ -9,11 +9,20 @@ use crate::element::geometry::{advance, dot, length};
 use crate::error::InputError;
 use crate::mesh::Mesh;
 use crate::mesh::bounding_box::BoundingBox;
-use crate::mesh::topology::Topology;
+use crate::mesh::topology::{CellFacet, Topology};
 use crate::scene::material::PlaneState;
 
 /// Angle between two facets above which they form a corner (rad).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Angle between neighbouring facets up to which they may approximate a smooth curve (rad).
+const SMOOTH: f64 = std::f64::consts::FRAC_PI_6;
+
+/// Angle below which facets lie in one plane (rad).
+const FLAT: f64 = 1e-4;
+
+/// Angle at one end of a facet of a smooth curve, relative to that at its other end, at least.
+const REGULAR: f64 = 0.5;
 
 /// Sag of a facet on a curve, relative to the height of the kink, below which the facet is straight.
 const STRAIGHT: f64 = 0.5;
@@ -110,15 +119,19 @@ impl Surface {
                 }
                 _ => return Err(refused("belongs to more than two cells")),
             };
-            let cell = mesh.cells.nodes_of(cell_facet.cell as usize);
-            let kind = mesh.cells.kind(cell_facet.cell as usize);
-            let (kind, local) = kind.facets()[cell_facet.facet as usize];
-            let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
-            let at: Vec<_> = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
-            Ok(SurfaceFacet::new(kind, nodes, at, plane))
+            Ok(SurfaceFacet::of_cell(mesh, cell_facet, plane))
         };
         let facets = facets.iter().map(facet_of).collect::<Result<_, _>>()?;
         Ok(Self { facets })
+    }
+
+    /// The whole boundary of the bodies.
+    pub fn of_all(mesh: &Mesh, topology: &Topology, plane: Option<PlaneState>) -> Self {
+        let facets = topology.boundary();
+        let facets = facets.map(|facet: CellFacet| SurfaceFacet::of_cell(mesh, facet, plane));
+        Self {
+            facets: facets.collect(),
+        }
     }
 
     /// The same surface with reversed normals.
@@ -210,6 +223,34 @@ impl Surface {
         }
         let seconds = heights.into_iter().map(|[_, second]| second);
         seconds.fold(0.0, f64::max)
+    }
+
+    /// Largest sagitta of straight facets that turn like a smooth curve, by similar small angles at both ends (m), and a
+    /// node of that facet; `None` without two such facets.
+    pub fn stands_off_smooth_curve(&self) -> Option<(f64, u32)> {
+        let mut ends: Vec<[Option<Turn>; 2]> = vec![[None; 2]; self.facets.len()];
+        let angle = |of: &Option<Turn>| of.map_or(0.0, |turn| turn.angle);
+        let bent = |turn: &Turn| turn.is_straight() && FLAT < turn.angle && turn.angle <= SMOOTH;
+        for turn in self.turns().into_iter().filter(bent) {
+            for facet in turn.facets {
+                let [most, second] = &mut ends[facet];
+                let mut other = Some(turn);
+                if turn.angle > angle(most) {
+                    std::mem::swap(most, &mut other);
+                }
+                if angle(&other) > angle(second) {
+                    *second = other;
+                }
+            }
+        }
+        let regular = ends.iter().filter_map(|[most, second]| {
+            let (most, second) = ((*most)?, (*second)?);
+            (second.angle >= REGULAR * most.angle).then_some((second.height(), second.node))
+        });
+        match regular.clone().count() {
+            0 | 1 => None,
+            _ => regular.max_by(|a, b| a.0.total_cmp(&b.0)),
+        }
     }
 
     /// The largest height of the kinks between facets: straight facets deviate from a curve by it, curved ones by less

@@ -336,17 +336,25 @@ def tips(report, units):
     return section("Stress intensity", rows, more(found, ""), f"<p><small>{words}</small></p>")
 
 
+def told_error(one, units):
+    error, bar, unit = one.get("error"), one.get("error_bar"), units.of_quantity(one["kind"])
+    if error is None:
+        return "–"
+    # As the solver tells it, of reports without bars with the sign.
+    return si(error, unit, 2) if bar is None or abs(error) >= 0.5 * bar else "± " + si(bar, unit, 2)
+
+
 def quantities(report, units):
     found = report.get("quantities")
     if not found:
         return ""
     rows = [
         [one["name"], si(one["value"], units.of_quantity(one["kind"]), 5),
-         "–" if one.get("error") is None else si(one["error"], units.of_quantity(one["kind"]), 2), *most(one)]
+         told_error(one, units), *most(one)]
         for one in found[:MOST_ROWS]
     ]
     words = (
-        "The error of the mesh is an estimate of the value less the exact one. The parameter is the one that changes a "
+        "The error of the mesh is an estimate of the value less the exact one; ± where its sign can't be trusted. The parameter is the one that changes a "
         "quantity most when it rises by its own size, and by how much of the quantity; the report has all derivatives."
     )
     if report.get("without_derivatives"):

@@ -2,7 +2,7 @@
 
 use contact_dd_partition::scene::units::Units;
 
-use crate::fem::quantity::QuantityValue;
+use crate::fem::quantity::{QuantityValue, ToldError};
 use crate::fem::resultants::{ContactResultant, Reaction, Resultant, Resultants};
 use crate::fem::stress_intensity::StressIntensity;
 use crate::fem::tightened_bolt::TightenedBolt;
@@ -150,7 +150,11 @@ fn of_quantities(quantities: &[QuantityValue], units: Units, dim: usize) -> Vec<
         let most = most.map_or(String::new(), |(share, name)| {
             format!(" {share:+.3} {name}")
         });
-        let error = of.error.map_or("-".into(), |error| format!("{error:+.2e}"));
+        let error = match of.told_error() {
+            Some(ToldError::Signed(error)) => format!("{error:+.2e}"),
+            Some(ToldError::Within(bar)) => format!("±{bar:.2e}"),
+            None => "-".into(),
+        };
         let (name, value) = (&of.name, of.value);
         format!("{name:<width$} {value:>14.6e} {unit:<6} {error:>12}{most}")
     })

@@ -85,6 +85,8 @@ pub struct Functional {
     pub value: f64,
     /// The part of the value proportional to the stiffness around a crack tip, at fixed displacements; on the root.
     pub of_stiffness: f64,
+    /// What a moment may lack, as forces of nodes that both sides share act beside them; on the root.
+    pub beside: f64,
     /// Tag of its node, −1 if there is none; for a largest pressure only on the root.
     pub node: i64,
     /// ∂q/∂u of the blocks that it depends on; the parts of blocks add up.
@@ -193,8 +195,18 @@ impl Functional {
     fn weigh_forces(&mut self, solved: Solved<'_>, quantity: &Quantity) {
         let context = &solved.fixed.context;
         let share = match quantity.kind {
-            QuantityKind::MeanPressure => 1.0 / area(context.catalog, quantity.of[0]),
+            QuantityKind::MeanPressure => {
+                1.0 / (area(context.catalog, quantity, |_| true) + quantity.length)
+            }
             _ => 1.0,
+        };
+        // Nodes that both sides share have the pressure of the points beside them.
+        let beside = &quantity.of[1..];
+        let is_beside = |point: &ContactPoint<u32>| beside.contains(&point.place);
+        let area_beside = area(context.catalog, quantity, |place| beside.contains(&place));
+        let of_shared = match beside.is_empty() {
+            true => 0.0,
+            false => quantity.length / area_beside,
         };
         let is_moment = quantity.kind == QuantityKind::ContactMoment;
         let is_normal = quantity.direction == [0.0; 3] && !is_moment;
@@ -202,27 +214,42 @@ impl Functional {
             2 => [0.0, 0.0, 1.0],
             _ => quantity.direction,
         };
-        let mut parts = BTreeMap::new();
+        // In the plane two nodes are in a facet of a width, in space a row of nodes lies beside a front.
+        let width = (2.0 * area_beside / beside.len().max(1) as f64)
+            .powf(1.0 / (context.catalog.dim as f64 - 1.0));
+        let (mut parts, mut levers) = (BTreeMap::new(), BTreeMap::new());
         for (&g, of_group) in &solved.solution.discrete.groups {
             let group = &context.groups[&g];
-            let weight = |condition: Condition| match (
-                group.points[condition.point].contact == quantity.of[0],
-                is_normal,
-            ) {
-                (false, _) => 0.0,
-                (true, true) if condition.is_tangential => 0.0,
-                (true, true) => share,
-                (true, false) if is_moment => {
-                    let arm = difference(group.points[condition.point].force_point, quantity.point);
-                    -along(cross(arm, condition.direction), axis)
+            let forces = group.conditions().zip(&of_group.forces);
+            let shared = forces.filter(|(of, _)| is_moment && is_beside(&group.points[of.point]));
+            let shared = shared.filter(|(of, _)| group.points[of.point].contact == quantity.of[0]);
+            let lever = shared.map(|(_, force)| of_shared * force.abs() * width);
+            levers.insert(g, lever.sum::<f64>());
+            let weight = |condition: Condition| {
+                let point = &group.points[condition.point];
+                if point.contact != quantity.of[0] {
+                    return 0.0;
                 }
-                (true, false) => -share * along(condition.direction, quantity.direction),
+                let part = match is_normal {
+                    true if condition.is_tangential => 0.0,
+                    true => share,
+                    false if is_moment => {
+                        let arm = difference(point.force_point, quantity.point);
+                        -along(cross(arm, condition.direction), axis)
+                    }
+                    false => -share * along(condition.direction, quantity.direction),
+                };
+                match is_beside(point) {
+                    true => (1.0 + of_shared) * part,
+                    false => part,
+                }
             };
             let weights: Vec<f64> = group.conditions().map(weight).collect();
             parts.insert(g, dot(&weights, &of_group.forces));
             self.of_forces.insert(g, weights);
         }
         self.value = context.sum_of_groups(|g| parts.get(&g).copied().unwrap_or_default());
+        self.beside = context.sum_of_groups(|g| levers.get(&g).copied().unwrap_or_default());
     }
 
     /// Finds the point with the largest pressure.
@@ -310,12 +337,10 @@ impl Functional {
     }
 }
 
-/// The area of all points of a contact.
-fn area(catalog: &Catalog, contact: u32) -> f64 {
-    let points = catalog
-        .points
-        .iter()
-        .filter(|point| point.contact == contact);
+/// The area of the points of a quantity's contact at some places.
+fn area(catalog: &Catalog, quantity: &Quantity, is_one: impl Fn(u32) -> bool) -> f64 {
+    let points = catalog.points.iter();
+    let points = points.filter(|of| of.contact == quantity.of[0] && is_one(of.place));
     points.map(|point| point.area).sum()
 }
 

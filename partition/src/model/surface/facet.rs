@@ -3,6 +3,8 @@
 use super::super::blend::Blending;
 use crate::element::ElementKind;
 use crate::element::geometry::{advance, cross, difference, dot, length};
+use crate::mesh::Mesh;
+use crate::mesh::topology::CellFacet;
 use crate::scene::material::PlaneState;
 
 /// Degree of exactness for the measure of curved facets.
@@ -46,6 +48,16 @@ impl SurfaceFacet {
             at,
             plane,
         }
+    }
+
+    /// The facet of a cell of the mesh.
+    pub fn of_cell(mesh: &Mesh, of: CellFacet, plane: Option<PlaneState>) -> Self {
+        let cell = mesh.cells.nodes_of(of.cell as usize);
+        let kind = mesh.cells.kind(of.cell as usize);
+        let (kind, local) = kind.facets()[of.facet as usize];
+        let nodes: Vec<u32> = local.iter().map(|&i| cell[i]).collect();
+        let at = nodes.iter().map(|&n| mesh.points[n as usize]).collect();
+        Self::new(kind, nodes, at, plane)
     }
 
     /// dS at ξ: length, area, or area of the ring around the axis (m, m²).

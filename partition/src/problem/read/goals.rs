@@ -36,9 +36,16 @@ pub(super) fn quantities(contents: &Contents) -> Result<Vec<Quantity>, InputErro
             QuantityKind::OpeningIntensity
             | QuantityKind::SlidingIntensity
             | QuantityKind::EnergyReleaseRate => &[("crack tip", 'A')],
-            _ => &[("contact", 'Q')],
+            QuantityKind::LargestPressure => &[("contact", 'Q')],
+            QuantityKind::ContactForce
+            | QuantityKind::ContactMoment
+            | QuantityKind::MeanPressure => &[("contact", 'Q'), ("place", 'R')],
         };
-        let is_list = matches!(kind, QuantityKind::MeanStress | QuantityKind::Reaction);
+        let is_list = match kind {
+            QuantityKind::MeanStress | QuantityKind::Reaction => true,
+            // The places of the points beside shared nodes.
+            _ => kind.adds_forces(),
+        };
         Ok(Quantity {
             name,
             kind,
@@ -82,19 +89,20 @@ pub(super) fn parameters(contents: &Contents) -> Result<Vec<Parameter>, InputErr
     names.into_iter().enumerate().map(parameter).collect()
 }
 
-/// The numbers in some rows: one for each letter, or a list for the first letter.
+/// The numbers in some rows: one for each letter, or a list that ends with any number of the last letter.
 fn numbers(
     contents: &Contents,
     of: &Slice<i64>,
     rows: Range<usize>,
     (letters, is_list): (&[(&str, char)], bool),
 ) -> Result<Vec<u32>, InputError> {
-    if !is_list && rows.len() != letters.len() {
-        let what = format!("{} numbers; expected {}", rows.len(), letters.len());
+    let least = letters.len() - usize::from(is_list);
+    if rows.len() < least || !is_list && rows.len() > least {
+        let what = format!("{} numbers; expected {least}", rows.len());
         return Err(of.error(rows.start, &what));
     }
     let number = |(place, row): (usize, usize)| {
-        let (what, letter) = letters[if is_list { 0 } else { place }];
+        let (what, letter) = letters[place.min(letters.len() - 1)];
         Ok(of.indices(row..row + 1, what, contents.count(letter))?[0])
     };
     rows.enumerate().map(number).collect()
