@@ -295,6 +295,14 @@ impl Limits {
         closed
     }
 
+    /// Number of contact points whose limits are closed, each of those that share a jump counted.
+    pub fn closed_points(&self, is_closed: impl Fn(usize) -> bool) -> usize {
+        let of_limits = (0..self.bounds.len()).filter(|&i| !self.is_tangential(i) && is_closed(i));
+        let jumps = self.sharers.iter().map(|sharer| sharer.jump);
+        let of_sharers = jumps.filter(|&i| !self.is_tangential(i) && is_closed(i));
+        of_limits.count() + of_sharers.count()
+    }
+
     /// The states of the limits from those of all conditions.
     pub fn states(&self, conditions: &[LimitState]) -> Vec<LimitState> {
         let of_condition = |&(condition, factor): &(usize, f64)| {
