@@ -269,6 +269,34 @@ fn derivatives_are_differences_of_runs_with_friction() {
     }
 }
 
+/// The upper block in two, tied, whose points at the seam share the contact force.
+#[test]
+fn derivatives_are_differences_of_runs_across_a_seam() {
+    let mut mesh = Blocks::new()
+        .rectangle("low", [0.0, 2.0], [0.0, 1.0], [12, 6])
+        .rectangle("high", [0.4, 1.15], [1.0, 2.0], [5, 6])
+        .rectangle("more", [1.15, 1.6], [1.0, 2.0], [3, 6])
+        .mesh;
+    for side in ["bottom", "right", "top"] {
+        let other = mesh.groups.remove(&format!("more {side}")).unwrap();
+        let own = mesh.groups.entry(format!("high {side}")).or_default();
+        match side {
+            "right" => {
+                let seam = std::mem::replace(own, other);
+                mesh.groups.insert("seam".into(), seam);
+            }
+            _ => own.members.extend(other.members),
+        }
+    }
+    let steel = "bodies.high.material = 'steel'";
+    let scene = plane().replace(steel, &format!("{steel}\nbodies.more.material = 'steel'"))
+        + "[[tie]]\nname = 'seam'\nsides = ['seam', 'more left']\n";
+    for law in ["", COULOMB] {
+        check_differences(&scene, law, &sort("quad4").of(&mesh), &[]);
+    }
+    check_differences(&scene, "", &mesh, &["--interface", "iterative"]);
+}
+
 #[test]
 fn derivatives_are_differences_of_runs_around_an_axis() {
     let scene = plane()
