@@ -17,6 +17,84 @@ use crate::mesh::Mesh;
 /// Norm of the difference up to which unit vectors are equal, and relative error of a measured gap.
 const SAME: f64 = 1e-6;
 
+/// Points at nodes that hang between others of the same contact, on the other side of a tie, are no conditions of their
+/// own: pressure is interpolated there like displacement, so that the others take their areas and means. Where that isn't
+/// possible because one of the others has no such point, points stay, and [`hanging`] warns.
+pub(super) fn hang(contacts: &mut [Contact], absent: &HashSet<u32>) {
+    let ties = contacts.iter().flat_map(|contact| &contact.points);
+    let is_tie = |point: &&ContactPoint<u32>| {
+        point.law.is_tied() && !point.is_equation() && !absent.contains(&point.contact)
+    };
+    let ties: Vec<ContactPoint<u32>> = ties.filter(is_tie).cloned().collect();
+    for contact in contacts.iter_mut() {
+        let unilateral = (contact.points.iter().enumerate()).filter(|(_, p)| !p.law.is_tied());
+        let own_node = |point: &ContactPoint<u32>| point.entries.first().map(|&(node, _)| node);
+        let places: HashMap<u32, usize> = unilateral
+            .filter_map(|(at, point)| Some((own_node(point)?, at)))
+            .collect();
+        let mut gone: HashSet<usize> = HashSet::new();
+        let mut shares: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
+        for tie in &ties {
+            let Some((at, masters)) = hung_between(tie, &contact.points, &places) else {
+                continue;
+            };
+            gone.insert(at);
+            for (master, weight) in masters {
+                shares.entry(master).or_default().push((at, weight));
+            }
+        }
+        // A node that hangs between nodes that hang themselves stays as it is, with a warning.
+        if gone.is_empty() || shares.keys().any(|master| gone.contains(master)) {
+            continue;
+        }
+        let before = contact.points.clone();
+        for (master, of_master) in shares {
+            let all: Vec<ContactPoint<u32>> = std::iter::once((master, 1.0))
+                .chain(of_master)
+                .map(|(at, weight)| ContactPoint {
+                    area: weight * before[at].area,
+                    ..before[at].clone()
+                })
+                .collect();
+            let point = &mut contact.points[master];
+            take_mean(point, &all, |node| node);
+            point.area = all.iter().map(|of| of.area).sum();
+        }
+        let points = std::mem::take(&mut contact.points).into_iter().enumerate();
+        let kept = points.filter(|(at, _)| !gone.contains(at));
+        let numbered = (0..).zip(kept);
+        let kept = numbered.map(|(place, (_, point))| ContactPoint { place, ..point });
+        contact.points = kept.collect();
+    }
+}
+
+/// The point at the node of a tie that hangs between nodes with points of one normal and law, and these with the weights
+/// of their displacements.
+fn hung_between(
+    tie: &ContactPoint<u32>,
+    points: &[ContactPoint<u32>],
+    places: &HashMap<u32, usize>,
+) -> Option<(usize, Vec<(usize, f64)>)> {
+    let (&(own, weight), masters) = tie.entries.split_first()?;
+    let at = *places.get(&own).filter(|_| (weight - 1.0).abs() <= SAME)?;
+    let significant = masters.iter().filter(|(_, weight)| weight.abs() > SAME);
+    let masters: Vec<(usize, f64)> = significant
+        .map(|(node, weight)| Some((*places.get(node)?, -weight)))
+        .collect::<Option<_>>()?;
+    let hung = &points[at];
+    let is_alike = |&(master, weight): &(usize, f64)| {
+        let of = &points[master];
+        of.law == hung.law
+            && of.stiffness[0] == 0.0
+            && hung.stiffness[0] == 0.0
+            && length(difference(of.normal(), hung.normal())) <= SAME
+            && of.area + weight * hung.area > 0.5 * of.area
+    };
+    let sum: f64 = masters.iter().map(|(_, weight)| weight).sum();
+    let is_between = masters.len() > 1 && (sum - 1.0).abs() <= SAME;
+    (is_between && masters.iter().all(is_alike)).then_some((at, masters))
+}
+
 /// Gives contact points at nodes that ties join their mean normal and, where these have several opposite nodes, their
 /// mean condition, both weighted by their areas; ties that are `absent` in a load step join nothing.
 pub(super) fn join(contacts: &mut [Contact], mesh: &Mesh, absent: &HashSet<u32>) {
@@ -207,5 +285,49 @@ mod tests {
             let opposite = [(2, -0.25), (3, -0.1875), (4, -0.5625)];
             assert_eq!(entries, [&[(node, 1.0)][..], &opposite].concat());
         }
+    }
+
+    /// A node in the middle between two others leaves them its area.
+    #[test]
+    fn a_point_that_hangs_between_others_is_none_of_its_own() {
+        let point = |node: u32, area: f64| ContactPoint {
+            place: node,
+            area,
+            gap: f64::from(node),
+            ..ContactPoint::new(
+                vec![(node, 1.0)],
+                [0.0, -1.0, 0.0],
+                [0.0; 3],
+                i64::from(node),
+            )
+        };
+        let mut tie = ContactPoint {
+            entries: vec![(0, 1.0), (1, -0.5), (2, -0.5)],
+            contact: 1,
+            ..point(0, 1.0)
+        };
+        tie.law = crate::contact_point::Law::Tied;
+        let contact = |points| Contact {
+            name: String::new(),
+            points,
+            probes: Vec::new(),
+        };
+        let points = vec![point(0, 2.0), point(1, 1.0), point(2, 3.0)];
+        let mut contacts = [contact(points), contact(vec![tie])];
+        let before = contacts.clone();
+        hang(&mut contacts, &HashSet::from([1]));
+        assert_eq!(contacts, before);
+        hang(&mut contacts, &HashSet::new());
+        assert_eq!(contacts[1], before[1]);
+        let [first, second] = &contacts[0].points[..] else {
+            panic!("{contacts:?}")
+        };
+        assert_eq!(
+            ([first.place, second.place], [first.area, second.area]),
+            ([0, 1], [2.0, 4.0])
+        );
+        assert_eq!(first.entries, [(1, 0.5), (0, 0.5)]);
+        assert_eq!(second.entries, [(2, 0.75), (0, 0.25)]);
+        assert_eq!([first.gap, second.gap], [0.5, 1.5]);
     }
 }
