@@ -165,7 +165,7 @@ pub(super) fn hanging(contacts: &[Contact], mesh: &Mesh) -> Vec<String> {
                 let mut others = others.filter(|&&(node, weight)| {
                     weight.abs() > SAME && mesh.node_tags[node as usize] != point.tag()
                 });
-                let is_between = others.clone().count() > 1 && others.any(|&(node, _)| has(node));
+                let is_between = others.clone().count() > 1 && others.all(|&(node, _)| has(node));
                 point.law.is_tied() && is_between && tags.contains(&point.tag())
             };
             if let Some(point) = tie.points.iter().find(hangs) {
