@@ -250,7 +250,7 @@ name = 'rests'
     ];
     let kind = ElementKind::Hexahedron8;
     for (law, twist) in [
-        ("friction = 0.3", "2.3e5"),
+        ("friction = 0.3", "2.55e5"),
         ("friction = 0.1\ncohesion = 3e5", "3.3e5"),
         ("tresca = 4e5", "3.3e5"),
     ] {
