@@ -49,7 +49,6 @@ impl<'a> Constraints<'a> {
         all.make(&sides, declared, warnings)?;
         activation::check(scene, bodies, &all.contacts)?;
         let absent = all.absent(scene).into_iter().flatten().collect();
-        seams::hang(&mut all.contacts, &absent);
         seams::join(&mut all.contacts, &bodies.mesh, &absent);
         warnings.extend(seams::hanging(&all.contacts, &bodies.mesh));
         all.tips = CrackTips::find(

@@ -2,14 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::mesh::Mesh;
 use contact_dd_partition::model::Model;
 
 use crate::support::blocks::{Blocks, joined, moved};
 use crate::support::close::close;
 use crate::support::scenes::model;
-use crate::support::solids::{between, solid};
 use crate::support::solution::{ContactPoint, Solution};
 use crate::support::solver::{Case, solve, solve_steps};
 
@@ -335,49 +333,6 @@ fn closed_points_are_counted_one_by_one() {
             assert_eq!(solution.report["active_contacts"], closed);
             let words = format!("{closed} of {} conditions are closed", points.len());
             assert!(ended.stdout.contains(&words), "{}", ended.stdout);
-        }
-    }
-}
-
-/// Nodes of two tied blocks that don't match lie on the line at which both end. They press as one block does under a
-/// uniform pressure, and hold with all of their cohesion.
-#[test]
-fn a_seam_between_meshes_that_do_not_match_carries_a_uniform_pressure() {
-    let kind = ElementKind::Hexahedron8;
-    let left = between([0.5, 0.5, 1.0], [1.0, 1.5, 2.0]);
-    let right = between([1.0, 0.5, 1.0], [1.8, 1.5, 2.0]);
-    let mesh = joined(
-        solid("left", kind, [3, 6, 3], left),
-        solid("right", kind, [4, 4, 3], right),
-    );
-    for sides in ["'left x1', 'right x0'", "'right x0', 'left x1'"] {
-        let text = format!(
-            "
-materials.rock = {{young = 20e9, poisson = 0.0}}
-bodies.left.material = 'rock'
-bodies.right.material = 'rock'
-[[pressure]]
-on = ['left z1', 'right z1']
-value = 1e6
-[[traction]]
-on = ['left z0', 'right z0']
-value = [3.8e5, 0, 0]
-[[contact]]
-name = 'rests'
-sides = [['left z0', 'right z0']]
-obstacle = {{point = [0, 0, 1], normal = [0, 0, 1]}}
-friction = 0.1
-cohesion = 3e5
-[[tie]]
-name = 'seam'
-sides = [{sides}]
-"
-        );
-        let solution = solve(&model(&text, mesh.clone()), 4);
-        for point in &solution.contacts["rests"] {
-            close(point.pressure, 1e6, 1e-6 * 1e6);
-            let shear = point.tangential_force[0] / point.force;
-            close(shear, -0.38, 1e-6);
         }
     }
 }
