@@ -31,6 +31,7 @@ mod pretension;
 mod quantities;
 mod ray_search;
 mod rules;
+mod seams;
 mod sides;
 mod skin;
 mod springs;

@@ -1,17 +1,19 @@
 //! The limits of a pair: t ≤ g, D t ≤ d.
 
+mod tangents;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use super::conditions::Conditions;
 use super::dependent::DependentConstraints;
 use super::jumps::{JumpOf, defining_conditions};
 use super::prescribed_slip::PrescribedSlip;
-pub use super::shared_jump::Conditions;
-use super::shared_jump::Sharer;
+use super::shared_jump::SharedJumps;
 use super::status::{FixedStatus, LimitState};
-use super::tangent::{ForceBound, TangentialCondition};
 pub use super::tangent::{OtherTangent, TangentialLimit};
+use super::tangent::{TangentialCondition, with_other};
 
 /// Slip, relative to the prescribed displacements, below which it counts as zero.
 const ROUND_OFF: f64 = 1e-14;
@@ -27,7 +29,7 @@ pub struct Limits {
     /// The condition that sets each bound, and its factor.
     tightest: Vec<(usize, f64)>,
     /// Conditions that set the same bounds and share the forces.
-    sharers: Vec<Sharer>,
+    shared: SharedJumps,
     /// The condition that defines each normal jump as an unknown.
     pub defining: Vec<usize>,
     /// Number of conditions.
@@ -52,11 +54,12 @@ impl Limits {
             ..
         } = conditions;
         let defining = defining_conditions(of, jumps);
+        let (shared, bearers) = conditions.shared(&defining);
         let mut limits = Self {
             bounds: vec![f64::INFINITY; jumps],
             rows: DependentConstraints::default(),
             tightest: vec![(0, 1.0); jumps],
-            sharers: conditions.sharers(&defining),
+            shared,
             defining,
             conditions: of.len(),
             scale,
@@ -65,6 +68,10 @@ impl Limits {
             tied: tied(of, gaps),
         };
         limits.add_bounds(of, gaps, friction);
+        for (jump, (condition, factor)) in bearers {
+            limits.bounds[jump] = gaps[condition] / factor;
+            limits.tightest[jump] = (condition, factor);
+        }
         let prescribed = |j: usize| {
             let slip = -gaps[j];
             let slips = slip.abs() > ROUND_OFF * scale;
@@ -93,8 +100,8 @@ impl Limits {
             let found = friction.binary_search_by_key(&j, |tangential| tangential.number);
             found.is_ok()
         };
-        let shares = |j: usize| self.sharers.iter().any(|sharer| sharer.condition == j);
-        let alone: Vec<bool> = (0..of.len()).map(|j| !shares(j)).collect();
+        let mut alone = vec![true; of.len()];
+        (self.shared.iter()).for_each(|sharer| alone[sharer.condition] = false);
         for (j, (of, gap)) in of.iter().zip(gaps).enumerate().filter(|(j, _)| alone[*j]) {
             match of {
                 // A tangential jump doesn't bound other jumps, nor do these bound it.
@@ -121,46 +128,6 @@ impl Limits {
                 JumpOf::Prescribed | JumpOf::Tied(_) => {}
             }
         }
-    }
-
-    /// The limits of these tangential conditions, some of whose slips are `prescribed`.
-    fn tangents_of(
-        &self,
-        friction: &[TangentialCondition],
-        prescribed: impl Fn(usize) -> Option<f64>,
-    ) -> Vec<TangentialLimit> {
-        let of_condition: BTreeMap<usize, (usize, f64)> = (self.tightest.iter().enumerate())
-            .map(|(limit, &(condition, factor))| (condition, (limit, factor)))
-            .collect();
-        let other_tangent = |other: usize| match (of_condition.get(&other), prescribed(other)) {
-            (Some(&(limit, _)), _) => OtherTangent::Limit(limit),
-            (None, Some(slip)) if slip != 0.0 => OtherTangent::Prescribed(slip),
-            _ => OtherTangent::Nothing,
-        };
-        let mut tangents: Vec<TangentialLimit> = with_other(friction)
-            .filter_map(|(tangential, other)| {
-                let normal = of_condition.get(&tangential.normal).copied();
-                let (limit, _) = *of_condition.get(&tangential.number)?;
-                let of_sharers = self.sharers.iter().filter(|sharer| sharer.jump == limit);
-                let cohesion = of_sharers.map(|sharer| {
-                    let place = friction.binary_search_by_key(&sharer.condition, |one| one.number);
-                    place.map_or(0.0, |place| friction[place].bound.cohesion)
-                });
-                Some(TangentialLimit {
-                    limit,
-                    normal: normal.map(|(limit, _)| limit),
-                    bound: ForceBound {
-                        coefficient: tangential.bound.coefficient
-                            / normal.map_or(1.0, |(_, factor)| factor),
-                        cohesion: tangential.bound.cohesion + cohesion.sum::<f64>(),
-                        ..tangential.bound
-                    },
-                    other: other.map_or(OtherTangent::Nothing, other_tangent),
-                })
-            })
-            .collect();
-        tangents.sort_by_key(|tangent| tangent.limit);
-        tangents
     }
 
     /// The condition of each limit.
@@ -214,12 +181,7 @@ impl Limits {
             (all.tangents).extend(tangents.map(|tangent| tangent.renamed(place)));
             let shifted =
                 |&(condition, factor): &(usize, f64)| (all.conditions + condition, factor);
-            let sharers = group.sharers.iter().map(|sharer| Sharer {
-                jump: first + sharer.jump,
-                condition: all.conditions + sharer.condition,
-                ..*sharer
-            });
-            all.sharers.extend(sharers);
+            (all.shared).append(&group.shared, first, all.conditions);
             let (own, rows) = group.tightest.split_at(m);
             all.rows.append(&group.rows, all.bounds.len());
             dependent.0.extend(&group.bounds[m..]);
@@ -249,7 +211,7 @@ impl Limits {
         let tightest = self.tightest.iter();
         let of_limit = tightest.map(|&(condition, factor)| factor * forces[condition]);
         let mut of_limits: Vec<f64> = of_limit.collect();
-        for sharer in &self.sharers {
+        for sharer in self.shared.iter() {
             of_limits[sharer.jump] += sharer.factor * forces[sharer.condition];
         }
         of_limits
@@ -259,7 +221,7 @@ impl Limits {
     pub fn forces(&self, of_limits: &[f64]) -> Vec<f64> {
         let mut forces = vec![0.0; self.conditions];
         let mut left = of_limits.to_vec();
-        for sharer in &self.sharers {
+        for sharer in self.shared.iter() {
             let force = sharer.part * of_limits[sharer.jump];
             forces[sharer.condition] = force;
             left[sharer.jump] -= sharer.factor * force;
@@ -286,13 +248,21 @@ impl Limits {
         for (&(condition, _), is_closed) in self.tightest.iter().zip(limits) {
             closed[condition] = is_closed;
         }
-        for sharer in &self.sharers {
+        for sharer in self.shared.iter() {
             closed[sharer.condition] = closed[self.tightest[sharer.jump].0];
         }
         for prescribed in &self.prescribed_slips {
             closed[prescribed.condition] = closed[prescribed.normal] && prescribed.slip == 0.0;
         }
         closed
+    }
+
+    /// Number of contact points whose limits are closed, each of those that share a jump counted.
+    pub fn closed_points(&self, is_closed: impl Fn(usize) -> bool) -> usize {
+        let of_limits = (0..self.bounds.len()).filter(|&i| !self.is_tangential(i) && is_closed(i));
+        let jumps = self.shared.iter().map(|sharer| sharer.jump);
+        let of_sharers = jumps.filter(|&i| !self.is_tangential(i) && is_closed(i));
+        of_limits.count() + of_sharers.count()
     }
 
     /// The states of the limits from those of all conditions.
@@ -306,7 +276,7 @@ impl Limits {
             }
         };
         let mut states: Vec<LimitState> = self.tightest.iter().map(of_condition).collect();
-        for sharer in &self.sharers {
+        for sharer in self.shared.iter() {
             states[sharer.jump].force += sharer.factor * conditions[sharer.condition].force;
         }
         states
@@ -325,21 +295,25 @@ impl Limits {
             },
             other => other,
         };
-        self.tightest.iter().map(of_condition).collect()
+        let mut fixed: Vec<FixedStatus> = self.tightest.iter().map(of_condition).collect();
+        for sharer in self.shared.iter() {
+            if let Some([_, turning]) = conditions[sharer.condition].slip() {
+                fixed[sharer.jump].add_turning(turning);
+            }
+        }
+        fixed
     }
 
     /// Makes the `gaps` of conditions that share a jump equal, which round-off keeps apart.
     pub fn equalize(&self, gaps: &mut [f64]) {
-        for sharer in &self.sharers {
-            gaps[sharer.condition] += sharer.raise;
-        }
+        self.shared.equalize(gaps);
     }
 
     /// Replaces the `jumps` of conditions that share a jump's force by their mean, weighted by the parts of the force: as
     /// force and jump are conjugate, the work of the forces stays.
     pub fn share_jumps(&self, jumps: &mut [f64]) {
         let mut means: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-        for sharer in &self.sharers {
+        for sharer in self.shared.iter() {
             let (rest, mean) = means.entry(sharer.jump).or_insert((1.0, 0.0));
             *rest -= sharer.factor * sharer.part;
             *mean += sharer.part * jumps[sharer.condition];
@@ -349,7 +323,7 @@ impl Limits {
             *mean += *rest / factor * jumps[condition];
             jumps[condition] = factor * *mean;
         }
-        for sharer in &self.sharers {
+        for sharer in self.shared.iter() {
             let (_, mean) = means[&sharer.jump];
             jumps[sharer.condition] = sharer.factor * mean;
         }
@@ -366,18 +340,6 @@ fn tied(of: &[JumpOf], gaps: &[f64]) -> Vec<(usize, f64)> {
     }
     tied.sort_by_key(|&(number, _)| number);
     tied.into_iter().map(|(_, of_jump)| of_jump).collect()
-}
-
-/// Tangential conditions, each with the number of its point's other tangential condition.
-fn with_other(
-    friction: &[TangentialCondition],
-) -> impl Iterator<Item = (&TangentialCondition, Option<usize>)> {
-    friction.iter().enumerate().map(|(k, own)| {
-        let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
-        let mut others = neighbours.filter_map(|k| friction.get(k));
-        let other = others.find(|other| other.normal == own.normal);
-        (own, other.map(|other| other.number))
-    })
 }
 
 #[cfg(test)]

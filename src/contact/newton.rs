@@ -95,7 +95,7 @@ pub struct TotalResidual {
     pub forces: f64,
     /// The largest residual relative to the scales of forces.
     pub largest: f64,
-    /// Number of closed normal jumps.
+    /// Number of closed contact points; of closed normal jumps where each is one point's.
     pub active: usize,
     /// Number of wrong statuses.
     pub wrong: usize,

@@ -59,7 +59,7 @@ pub struct PairResponse {
     pub contact_residual_scale: Vec<f64>,
     /// The status of every jump, then of every linearly dependent constraint.
     pub status: Vec<Status>,
-    /// Number of normal jumps and linearly dependent constraints that are closed.
+    /// Number of closed contact points.
     pub active: usize,
     /// Limits whose status changed from the expected one, or else from that of the last evaluation.
     pub changed: usize,
@@ -175,9 +175,7 @@ impl ContactPair {
             jumps: contact.jumps.clone(),
             contact_residual,
             contact_residual_scale,
-            active: (0..status.len())
-                .filter(|&i| status[i].is_closed() && !self.limits.is_tangential(i))
-                .count(),
+            active: (self.limits).closed_points(|i| status[i].is_closed()),
             changed: (before.iter().zip(&status)).filter(|(a, b)| a != b).count(),
             steps: contact.steps,
             fell_back: contact.fell_back,

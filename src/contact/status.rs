@@ -103,6 +103,13 @@ impl FixedStatus {
         }
     }
 
+    /// Adds the κ of a condition that shares its jump (N/m).
+    pub fn add_turning(&mut self, of_sharer: f64) {
+        if let Self::Slips { turning, .. } | Self::Turns { turning, .. } = self {
+            *turning += of_sharer;
+        }
+    }
+
     /// Ratio of the force to the bound of its point, and κ (N/m), if it slips.
     pub fn slip(&self) -> Option<[f64; 2]> {
         match *self {

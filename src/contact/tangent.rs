@@ -103,3 +103,15 @@ impl TangentialLimit {
         }
     }
 }
+
+/// Tangential conditions, each with the number of its point's other tangential condition.
+pub fn with_other(
+    friction: &[TangentialCondition],
+) -> impl Iterator<Item = (&TangentialCondition, Option<usize>)> {
+    friction.iter().enumerate().map(|(k, own)| {
+        let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+        let mut others = neighbours.filter_map(|k| friction.get(k));
+        let other = others.find(|other| other.normal == own.normal);
+        (own, other.map(|other| other.number))
+    })
+}

@@ -258,6 +258,13 @@ impl Resultants {
         }
     }
 
+    /// Number of closed contact points.
+    pub fn closed_points(&self, catalog: &Catalog) -> usize {
+        let contacts = catalog.contacts.iter().zip(&self.contacts);
+        let unilateral = contacts.filter(|(of, _)| of.kind == ContactKind::Unilateral);
+        unilateral.map(|(_, contact)| contact.closed).sum()
+    }
+
     /// Adds the quantities of a load step.
     pub fn put(&mut self, quantities: Quantities) {
         self.quantities = quantities.values;

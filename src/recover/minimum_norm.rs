@@ -45,8 +45,6 @@ pub struct MinimumNorm {
     pub has_released_modes: bool,
     /// True if loads do work along motions without resistance in the solution; on the root.
     pub is_driven: bool,
-    /// Number of conditions that opened through it; on the root.
-    pub opened: usize,
     /// Warnings to the user; on the root.
     pub warnings: Vec<String>,
 }
@@ -61,9 +59,6 @@ impl MinimumNorm {
         for warning in &mut self.warnings {
             warning.push_str("; ");
             warning.push_str(end);
-        }
-        if !taken {
-            self.opened = 0;
         }
     }
 }
@@ -103,7 +98,6 @@ pub fn take_minimum_norm(
         correct_once(&of_released, &mut nearer);
         let moved;
         (released, moved) = move_to_least_displacement(fixed, analysis, &mut nearer);
-        minimum_norm.opened += moved.opened;
         minimum_norm.is_driven |= moved.is_driven;
     }
     let is_driven = minimum_norm.is_driven;
@@ -163,7 +157,7 @@ fn move_to_least_displacement(
         ..MinimumNorm::default()
     };
     let largest = before.max(largest_displacement(fixed, solution));
-    minimum_norm.opened = open_all(fixed, solution, OPEN_GAP * largest);
+    open_all(fixed, solution, OPEN_GAP * largest);
     solution.share(&fixed.context, &fixed.step.loads);
     minimum_norm.warnings = released.map_or_else(Vec::new, |released| released.warnings);
     (list, minimum_norm)
@@ -210,31 +204,16 @@ fn largest_displacement(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution)
     largest
 }
 
-/// Opens the points of all groups that have a gap of more than `closed_up_to` (m); returns their number, on the root.
-/// Collective.
-fn open_all(
-    fixed: &FixedActiveSet<'_>,
-    solution: &mut DiscreteSolution,
-    closed_up_to: f64,
-) -> usize {
-    let mut all = 0;
-    fixed.context.comm.gather(
-        &fixed.context.plan.group_owners(),
-        |g| {
-            let of_group = solution.groups.get_mut(&g);
-            of_group.map_or(0, |of_group| {
-                open(&fixed.context.groups[&g], of_group, closed_up_to)
-            })
-        },
-        |_, opened| all += opened,
-    );
-    all
+/// Opens the points of all groups of this rank that have a gap of more than `closed_up_to` (m).
+fn open_all(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution, closed_up_to: f64) {
+    for (g, of_group) in &mut solution.groups {
+        open(&fixed.context.groups[g], of_group, closed_up_to);
+    }
 }
 
-/// Opens the points of a group that have a gap, and counts them. A point without force that has left its position of
-/// stick no longer sticks, and an open contact has no friction from pressure.
-fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -> usize {
-    let mut opened = 0;
+/// Opens the points of a group that have a gap. A point without force that has left its position of stick no longer
+/// sticks, and an open contact has no friction from pressure.
+fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) {
     let may_open = |(_, condition): &(usize, Condition)| !condition.is_tied;
     for (j, Condition { is_tangential, .. }) in group.conditions().enumerate().filter(may_open) {
         let gap = solution.gaps[j];
@@ -242,11 +221,9 @@ fn open(group: &ContactGroup, solution: &mut GroupSolution, closed_up_to: f64) -
         if solution.closed[j] && gap > closed_up_to {
             solution.closed[j] = false;
             solution.forces[j] = 0.0;
-            opened += usize::from(!is_tangential);
         }
     }
     solution.release_opened(group);
-    opened
 }
 
 /// The released modes of a `solution`, on the root. Collective.

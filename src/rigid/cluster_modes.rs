@@ -1,8 +1,11 @@
 //! Contact constraints in the rigid-body motions of the bodies that lie wholly in a cluster.
 
+use std::collections::BTreeMap;
+
+use contact_dd_partition::disjoint_sets::DisjointSets;
 use contact_dd_partition::id::{ClusterId, GroupId, OnPairs};
 use faer::Mat;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::kinematics::Kinematics;
 use super::many_bodies::SparseRow;
@@ -38,39 +41,27 @@ impl Scene {
         for (at, &column) in columns.iter().enumerate() {
             place[column] = Some(at);
         }
-        let against = |rows: &mut dyn Iterator<Item = RigidRow>| {
-            let sparse: Vec<SparseRow> = rows.map(|row| kinematics.sparse_row(&row)).collect();
-            let mut b = DMatrix::zeros(sparse.len(), columns.len());
-            for (j, row) in sparse.iter().enumerate() {
-                // The jump of a motion along a contact's surface is round-off.
-                let largest = row
-                    .iter()
-                    .fold(0.0, |m: f64, (_, entry)| m.max(entry.abs()));
-                for &(i, entry) in row {
-                    if let Some(at) = place[i]
-                        && entry.abs() > ROUND_OFF * largest
-                    {
-                        b[(j, at)] = entry;
-                    }
-                }
-            }
-            b
+        let along = |row: &RigidRow| -> SparseRow {
+            let sparse = kinematics.sparse_row(row);
+            // The jump of a motion along a contact's surface is round-off.
+            let largest = sparse.iter().fold(0.0, |m: f64, (_, x)| m.max(x.abs()));
+            let significant = sparse.iter().filter(|(_, x)| x.abs() > ROUND_OFF * largest);
+            let own = significant.filter_map(|&(i, x)| Some((place[i]?, x)));
+            own.collect()
         };
-        let mut rows = against(&mut conditions.iter().map(|&j| self.rows[j].clone()));
-        let mut load = kinematics.load(&self.bodies).select_rows(&columns);
+        let mut rows = DMatrix::zeros(conditions.len(), columns.len());
+        for (j, &condition) in conditions.iter().enumerate() {
+            for (i, entry) in along(&self.rows[condition]) {
+                rows[(j, i)] = entry;
+            }
+        }
+        let load = kinematics.load(&self.bodies).select_rows(&columns);
         let pins = fixing_dofs.iter();
         let pins = pins.filter_map(|pin| self.fixing_row(pin, &own));
         // Ties restrict the motions as well.
         let ties = self.rows.iter().filter(|row| row.is_tied).cloned();
-        let pinned = against(&mut pins.chain(ties));
-        if pinned.iter().any(|&p| p != 0.0) {
-            let kept = null_space(&pinned);
-            (rows, load) = (rows * &kept, kept.transpose() * load);
-        }
-        RigidModes {
-            rows: Mat::from_fn(rows.nrows(), rows.ncols(), |i, k| rows[(i, k)]),
-            load: load.iter().copied().collect(),
-        }
+        let held: Vec<SparseRow> = pins.chain(ties).map(|row| along(&row)).collect();
+        within(&rows, &load, &held)
     }
 
     /// Displacement of a fixing dof of one of `own` bodies in the motions.
@@ -98,6 +89,70 @@ impl Scene {
         };
         groups.iter().flat_map(of_group).collect()
     }
+}
+
+/// The jumps `rows` in motions that are 0 along those `held`, and the `load` along these. Motions that nothing holds stay
+/// apart; those held together are combined into as few as have jumps: of a motion without any, round-off would be all that
+/// tells its load.
+fn within(rows: &DMatrix<f64>, load: &DVector<f64>, held: &[SparseRow]) -> RigidModes {
+    let n = rows.ncols();
+    let mut sets = DisjointSets::new(n);
+    for row in held {
+        for pair in row.windows(2) {
+            sets.unite(pair[0].0 as u32, pair[1].0 as u32);
+        }
+    }
+    let mut of_sets: BTreeMap<u32, (Vec<usize>, Vec<&SparseRow>)> = BTreeMap::new();
+    for i in 0..n {
+        of_sets.entry(sets.find(i as u32)).or_default().0.push(i);
+    }
+    for row in held {
+        if let Some(&(first, _)) = row.first() {
+            let of_set = of_sets.entry(sets.find(first as u32)).or_default();
+            of_set.1.push(row);
+        }
+    }
+    let mut motions: Vec<(Vec<f64>, f64)> = Vec::new();
+    for (columns, held) in of_sets.values() {
+        let (own, own_load) = (rows.select_columns(columns), load.select_rows(columns));
+        if held.is_empty() {
+            let kept = own.column_iter().zip(own_load.iter());
+            motions.extend(kept.map(|(jumps, &load)| (jumps.iter().copied().collect(), load)));
+            continue;
+        }
+        let mut b = DMatrix::zeros(held.len(), columns.len());
+        for (j, (i, entry)) in held
+            .iter()
+            .enumerate()
+            .flat_map(|(j, row)| row.iter().map(move |of| (j, of)))
+        {
+            if let Ok(at) = columns.binary_search(i) {
+                b[(j, at)] = *entry;
+            }
+        }
+        let kept = null_space(&b);
+        if kept.is_empty() {
+            continue;
+        }
+        let jumps = jumps_of(&own, &kept);
+        let moving = &kept * null_space(&null_space(&jumps).transpose());
+        let (jumps, load) = (jumps_of(&own, &moving), moving.transpose() * own_load);
+        let of_set = jumps.column_iter().zip(load.iter());
+        motions.extend(of_set.map(|(jumps, &load)| (jumps.iter().copied().collect(), load)));
+    }
+    RigidModes {
+        rows: Mat::from_fn(rows.nrows(), motions.len(), |i, k| motions[k].0[i]),
+        load: motions.iter().map(|(_, load)| *load).collect(),
+    }
+}
+
+/// The jumps in `motions`, without the round-off of those that cancel.
+fn jumps_of(rows: &DMatrix<f64>, motions: &DMatrix<f64>) -> DMatrix<f64> {
+    let (jumps, sizes) = (rows * motions, rows.abs() * motions.abs());
+    jumps.zip_map(&sizes, |jump, size| match jump.abs() > ROUND_OFF * size {
+        true => jump,
+        false => 0.0,
+    })
 }
 
 /// Constraints of every cluster in contact of this rank in the motions of the bodies wholly in it that leave the

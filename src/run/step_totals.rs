@@ -43,7 +43,7 @@ impl StepTotals {
             &Vec::from_iter(energy.warning()),
         ];
         Self {
-            active: outcome.totals.active - solution.minimum_norm.opened,
+            active: resultants.closed_points(catalog),
             certificate: solution.certificate,
             condition: solution.condition,
             resultants,

@@ -24,7 +24,7 @@ struct Faults {
     wrong: OnGroups<Vec<usize>>,
     /// Number of wrong statuses on all ranks.
     count: usize,
-    /// Number of closed conditions on all ranks.
+    /// Number of closed contact points on all ranks.
     active: usize,
     /// The largest tension or penetration, relative to the largest force or jump.
     largest: f64,
@@ -212,7 +212,7 @@ impl Faults {
         let (comm, plan) = (problem.context.comm, problem.context.plan);
         let scales = scales(comm, solution, &problem.bounds).map(|x| x.max(f64::MIN_POSITIVE));
         let of_group = |g: GroupId| {
-            let (mut wrong, mut largest, mut active) = (Vec::new(), 0.0_f64, 0);
+            let (mut wrong, mut largest) = (Vec::new(), 0.0_f64);
             let sticks = &problem.laws[&g].is_tangential;
             let rows = problem.laws[&g].rows;
             let equalities = ActiveEqualities::new(rows, &open[&g]);
@@ -225,12 +225,12 @@ impl Faults {
                 if is_open && excess > least {
                     excess /= rows.amplified(j, &open[&g], &equalities).max(1.0);
                 }
-                active += usize::from(!is_open);
                 largest = largest.max(excess);
                 if excess > least {
                     wrong.push(j);
                 }
             }
+            let active = problem.limits[&g].closed_points(|j| !open[&g][j]);
             (wrong, largest, active)
         };
         let (mut faults, mut wrong) = (Self::default(), BTreeMap::new());

@@ -177,7 +177,12 @@ impl ContactOperator for TreeOperator<'_, '_, '_> {
         let mut total = TotalResidual::default();
         comm.gather(
             &plan.group_owners(),
-            |g| residuals[&g].of_group(),
+            |g| {
+                let closed = &residuals[&g].statuses.closed;
+                let active = self.problem.limits[&g].closed_points(|i| closed[i]);
+                let of_group = residuals[&g].of_group();
+                TotalResidual { active, ..of_group }
+            },
             |_, of_group| total.include(of_group),
         );
         comm.broadcast(&mut total);

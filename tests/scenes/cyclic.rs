@@ -219,6 +219,68 @@ value = ['-4e6*y', '4e6*x', '2e6*z']
     is_part((&sector, &solve(&sector, 3)), (&whole, &expected), 1e-10);
 }
 
+/// Nodes on both sides of a cut slip in rotated directions, and share the force and the strength of one node of the ring.
+#[test]
+fn friction_on_a_flat_side_is_that_of_the_whole_ring() {
+    let text = "
+materials.steel = {young = 20e9, poisson = 0.3}
+bodies.disc.material = 'steel'
+[[pressure]]
+on = 'disc z1'
+value = 1e6
+[[traction]]
+on = 'disc z1'
+value = ['-@twist@*y', '@twist@*x', 0]
+[[contact]]
+name = 'rests'
+";
+    let (wall, below) = (
+        "sides = ['disc z0']\nobstacle = {point = [0, 0, 0], normal = [0, 0, 1]}\n",
+        "sides = ['disc z0', 'low z1']\n[[displacement]]\non = 'low z0'\nx = 0\ny = 0\nz = 0\n[bodies.low]\nmaterial = 'steel'\n",
+    );
+    let cut = |sides: [&str; 2]| {
+        format!(
+            "[[cyclic]]\nname = 'cut'\nsides = [{}, {}]\npoint = [0.0, 0.0, 0.0]\naxis = [0.0, 0.0, 1.0]\nsectors = 5\n",
+            sides[0], sides[1]
+        )
+    };
+    let ends = [
+        cut(["'disc y0'", "'disc y1'"]),
+        cut(["['disc y0', 'low y0']", "['disc y1', 'low y1']"]),
+    ];
+    let kind = ElementKind::Hexahedron8;
+    for (law, twist) in [
+        ("friction = 0.3", "2.55e5"),
+        ("friction = 0.1\ncohesion = 3e5", "3.3e5"),
+        ("tresca = 4e5", "3.3e5"),
+    ] {
+        for (sides, cut) in [wall, below].into_iter().zip(&ends) {
+            let sides = sides.replacen('\n', &format!("\n{law}\n"), 1);
+            let text = text.replace("@twist@", twist) + &sides;
+            let mesh = |sectors: usize| match sides.contains("low") {
+                true => joined(disc(kind, sectors), named_low(disc(kind, sectors))),
+                false => disc(kind, sectors),
+            };
+            let whole = model(&text, mesh(SECTORS));
+            let sector = model(&format!("{text}{cut}"), mesh(1));
+            let (found, expected) = (solve(&sector, 2), solve(&whole, 5));
+            is_part((&sector, &found), (&whole, &expected), 1e-8);
+            let slipping = expected.slipping();
+            assert!(slipping > 0 && slipping < expected.contacts["rests"].len());
+        }
+    }
+}
+
+/// A disc below the plane z = 0 with the name `low`.
+fn named_low(disc: Mesh) -> Mesh {
+    let mut low = moved(disc, |[x, y, z]| [x, y, z - 0.4]);
+    let groups = std::mem::take(&mut low.groups).into_iter();
+    low.groups = groups
+        .map(|(name, of)| (name.replace("disc", "low"), of))
+        .collect();
+    low
+}
+
 /// A full disc includes its axis, whose nodes stay there.
 #[test]
 fn nodes_on_the_axis_stay_on_it() {

@@ -270,6 +270,34 @@ fn derivatives_are_differences_of_runs_with_friction() {
     }
 }
 
+/// The upper block in two, tied, whose points at the seam share the contact force.
+#[test]
+fn derivatives_are_differences_of_runs_across_a_seam() {
+    let mut mesh = Blocks::new()
+        .rectangle("low", [0.0, 2.0], [0.0, 1.0], [12, 6])
+        .rectangle("high", [0.4, 1.15], [1.0, 2.0], [5, 6])
+        .rectangle("more", [1.15, 1.6], [1.0, 2.0], [3, 6])
+        .mesh;
+    for side in ["bottom", "right", "top"] {
+        let other = mesh.groups.remove(&format!("more {side}")).unwrap();
+        let own = mesh.groups.entry(format!("high {side}")).or_default();
+        match side {
+            "right" => {
+                let seam = std::mem::replace(own, other);
+                mesh.groups.insert("seam".into(), seam);
+            }
+            _ => own.members.extend(other.members),
+        }
+    }
+    let steel = "bodies.high.material = 'steel'";
+    let scene = plane().replace(steel, &format!("{steel}\nbodies.more.material = 'steel'"))
+        + "[[tie]]\nname = 'seam'\nsides = ['seam', 'more left']\n";
+    for law in ["", COULOMB] {
+        check_differences(&scene, law, &sort("quad4").of(&mesh), &[]);
+    }
+    check_differences(&scene, "", &mesh, &["--interface", "iterative"]);
+}
+
 #[test]
 fn derivatives_are_differences_of_runs_around_an_axis() {
     let scene = plane()
@@ -324,15 +352,45 @@ contact = 'joint'
 
 #[test]
 fn derivatives_are_differences_where_no_point_sticks() {
+    check_slipping(SLIPPING, &in_space(Hexahedron8, 1));
+}
+
+/// The upper block in two, tied: forces of both points at the seam turn with their slip.
+#[test]
+fn derivatives_are_differences_where_no_point_sticks_at_a_seam() {
+    let block = |name: &str, cells: usize, [low, high]: [[f64; 3]; 2]| {
+        solid(name, Hexahedron8, [cells, 2, 2], between(low, high))
+    };
+    let high = block("high", 2, [[0.4, 0.1, 1.0], [1.2, 0.9, 2.0]]);
+    let more = block("more", 1, [[1.2, 0.1, 1.0], [1.6, 0.9, 2.0]]);
+    let low = solid(
+        "low",
+        Hexahedron8,
+        [4, 2, 2],
+        between([0.0; 3], [2.0, 1.0, 1.0]),
+    );
+    let mut mesh = joined(joined(low, high), more);
+    for side in ["z0", "z1"] {
+        let other = mesh.groups.remove(&format!("more {side}")).unwrap();
+        let own = mesh.groups.get_mut(&format!("high {side}")).unwrap();
+        own.members.extend(other.members);
+    }
+    let steel = "bodies.high.material = 'steel'";
+    let scene = SLIPPING.replace(steel, &format!("{steel}\nbodies.more.material = 'steel'"))
+        + "[[tie]]\nname = 'seam'\nsides = ['high x1', 'more x0']\n";
+    check_slipping(&scene, &mesh);
+}
+
+/// Compares the derivatives with central differences where all points slip.
+fn check_slipping(text: &str, mesh: &Mesh) {
     let knobs = [
         &Knob("@press@", 1.0, 1e-5, "pressure[1] on 'high z1'"),
         &Knob("@rock@", 2e10, 2e5, "materials.rock.young"),
         &Knob("@steel@", 8e10, 8e5, "materials.steel.young"),
         &Knob("@friction@", 0.02, 1e-6, "contact 'joint': friction"),
     ];
-    let mesh = in_space(Hexahedron8, 1);
     let solved = |changed: Option<(usize, f64)>| {
-        let model = varied(SLIPPING, "", &mesh, &knobs, changed);
+        let model = varied(text, "", mesh, &knobs, changed);
         Case::of(&model, 6).solve(&[]).report
     };
     let report = solved(None);

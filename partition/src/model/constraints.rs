@@ -9,6 +9,7 @@ use super::equations;
 use super::held_nodes::HeldNodes;
 use super::loaded_bodies::LoadedBodies;
 use super::parts::Contact;
+use super::seams;
 use super::touching::Declared;
 use crate::error::InputError;
 use crate::scene::Scene;
@@ -49,6 +50,9 @@ impl<'a> Constraints<'a> {
         let mut all = Self::default();
         all.make(&sides, declared, warnings)?;
         activation::check(scene, bodies, &all.contacts)?;
+        let absent = all.absent(scene).into_iter().flatten().collect();
+        seams::join(&mut all.contacts, &bodies.mesh, &absent);
+        warnings.extend(seams::hanging(&all.contacts, &bodies.mesh));
         all.tips = CrackTips::find(
             (&bodies.mesh, topology),
             plane,
@@ -58,7 +62,7 @@ impl<'a> Constraints<'a> {
         all.found.extend(all.tips.remark());
         all.equations = equations::equations(scene, (&bodies.mesh, couplings), all.contacts.len())?;
         let count = all.count();
-        let of_sectors = cyclic::cyclic(scene, bodies, &mut all.contacts, count)?;
+        let of_sectors = cyclic::cyclic(scene, bodies, &mut all.contacts, count, warnings)?;
         all.equations.extend(of_sectors);
         Ok(all)
     }

@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 
 use super::bodies::Bodies;
+use super::seams::press_along;
 use super::{Contact, groups};
 use crate::contact_point::{ContactPoint, Law, LocalFrame};
 use crate::element::geometry::{advance, cross, difference, dot, length};
@@ -32,6 +33,7 @@ pub(super) fn cyclic(
     bodies: &Bodies,
     contacts: &mut [Contact],
     first: usize,
+    warnings: &mut Vec<String>,
 ) -> Result<Vec<Contact>, InputError> {
     let mesh = &bodies.mesh;
     let mut all = Vec::new();
@@ -41,6 +43,10 @@ pub(super) fn cyclic(
         let sides = [a?, b?];
         let (turn, pairs) = partners((bodies, cyclic), &sides, &what)?;
         turn_normals(contacts, (mesh, &turn), &pairs, &what)?;
+        if mesh.dim == 3 {
+            turn_tangents(contacts, (mesh, &turn), &pairs);
+        }
+        warnings.extend(uneven(contacts, mesh, &pairs, &what));
         let mut points = Vec::new();
         for [a, b] in pairs {
             for axis in turn.held_axes(a == b, mesh.dim) {
@@ -75,13 +81,7 @@ fn turn_normals(
     what: &str,
 ) -> Result<(), InputError> {
     for contact in contacts {
-        let unilateral = (contact.points.iter().enumerate()).filter(|(_, p)| !p.law.is_tied());
-        let places: HashMap<i64, usize> = unilateral.map(|(i, point)| (point.tag(), i)).collect();
-        for pair in pairs {
-            let at = pair.map(|node| places.get(&mesh.node_tags[node as usize]));
-            let [Some(&i), Some(&j)] = at else {
-                continue;
-            };
+        for (pair, [i, j]) in partner_points(contact, mesh, pairs) {
             let (a, b) = (&contact.points[i], &contact.points[j]);
             let turned = turn.by(turn.angle, a.normal());
             if length(difference(turned, b.normal())) <= SAME {
@@ -103,14 +103,56 @@ fn turn_normals(
     Ok(())
 }
 
-/// Gives the point of two nodes another normal, and measures its gap along it unless the scene gives the gap.
-fn press_along(point: &mut ContactPoint<u32>, normal: [f64; 3], mesh: &Mesh) {
-    let place = |at: usize| mesh.points[point.entries[at].0 as usize];
-    let offset = difference(place(1), place(0));
-    if (point.gap - dot(offset, point.normal())).abs() <= SAME * length(offset) {
-        point.gap = dot(offset, normal);
+/// Gives contact points at the second side of a sector the tangents of their partners, rotated: both have one slip then,
+/// and share its force.
+fn turn_tangents(contacts: &mut [Contact], (mesh, turn): (&Mesh, &Turn), pairs: &[[u32; 2]]) {
+    for contact in contacts {
+        for (_, [i, j]) in partner_points(contact, mesh, pairs) {
+            if i == j {
+                continue;
+            }
+            let first = turn.by(turn.angle, contact.points[i].frame.tangents[0]);
+            let normal = contact.points[j].normal();
+            let first = advance(first, -dot(first, normal), normal);
+            let first = first.map(|c| c / length(first));
+            contact.points[j].frame.tangents = [first, cross(normal, first)];
+        }
     }
-    point.frame = LocalFrame::new(normal);
+}
+
+/// A warning of every contact of whose nodes at the ends of a sector each has a mean of its own over the other side.
+fn uneven<'a>(
+    contacts: &'a [Contact],
+    mesh: &'a Mesh,
+    pairs: &'a [[u32; 2]],
+    what: &'a str,
+) -> impl Iterator<Item = String> + 'a {
+    contacts.iter().filter_map(move |contact| {
+        let mut both = partner_points(contact, mesh, pairs).into_iter();
+        let is_mean = |at: usize| contact.points[at].entries.len() > 2;
+        let (pair, _) = both.find(|(_, [i, j])| i != j && (is_mean(*i) || is_mean(*j)))?;
+        Some(format!(
+            "{what}: the nodes of contact '{}' don't match at its ends, as at node {}, so that the pressures of single nodes \
+             there are uneven, and with cohesion or a bound of its own friction is too weak; expected nodes that match",
+            contact.name, mesh.node_tags[pair[0] as usize]
+        ))
+    })
+}
+
+/// The pairs of nodes that both have a point in a contact, and its indices.
+fn partner_points(
+    contact: &Contact,
+    mesh: &Mesh,
+    pairs: &[[u32; 2]],
+) -> Vec<([u32; 2], [usize; 2])> {
+    let unilateral = (contact.points.iter().enumerate()).filter(|(_, p)| !p.law.is_tied());
+    let places: HashMap<i64, usize> = unilateral.map(|(i, point)| (point.tag(), i)).collect();
+    let of_pair = |pair: &[u32; 2]| {
+        let at = pair.map(|node| places.get(&mesh.node_tags[node as usize]).copied());
+        let [Some(i), Some(j)] = at else { return None };
+        Some((*pair, [i, j]))
+    };
+    pairs.iter().filter_map(of_pair).collect()
 }
 
 /// The equation of a pair along an axis of b, which is `back` on a; for a node that is its own partner, a support along

@@ -218,6 +218,9 @@ pub const FIELDS: &[Field] = &[
         "law of the point: 0 without friction; 1 Tresca friction, bounded by `shear_bound`, closed or open; 2 Coulomb \
          friction, bounded by `friction` times the normal force and by `shear_bound` as cohesion, where it is closed; 3 \
          a tie, whose jump is 0 along the normal and the tangents, whatever the gap, and whose forces have no bound"),
+    optional("/contact/tangent", "R, d", UnitVectors,
+        "t₁, one of the unit vectors along which jumps and friction are measured, perpendicular to the normal n; in space the \
+         other is n × t₁. Without it t₂ is the part of z perpendicular to n, of x where n is within 26° of z, and t₁ is t₂ × n"),
     optional("/contact/entry_axis", "E, d", Numbers,
         "of an equation, a point of law 3 in which every entry has a direction of its own, a unit vector: w times the displacement \
          along it, summed over the entries, is `gap`; zeros at the entries of other points"),

@@ -14,7 +14,7 @@ use super::strings::{type_of, write_strings};
 use super::{
     FORMAT, InitialStress, Problem, Subdomain, SubdomainNode, VERSION, digest, tips, vtkhdf,
 };
-use crate::contact_point::{ContactPoint, Law};
+use crate::contact_point::{ContactPoint, Law, LocalFrame};
 use crate::destination::Destination;
 use crate::error::OutputError;
 use crate::model::PlaneState;
@@ -263,6 +263,12 @@ impl Problem {
             };
             let all: Vec<[f64; 3]> = points().flat_map(axes).collect();
             datasets.vectors("/contact/entry_axis", all.iter())?;
+        }
+        let is_turned = |p: &ContactPoint<SubdomainNode>| {
+            p.law.has_friction() && p.frame != LocalFrame::new(p.normal())
+        };
+        if points().any(is_turned) {
+            datasets.vectors("/contact/tangent", points().map(|p| &p.frame.tangents[0]))?;
         }
         if points().any(ContactPoint::is_compliant) {
             datasets.put("/contact/stiffness", points().flat_map(|p| p.stiffness))?;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::contact::tangent::ForceBound;
 
 fn unknown(number: usize, factor: f64) -> JumpOf {
     JumpOf::Unknown { number, factor }
@@ -92,4 +93,56 @@ fn conditions_with_one_bound_share_the_force_by_their_areas() {
     let mut jumps = [4.0, 0.0, 7.0, 0.0, 8.0, 9.0];
     limits.share_jumps(&mut jumps);
     assert_eq!(jumps, [1.0, 1.0, 7.0, 6.0, 6.0, 9.0]);
+}
+
+/// Nodes with different coefficients, one without friction, beside one with a smaller gap or none.
+#[test]
+fn conditions_that_share_a_jump_slip_under_the_strength_of_all() {
+    let of = [
+        unknown(0, 1.0),
+        unknown(0, 1.0),
+        unknown(0, 1.0),
+        unknown(1, 1.0),
+        unknown(1, 1.0),
+    ];
+    let friction = |[first, second]: [f64; 2]| {
+        let tangential = |(number, normal, coefficient): (usize, usize, f64)| TangentialCondition {
+            number,
+            normal,
+            bound: ForceBound {
+                coefficient,
+                cohesion: 0.0,
+                only_closed: true,
+            },
+        };
+        [(3, 1, first), (4, 2, second)].map(tangential)
+    };
+    let areas = [2.0, 1.0, 5.0, 1.0, 5.0];
+    let of_gaps = |gaps: &[f64; 5], friction: &[TangentialCondition]| {
+        Limits::new(2, conditions(&of, gaps, &areas, friction))
+    };
+    let limits = of_gaps(&[0.5, 0.5, 0.5, 0.0, 0.0], &friction([0.8, 0.32]));
+    assert_eq!(limits.tangents.len(), 1);
+    assert_eq!(limits.tangents[0].normal, Some(0));
+    // 1/8 of the pressing force under 0.8, 5/8 under 0.32.
+    assert!((limits.tangents[0].bound.coefficient - 0.3).abs() < 1e-15);
+    let forces = limits.forces(&[8.0, 2.4]);
+    for (force, expected) in forces.iter().zip([2.0, 1.0, 5.0, 0.8, 1.6]) {
+        assert!((force - expected).abs() < 1e-14, "{forces:?}");
+    }
+    // The first alone is closed.
+    let limits = of_gaps(&[0.4, 0.5, 0.5, 0.0, 0.0], &friction([0.8, 0.32]));
+    assert_eq!(limits.bounds[0], 0.4);
+    assert_eq!(limits.forces(&[8.0, 0.0])[..3], [8.0, 0.0, 0.0]);
+    assert_eq!(limits.closed_points(|i| i == 0), 1);
+    // The others are, together.
+    let limits = of_gaps(&[0.6, 0.5, 0.5, 0.0, 0.0], &friction([0.8, 0.8]));
+    assert_eq!(limits.bounds[0], 0.5);
+    let forces = limits.forces(&[6.0, 0.0]);
+    assert_eq!(forces[0], 0.0);
+    assert!(
+        (forces[1] - 1.0).abs() + (forces[2] - 5.0).abs() < 1e-14,
+        "{forces:?}"
+    );
+    assert_eq!(limits.closed_points(|i| i == 0), 2);
 }

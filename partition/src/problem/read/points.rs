@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use super::contents::Contents;
 use super::entries::Entries;
-use crate::contact_point::{ContactPoint, Law};
-use crate::element::geometry::{length, padded};
+use crate::contact_point::{ContactPoint, Law, LocalFrame};
+use crate::element::geometry::{cross, dot, length, padded};
 use crate::error::InputError;
 use crate::problem::law::LawRow;
 use crate::problem::{PointNode, SubdomainNode, SubdomainSummary};
@@ -29,6 +29,7 @@ pub(super) fn read(
     let position = numbers("/contact/position")?.vectors(rows.clone());
     let force_point = numbers("/contact/force_point")?.vectors(rows.clone());
     let normal = numbers("/contact/normal")?.vectors(rows.clone());
+    let frames = read_frames(contents, &normal)?;
     let tag_a = integers("/contact/node_a")?;
     let tag_b = integers("/contact/node_b")?;
     let absolute = integers("/contact/absolute")?;
@@ -52,11 +53,31 @@ pub(super) fn read(
         motion: std::mem::take(&mut motion[i]),
         preload: std::mem::take(&mut preload[i]),
         axes: std::mem::take(&mut axes[i]),
+        frame: frames[i],
         ..ContactPoint::new(entries, normal[i], position[i], tag_a.all()[i])
     };
     let points: Vec<_> = entries.into_iter().enumerate().map(point).collect();
     let nodes = read_nodes(contents, &points)?;
     Ok((points, nodes))
+}
+
+/// The frame of every point with this normal; tangents follow from it by default.
+fn read_frames(contents: &Contents, normal: &[[f64; 3]]) -> Result<Vec<LocalFrame>, InputError> {
+    if !contents.has("/contact/tangent") {
+        return Ok(normal.iter().map(|&n| LocalFrame::new(n)).collect());
+    }
+    let all = contents.numbers("/contact/tangent", 0..normal.len())?;
+    let tangents = all.vectors(0..normal.len()).into_iter().zip(normal);
+    let frame = |(row, (first, &normal)): (usize, ([f64; 3], &[f64; 3]))| {
+        if dot(first, normal).abs() > UNIT {
+            return Err(all.error(row, "expected a vector perpendicular to the normal"));
+        }
+        Ok(LocalFrame {
+            normal,
+            tangents: [first, cross(normal, first)],
+        })
+    };
+    tangents.enumerate().map(frame).collect()
 }
 
 /// The law of every point; frictionless by default.
