@@ -169,7 +169,8 @@ fn move_nearer(
     (list, minimum_norm)
 }
 
-/// Zeroes the forces of conditions, by their number among those of all groups, which the root knows. Collective.
+/// Zeroes the forces of normal conditions, by their number among those of all groups, which the root knows, and with
+/// them the friction that they pressed for: left alone, it would break its law. Collective.
 fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut DiscreteSolution) {
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     let mut ranges: Numbered<GroupId, Range<usize>> = Numbered::default();
@@ -191,7 +192,7 @@ fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut Dis
         },
         |g, of_group| {
             if let Some(solution) = solution.groups.get_mut(&g) {
-                (of_group.into_iter()).for_each(|j| solution.forces[j] = 0.0);
+                solution.drop_forces(&fixed.context.groups[&g], &of_group);
             }
         },
     );

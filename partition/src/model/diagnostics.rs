@@ -1,6 +1,7 @@
 //! Warnings of probable mistakes in an otherwise valid scene.
 
 mod hinges;
+mod overlaps;
 mod strains;
 mod undeclared;
 
@@ -62,6 +63,7 @@ impl<'a> Diagnostics<'a> {
         let mut warnings = self.strains()?;
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
+        warnings.extend(self.overlaps());
         warnings.extend(self.hinges());
         Ok(warnings)
     }
