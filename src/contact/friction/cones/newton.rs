@@ -46,12 +46,20 @@ impl FrictionCones<'_> {
         let mut steps = at_once.steps;
         let near = self.after_interior_point(&mut steps);
         let keeps_bounds = |found: &Found| !self.misses_a_bound(found);
-        if !holds && near.is_none() && self.runs_away(&start, &state, &mut steps) {
-            // A path may lead to an equilibrium that a motion from the start passes by.
-            return match self.along_paths(problem, &mut steps, 1) {
-                Some(found) => (Found { steps, ..found }, true, false),
-                None => (Found { steps, ..at_once }, true, true),
-            };
+        if !holds && near.is_none() {
+            match self.as_viscosity_vanishes(&start, &state, &mut steps) {
+                Rest::Found(found) if keeps_bounds(&found) => {
+                    return (Found { steps, ..found }, true, false);
+                }
+                // A path may lead to an equilibrium that a motion from the start passes by.
+                Rest::Slides => {
+                    return match self.along_paths(problem, &mut steps, 1) {
+                        Some(found) => (Found { steps, ..found }, true, false),
+                        None => (Found { steps, ..at_once }, true, true),
+                    };
+                }
+                Rest::Found(_) | Rest::Unknown => {}
+            }
         }
         let found = match near.as_ref().is_some_and(keeps_bounds) {
             true => near,

@@ -3,7 +3,7 @@
 //!
 //! A load that friction can't hold moves its body the farther the less viscous the jumps are: the part of its work that
 //! contacts leave to the viscosity stays the same, however small that is. At the limit of friction this part vanishes
-//! with the viscosity, and below it the motion ends.
+//! with the viscosity, and beyond it the motion ends.
 
 use super::{Found, FrictionCones, Rest};
 use crate::contact::active_set::ContactProblem;
@@ -52,8 +52,11 @@ impl FrictionCones<'_> {
             let change = largest(&changes(&place, &found));
             if viscosity <= weakest && change > SLOWER * last {
                 sliding += 1;
-                if sliding >= PATIENCE && self.runs_away(&place, &state, steps) {
-                    return Rest::Slides;
+                if sliding >= PATIENCE
+                    && let end @ (Rest::Found(_) | Rest::Slides) =
+                        self.as_viscosity_vanishes(&place, &state, steps)
+                {
+                    return end;
                 }
             }
             let slows = change < last;
@@ -72,9 +75,15 @@ impl FrictionCones<'_> {
         Rest::Unknown
     }
 
-    /// True if a body slides without end: as the viscosity vanishes, motions become longer and longer, bodies resist
-    /// less and less, and a constant part of the loads' work is left to the viscosity.
-    pub(super) fn runs_away(&self, start: &Iterate, state: &Statuses, steps: &mut usize) -> bool {
+    /// The end of motions as the viscosity vanishes. A body slides without end if they become longer and longer, bodies
+    /// resist less and less, and a constant part of the loads' work is left to the viscosity; where they become shorter,
+    /// the bodies come to rest nearby.
+    pub(super) fn as_viscosity_vanishes(
+        &self,
+        start: &Iterate,
+        state: &Statuses,
+        steps: &mut usize,
+    ) -> Rest {
         let [mut falls, slowest] = FALLS;
         let (mut place, mut state) = (start.clone(), state.clone());
         let (mut before, mut viscosity) = (f64::INFINITY, VISCOSITIES[0]);
@@ -85,25 +94,33 @@ impl FrictionCones<'_> {
             if !found.converged() {
                 falls = falls.sqrt();
                 if falls > slowest || before == f64::INFINITY {
-                    return false;
+                    return Rest::Unknown;
                 }
                 viscosity = before * falls;
                 continue;
             }
             let changes = changes(&place, &found);
             let change = largest(&changes);
-            if change <= last {
-                return false;
-            }
             let surplus = self.surplus(&found, &changes);
-            if surplus > LASTING * left && self.goes_on(&found, &changes) {
-                return surplus > SURPLUS;
+            if change > last && surplus > LASTING * left && self.goes_on(&found, &changes) {
+                return match surplus > SURPLUS {
+                    true => Rest::Slides,
+                    false => Rest::Unknown,
+                };
+            }
+            (place, state) = self.reached(found);
+            if change <= last {
+                let free = self.newton(&place, &state, STEPS);
+                *steps += free.steps;
+                return match free.converged() {
+                    true => Rest::Found(free),
+                    false => Rest::Unknown,
+                };
             }
             (last, left, before) = (change, surplus, viscosity);
             viscosity *= falls;
-            (place, state) = self.reached(found);
         }
-        false
+        Rest::Unknown
     }
 
     /// The iterate and the statuses of a motion's end.
