@@ -17,7 +17,7 @@ const VISCOSITIES: [f64; 3] = [0.1, 1e-4, 10.0];
 /// Least viscosity of a motion without end: round-off of its distance is far below the bodies' deformation.
 const FAINTEST: f64 = 1e-10;
 /// Factor by which it falls, and the largest one after motions that weren't found.
-const FALLS: [f64; 2] = [0.1, 0.5];
+const FALLS: [f64; 2] = [0.1, 0.6];
 /// Ratio to the last motion that counts as no decrease, and how often this may occur.
 const SLOWER: f64 = 0.9;
 const PATIENCE: usize = 3;
