@@ -11,7 +11,7 @@ use crate::context::Context;
 use crate::fem::contact_group::{Condition, ContactGroup};
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedActiveSetRoot};
 use crate::recover::motions::{Field, Motions};
-use crate::recover::refine::{correct_once, replace_if_as_good};
+use crate::recover::refine::{correct_once, replace_as_it_is, replace_if_as_good};
 use crate::recover::{DiscreteSolution, GroupSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::body_analysis::with_closing_motions;
@@ -107,7 +107,15 @@ pub fn take_minimum_norm(
         minimum_norm.is_driven |= moved.is_driven;
     }
     let is_driven = minimum_norm.is_driven;
-    let (after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
+    let (mut after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
+    if taken {
+        // Refinement has moved the bodies by the round-off of what it corrected.
+        let mut nearer = solution.clone();
+        let (_, moved) = move_nearer(fixed, analysis, &mut nearer);
+        let (certificate, is_nearer) = replace_as_it_is(fixed, solution, nearer, after);
+        after = certificate;
+        minimum_norm.opened += if is_nearer { moved.opened } else { 0 };
+    }
     *certificate = Certificate { is_driven, ..after };
     minimum_norm.conclude(taken);
     minimum_norm
