@@ -27,6 +27,8 @@ const LASTING: f64 = 0.9;
 const NO_RESISTANCE: f64 = 1e-10;
 /// Work of loads beyond that of friction, relative to its terms, that exceeds round-off.
 const SURPLUS: f64 = 1e-9;
+/// Round-off of the work of loads, relative to the terms that they are sums of.
+const ROUND_OFF: f64 = 1e-12;
 /// Change of a jump, relative to the fastest one, that counts as zero.
 const STAYS_OPEN: f64 = 1e-6;
 /// Maximum number of changes of the viscosity.
@@ -85,37 +87,43 @@ impl FrictionCones<'_> {
         steps: &mut usize,
     ) -> Rest {
         let [mut falls, slowest] = FALLS;
+        let [first, _, strongest] = VISCOSITIES;
         let (mut place, mut state) = (start.clone(), state.clone());
-        let (mut before, mut viscosity) = (f64::INFINITY, VISCOSITIES[0]);
-        let (mut last, mut left) = (0.0, f64::INFINITY);
+        let (mut before, mut viscosity) = (f64::INFINITY, first);
+        let (mut last, mut left, mut slows) = (0.0, f64::INFINITY, 0);
         while viscosity >= FAINTEST {
             let found = self.damped(viscosity, &place, &state);
             *steps += found.steps;
             if !found.converged() {
-                falls = falls.sqrt();
-                if falls > slowest || before == f64::INFINITY {
+                let is_first = before == f64::INFINITY;
+                falls = if is_first { falls } else { falls.sqrt() };
+                if falls > slowest || is_first && viscosity >= strongest {
                     return Rest::Unknown;
                 }
-                viscosity = before * falls;
+                viscosity = match is_first {
+                    true => viscosity / falls,
+                    false => before * falls,
+                };
                 continue;
             }
             let changes = changes(&place, &found);
             let change = largest(&changes);
             let surplus = self.surplus(&found, &changes);
-            if change > last && surplus > LASTING * left && self.goes_on(&found, &changes) {
-                return match surplus > SURPLUS {
-                    true => Rest::Slides,
-                    false => Rest::Unknown,
-                };
+            let lasts = change > last && surplus > SURPLUS.max(LASTING * left);
+            if lasts && self.goes_on(&found, &changes) {
+                return Rest::Slides;
             }
             (place, state) = self.reached(found);
             if change <= last {
                 let free = self.newton(&place, &state, STEPS);
                 *steps += free.steps;
-                return match free.converged() {
-                    true => Rest::Found(free),
-                    false => Rest::Unknown,
-                };
+                slows += 1;
+                if free.converged() {
+                    return Rest::Found(free);
+                }
+                if slows == PATIENCE {
+                    return Rest::Unknown;
+                }
             }
             (last, left, before) = (change, surplus, viscosity);
             viscosity *= falls;
@@ -140,8 +148,8 @@ impl FrictionCones<'_> {
         self.resists(changes) <= NO_RESISTANCE && closes <= STAYS_OPEN * largest(changes)
     }
 
-    /// The work of loads along a motion of jumps beyond that which all contacts dissipate, under their present pressure
-    /// and with friction at its bound, relative to the terms of both.
+    /// The work of loads along a motion of jumps beyond their round-off and what all contacts dissipate, under their present
+    /// pressure and with friction at its bound, relative to the terms of both.
     fn surplus(&self, found: &Found, changes: &[f64]) -> f64 {
         let Found { place, state, .. } = found;
         let all = self.of_limits(changes);
@@ -152,9 +160,12 @@ impl FrictionCones<'_> {
             taken += self.laws.point(point, place, &state.closed).bound * along.hypot(across);
         }
         let work = dot(self.contact.c, changes);
-        let terms = self.contact.c.iter().zip(changes);
-        let terms: f64 = terms.map(|(c, change)| (c * change).abs()).sum();
-        (work - taken) / (terms + taken)
+        let terms = |loads: &[f64]| -> f64 {
+            let terms = loads.iter().zip(changes);
+            terms.map(|(load, change)| (load * change).abs()).sum()
+        };
+        let round_off = ROUND_OFF * terms(self.contact.c_scale);
+        (work - taken - round_off) / (terms(self.contact.c) + taken)
     }
 
     /// Changes of all limits along changes of jumps.
