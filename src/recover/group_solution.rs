@@ -61,23 +61,9 @@ impl GroupSolution {
         }
     }
 
-    /// Zeroes the forces of `normals`, and reduces the friction of their points to what holds without pressure.
-    pub fn drop_forces(&mut self, group: &ContactGroup, normals: &[usize]) {
-        normals.iter().for_each(|&j| self.forces[j] = 0.0);
-        if !normals.is_empty() {
-            let is_dropped = |point: &PointLaw| point.normal.is_some_and(|n| normals.contains(&n));
-            self.reduce(group.point_laws().into_iter().filter(is_dropped));
-        }
-    }
-
     /// Reduces tangential forces to their bounds.
     pub fn keep_to_bounds(&mut self, group: &ContactGroup) {
-        self.reduce(group.point_laws().into_iter());
-    }
-
-    /// Reduces the tangential forces of these points to their bounds.
-    fn reduce(&mut self, points: impl Iterator<Item = PointLaw>) {
-        for point in points {
+        for point in group.point_laws() {
             let here = self.point(&point);
             let size = here.size();
             for j in point.limits().filter(|_| size > here.bound) {

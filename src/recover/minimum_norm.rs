@@ -11,7 +11,7 @@ use crate::context::Context;
 use crate::fem::contact_group::{Condition, ContactGroup};
 use crate::recover::fixed_active_set::{FixedActiveSet, FixedActiveSetRoot};
 use crate::recover::motions::{Field, Motions};
-use crate::recover::refine::{correct_once, replace_as_it_is, replace_if_as_good};
+use crate::recover::refine::{correct_once, replace_if_as_good};
 use crate::recover::{DiscreteSolution, GroupSolution, displacements};
 use crate::rigid::body_analysis::RigidBodyAnalysis;
 use crate::rigid::body_analysis::with_closing_motions;
@@ -107,15 +107,7 @@ pub fn take_minimum_norm(
         minimum_norm.is_driven |= moved.is_driven;
     }
     let is_driven = minimum_norm.is_driven;
-    let (mut after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
-    if taken {
-        // Refinement has moved the bodies by the round-off of what it corrected.
-        let mut nearer = solution.clone();
-        let (_, moved) = move_nearer(fixed, analysis, &mut nearer);
-        let (certificate, is_nearer) = replace_as_it_is(fixed, solution, nearer, after);
-        after = certificate;
-        minimum_norm.opened += if is_nearer { moved.opened } else { 0 };
-    }
+    let (after, taken) = replace_if_as_good(fixed, solution, nearer, *certificate);
     *certificate = Certificate { is_driven, ..after };
     minimum_norm.conclude(taken);
     minimum_norm
@@ -177,8 +169,7 @@ fn move_nearer(
     (list, minimum_norm)
 }
 
-/// Zeroes the forces of normal conditions, by their number among those of all groups, which the root knows, and with
-/// them the friction that they pressed for: left alone, it would break its law. Collective.
+/// Zeroes the forces of conditions, by their number among those of all groups, which the root knows. Collective.
 fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut DiscreteSolution) {
     let (comm, plan) = (fixed.context.comm, fixed.context.plan);
     let mut ranges: Numbered<GroupId, Range<usize>> = Numbered::default();
@@ -200,7 +191,7 @@ fn drop_forces(fixed: &FixedActiveSet<'_>, numbers: &[usize], solution: &mut Dis
         },
         |g, of_group| {
             if let Some(solution) = solution.groups.get_mut(&g) {
-                solution.drop_forces(&fixed.context.groups[&g], &of_group);
+                (of_group.into_iter()).for_each(|j| solution.forces[j] = 0.0);
             }
         },
     );

@@ -192,26 +192,6 @@ pub fn replace_if_as_good(
     certificate: Certificate,
 ) -> (Certificate, bool) {
     let after = refine(fixed, &mut nearer);
-    take_if_as_good(fixed, solution, (nearer, after), certificate)
-}
-
-/// The same without refinement, for a `nearer` solution as it is.
-pub fn replace_as_it_is(
-    fixed: &FixedActiveSet<'_>,
-    solution: &mut DiscreteSolution,
-    nearer: DiscreteSolution,
-    certificate: Certificate,
-) -> (Certificate, bool) {
-    let after = check(fixed, &nearer);
-    take_if_as_good(fixed, solution, (nearer, after), certificate)
-}
-
-fn take_if_as_good(
-    fixed: &FixedActiveSet<'_>,
-    solution: &mut DiscreteSolution,
-    (nearer, after): (DiscreteSolution, Certificate),
-    certificate: Certificate,
-) -> (Certificate, bool) {
     let as_good = worst(&after) <= worst(&certificate).max(GOOD);
     if decide(fixed, as_good && keeps_law(&after, &certificate)) {
         *solution = nearer;

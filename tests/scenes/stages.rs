@@ -1,7 +1,6 @@
 //! Activation and deactivation of bodies and contacts: every load step has the solution of its active parts.
 
 mod exact;
-mod lining;
 
 use std::collections::BTreeSet;
 

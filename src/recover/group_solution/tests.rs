@@ -129,12 +129,3 @@ fn a_slip_that_nothing_presses_lacks_no_force() {
     let found = not_opposed(&group(COULOMB), numbers, &open.closed, scales);
     assert_eq!(found, 0.0);
 }
-
-#[test]
-fn friction_goes_with_the_pressure_that_is_dropped() {
-    for (normals, expected) in [(vec![0], [0.0, 0.0, 0.0]), (Vec::new(), [4.0, 3.0, -4.0])] {
-        let mut solution = pressed([3.0, -4.0], [0.0; 2], true);
-        solution.drop_forces(&group(COULOMB), &normals);
-        assert_eq!(solution.forces, expected);
-    }
-}
