@@ -157,43 +157,45 @@ impl RigidBasis {
         &q * x.transpose()
     }
 
-    /// X Qᵀ, where every motion involves one set of normal jumps only.
+    /// X Qᵀ, where every motion involves one set of normal jumps only, with dense matrices for each set.
     fn change_by_parts(&self, scaled: &Mat<f64>) -> Mat<f64> {
-        let (n, rank) = (self.root.len(), self.q.len());
-        let entries = |k: usize| {
-            let Direction { part, values } = &self.q[k];
-            self.parts[*part]
-                .iter()
-                .copied()
-                .zip(values.iter().copied())
-        };
-        // H Q, later X, with a row for each motion.
-        let mut x: Vec<Vec<f64>> = vec![vec![0.0; n]; rank];
-        for (k, x) in x.iter_mut().enumerate() {
-            for (row, q) in entries(k) {
-                let column = scaled.col(row);
-                (x.iter_mut().zip(column.iter())).for_each(|(x, h)| *x += h * q);
-            }
-        }
-        let half_qhq: Vec<Vec<f64>> = (x.iter())
-            .map(|hq| {
-                let of_motion = |k: usize| entries(k).map(|(row, q)| q * hq[row]).sum::<f64>();
-                (0..rank).map(|k| 0.5 * of_motion(k)).collect()
-            })
-            .collect();
-        for (x, half) in x.iter_mut().zip(&half_qhq) {
-            for (k, half) in half.iter().enumerate().filter(|(_, half)| **half != 0.0) {
-                entries(k).for_each(|(row, q)| x[row] -= q * half);
-            }
-        }
+        let n = self.root.len();
+        let q = self.of_parts();
         let mut change = Mat::zeros(n, n);
-        for (k, x) in x.iter().enumerate() {
-            for (row, q) in entries(k) {
-                let column = change.col_mut(row);
-                (column.iter_mut().zip(x)).for_each(|(change, x)| *change += x * q);
+        for (rows, own) in &q {
+            let mut x = Mat::from_fn(n, rows.len(), |i, j| scaled[(i, rows[j])]) * own;
+            let hq = x.clone();
+            for (rows, other) in &q {
+                let there = Mat::from_fn(rows.len(), hq.ncols(), |i, k| hq[(rows[i], k)]);
+                let part = other * (other.transpose() * there);
+                for k in 0..part.ncols() {
+                    let entries = rows.iter().zip(part.col(k).iter());
+                    entries.for_each(|(&row, part)| x[(row, k)] -= 0.5 * part);
+                }
+            }
+            let columns = x * own.transpose();
+            for (&row, column) in rows.iter().zip(columns.col_iter()) {
+                let to = change.col_mut(row);
+                (to.iter_mut().zip(column.iter())).for_each(|(to, x)| *to = *x);
             }
         }
         change
+    }
+
+    /// The normal jumps of every set with motions, and the motions' entries there.
+    fn of_parts(&self) -> Vec<(&[usize], Mat<f64>)> {
+        let mut motions: Vec<Vec<&[f64]>> = vec![Vec::new(); self.parts.len()];
+        for Direction { part, values } in &self.q {
+            motions[*part].push(values);
+        }
+        let parts = self.parts.iter().zip(motions);
+        let moving = parts.filter(|(_, motions)| !motions.is_empty());
+        moving
+            .map(|(rows, motions)| {
+                let q = Mat::from_fn(rows.len(), motions.len(), |i, k| motions[k][i]);
+                (&rows[..], q)
+            })
+            .collect()
     }
 
     /// Sets the part of c along the motions to the bodies' load.

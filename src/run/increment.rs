@@ -27,7 +27,7 @@ use crate::run::operators::Operators;
 use crate::run::swept::Swept;
 use crate::settings::Settings;
 use crate::step::StepProblem;
-use crate::step::halving::StepHalving;
+use crate::step::halving::{SMALLEST, StepHalving};
 use crate::step::state::{StepState, analyse, check_interrupt};
 use crate::sweep::{Method, SweepOutcome, SweepStatus};
 
@@ -96,13 +96,32 @@ impl Increments<'_> {
         if self.is_converged(&at_once) {
             return Ok(at_once);
         }
-        if let Some(in_parts) = self.in_halves(k, earlier, before, seconds)? {
+        let unheld = unheld(at_once.outcome.as_ref(), at_end);
+        let may_start = !self.context.comm.decide(unheld.is_some())
+            || self.starts(k, earlier, before.clone(), seconds)?;
+        if may_start && let Some(in_parts) = self.in_halves(k, earlier, before, seconds)? {
             return Ok(in_parts);
         }
-        let slides = at_once.outcome.as_ref().is_some_and(|o| o.slides);
-        let unheld = (at_end.scene.as_ref().filter(|_| slides)).and_then(Scene::unheld);
         self.context.comm.agree(unheld.map_or(Ok(()), Err))?;
         Ok(at_once)
+    }
+
+    /// True if the smallest increment of load step k converges: bodies that slide at once under the whole load mostly
+    /// do so under any part of it, and then no other increment needs to be tried. Collective.
+    fn starts(
+        &self,
+        k: usize,
+        earlier: &[Vec<f64>],
+        before: StepState,
+        seconds: &mut RankSeconds,
+    ) -> Result<bool, Failure> {
+        let load_point = LoadPoint {
+            step: k,
+            part: SMALLEST,
+        };
+        let analysis = analyse(&self.context, load_point, earlier)?;
+        let solved = self.solve(load_point, &analysis, before, seconds)?;
+        Ok(self.is_converged(&solved))
     }
 
     /// Solves load step k in successively halved increments, starting from the closing motions `earlier`; `None` if the
@@ -243,6 +262,8 @@ impl Increments<'_> {
         seconds.add(|s| &mut s.sweeps, comm.times() - lap);
         if let Some(outcome) = &mut swept.outcome {
             outcome.is_settled &= self.settings.max_sweeps.is_none();
+            // Refinement doesn't find what holds a body that slides without end.
+            outcome.is_settled &= unheld(Some(outcome), analysis).is_none();
         }
         // From here on the load step is finished before the run stops, so that its solution is kept.
         check_interrupt(&context)?;
@@ -318,6 +339,12 @@ impl Increments<'_> {
         }
         earlier
     }
+}
+
+/// The failure of a scene in which a body slides without end that only friction could hold; on the root.
+fn unheld(outcome: Option<&SweepOutcome>, analysis: &RigidBodyAnalysis) -> Option<Failure> {
+    let scene = (analysis.scene.as_ref()).filter(|_| outcome.is_some_and(|o| o.slides));
+    scene.and_then(Scene::unheld)
 }
 
 impl Increment {

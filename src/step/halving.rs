@@ -1,7 +1,7 @@
 //! Halving of the increments of a load step.
 
 /// Smallest increment tried, as a fraction of the load step.
-const SMALLEST: f64 = 1.0 / 8.0;
+pub const SMALLEST: f64 = 1.0 / 8.0;
 
 /// Progress of a load step.
 #[derive(Clone, Copy, Debug, PartialEq)]

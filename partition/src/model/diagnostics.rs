@@ -2,6 +2,7 @@
 
 mod facets;
 mod hinges;
+mod overlaps;
 mod strains;
 mod undeclared;
 
@@ -63,6 +64,7 @@ impl<'a> Diagnostics<'a> {
         let mut warnings = self.strains()?;
         warnings.extend(self.far_apart());
         warnings.extend(self.undeclared());
+        warnings.extend(self.overlaps());
         warnings.extend(self.hinges());
         warnings.extend(self.facets_of_curves());
         Ok(warnings)

@@ -6,6 +6,7 @@
 
 mod linear;
 mod newton;
+mod sliding;
 
 use super::{FrictionProblem, Status};
 use crate::contact::active_set::{ContactProblem, ContactSolution, FORCE_TOLERANCE};

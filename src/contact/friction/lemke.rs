@@ -77,15 +77,21 @@ impl FrictionProblem<'_> {
         (None, most)
     }
 
-    /// Offers ends of paths, with their numbers of pivots, until a solution is found from one: in space some attempts
-    /// refine the polygons in the slip directions of the path before.
+    /// Offers ends of at most so many paths, with their numbers of pivots, until a solution is found from one: in space
+    /// some attempts refine the polygons in the slip directions of the path before.
     pub(super) fn try_paths<T>(
         &self,
+        most: usize,
         mut take: impl FnMut(Option<&End>, usize) -> Option<T>,
     ) -> Option<T> {
+        let mut paths = 0;
         for (attempt, finer) in FINER.into_iter().enumerate() {
             let mut polygons = Polygons::new(attempt);
             for _ in 0..=finer {
+                if paths == most {
+                    return None;
+                }
+                paths += 1;
                 let (end, pivots) = self.follow(&polygons);
                 if let Some(taken) = take(end.as_ref(), pivots) {
                     return Some(taken);

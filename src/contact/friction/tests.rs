@@ -297,7 +297,7 @@ fn lemke_s_path_ends_near_the_solution_the_nearer_the_finer_polygons_are() {
             let force = forces.sum::<f64>().sqrt();
             let mut ends = Vec::new();
             points.with(|problem| {
-                problem.try_paths(|end, _| {
+                problem.try_paths(usize::MAX, |end, _| {
                     ends.push(end.map_or_else(Vec::new, |end| end.jumps.clone()));
                     (ends.len() == 4).then_some(())
                 })

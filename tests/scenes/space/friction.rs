@@ -2,6 +2,7 @@
 
 mod random;
 mod symmetry;
+mod wedge;
 mod working_set;
 
 use contact_dd_partition::element::ElementKind::{self, *};

@@ -39,6 +39,32 @@ fn bodies_that_touch_without_a_contact_are_named() {
     assert_eq!(warned(&stack(1e-3), HELD), "");
 }
 
+#[test]
+fn bodies_that_overlap_without_a_contact_are_named_with_the_depth() {
+    let overlapping = |low: f64| {
+        Blocks::new()
+            .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
+            .block("upper", [0.5, 1.5], [low, low + 1.0], [3, 2])
+    };
+    let says = "bodies 'lower' and 'upper' overlap without a contact by up to 0.2 m, as at (";
+    for blocks in [overlapping(0.8), overlapping(0.8).quadratic()] {
+        let said = warned(&blocks, HELD);
+        assert!(said.starts_with(says), "{said}");
+        assert_eq!(said.lines().count(), 1);
+        // The contact warns of its interference.
+        let said = warned(&blocks, &format!("{HELD}{CONTACT}"));
+        assert!(!said.contains("overlap without"), "{said}");
+        // One body is there after the other.
+        let steps = "[[step]]\n[[step]]\nremove = 'lower'\nadd = 'upper'\n";
+        let said = warned(&blocks, &format!("{HELD}{steps}"));
+        assert!(!said.contains("overlap"), "{said}");
+    }
+    // Apart, and within the distance of straight facets from a curve.
+    for low in [1.001, 0.999] {
+        assert_eq!(warned(&overlapping(low), HELD), "", "{low}");
+    }
+}
+
 /// The nodes at (x, y), in the order of their blocks.
 fn nodes_at(blocks: &Blocks, x: f64, y: f64) -> Vec<u32> {
     let points = (0..).zip(&blocks.mesh.points);
