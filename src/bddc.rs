@@ -16,11 +16,12 @@ mod coarse;
 mod conjugate_gradients;
 mod constraints;
 mod householder;
+pub mod loads;
 mod local;
 mod motions;
 mod placement;
 mod preconditioner_level;
-pub mod slipping;
+mod slipping;
 pub mod solution;
 mod transform;
 

@@ -18,8 +18,8 @@ use faer::{Col, Mat};
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
+use crate::bddc::loads::{ClusterAnswer, ClusterLoads, Constants, SlipLaws};
 use crate::bddc::local::{Local, Vectors};
-use crate::bddc::solution::{ClusterAnswer, ClusterLoads, Constants};
 use crate::contact::slip_law::SlipLaw;
 use crate::context::Context;
 use crate::vector::{add_multiple, axpy, multiple};
@@ -33,9 +33,6 @@ const MAX_WITH_STALE: usize = 40;
 /// Iterations after which a preconditioner that can be improved is judged, and the reduction to be reached by then.
 const TRIAL: usize = 15;
 const GOOD: f64 = 0.02;
-
-/// The laws of slipping points between clusters, by contact group.
-pub type SlipLaws = OnGroups<Vec<SlipLaw>>;
 
 /// Values on the shared unknowns of this rank's clusters and on the jumps of its contact groups.
 #[derive(Clone, Debug, Default)]
@@ -208,14 +205,12 @@ impl Slipping<'_> {
         let shared = |(&c, r): (&_, &Vec<f64>)| (c, bddc.locals[&c].on_shared(r));
         let mut balance: Vectors = unbalanced.iter().map(shared).collect();
         let answer = bddc.answer(comm, solved, &unbalanced);
-        let (mut of_laws, mut correction) = (OnGroups::new(), OnGroups::new());
-        for (&g, forces) in &at.forces {
-            let (residual, corrected) = self.of_laws(g, &answer, forces, has_loads);
-            of_laws.insert(g, residual);
-            correction.insert(g, corrected);
-        }
-        // The balance under the corrected forces.
-        let acting = bddc.acting(self.context, None, &correction);
+        let of_laws = at.forces.iter();
+        let of_laws = of_laws.map(|(&g, forces)| (g, self.of_laws(g, &answer, forces, has_loads)));
+        let of_laws: OnGroups<Vec<f64>> = of_laws.collect();
+        // The balance under forces that cancel this residual against each point's own compliance: it is such that they
+        // are the residual itself.
+        let acting = bddc.acting(self.context, None, &of_laws);
         let (_, of_correction) = bddc.condense(self.context, self.clusters, &acting, &none);
         for (c, r) in &mut balance {
             axpy(1.0, &of_correction[c], r);
@@ -225,28 +220,27 @@ impl Slipping<'_> {
         let z = self.gradients.precondition(&balance);
         let r = Pair {
             x: balance,
-            forces: of_laws,
+            forces: of_laws.clone(),
         };
         let z = Pair {
             x: z,
-            forces: correction,
+            forces: of_laws,
         };
         (answer, [r.scaled(sign), z.scaled(sign)])
     }
 
-    /// The negative residual of the laws of group g under these forces of its slipping points, and the change of forces
-    /// that nearly cancels it.
+    /// The negative residual of the laws of group g under these forces of its slipping points.
     fn of_laws(
         &self,
         g: GroupId,
         answer: &ClusterAnswer,
         forces: &[f64],
         has_loads: bool,
-    ) -> (Vec<f64>, Vec<f64>) {
-        let (mut residual, mut correction) = (vec![0.0; forces.len()], vec![0.0; forces.len()]);
+    ) -> Vec<f64> {
+        let mut residual = vec![0.0; forces.len()];
         // Groups below clusters keep their forces.
         let (Some(at), Some(laws)) = (answer.groups.get(&g), self.laws.get(&g)) else {
-            return (residual, correction);
+            return residual;
         };
         let both = at.forces.iter().zip(forces);
         let all: Vec<f64> = both.map(|(closed, slipping)| closed + slipping).collect();
@@ -255,13 +249,8 @@ impl Slipping<'_> {
         for law in laws {
             law.add_residual(&all, |i| at.jumps[i] - start(i), !has_loads, &mut residual);
         }
+        residual.iter_mut().for_each(|r| *r = -*r);
         residual
-            .iter_mut()
-            .for_each(|residual| *residual = -*residual);
-        for law in laws {
-            law.set_correction(&residual, &mut correction);
-        }
-        (residual, correction)
     }
 
     /// √(r·M r). Collective.
@@ -270,18 +259,17 @@ impl Slipping<'_> {
         product.max(0.0).sqrt()
     }
 
-    /// r·M v for every v of a basis; of forces, the product of both corrections, as a point that hardly slips yet has a
-    /// residual of any size. Collective.
-    fn products(&self, basis: &[[Pair; 2]], [r, of_r]: &[Pair; 2]) -> Vec<f64> {
+    /// r·M v for every v of a basis. Collective.
+    fn products(&self, basis: &[[Pair; 2]], [r, _]: &[Pair; 2]) -> Vec<f64> {
         let Context { comm, plan, .. } = *self.context;
         let corrections: Vec<&Vectors> = basis.iter().map(|[_, z]| &z.x).collect();
         let mut sums = self.gradients.products(&r.x, &corrections);
         let of_group = |g: GroupId| -> Vec<f64> {
-            let (Some(own), Some(of_r)) = (self.laws.get(&g), of_r.forces.get(&g)) else {
+            let (Some(own), Some(r)) = (self.laws.get(&g), r.forces.get(&g)) else {
                 return Vec::new();
             };
             let product = |[_, z]: &[Pair; 2]| {
-                let of_law = |law: &SlipLaw| law.product(of_r, &z.forces[&g]);
+                let of_law = |law: &SlipLaw| law.product(r, &z.forces[&g]);
                 own.iter().map(of_law).sum()
             };
             basis.iter().map(product).collect()

@@ -7,8 +7,9 @@ use contact_dd_partition::id::{MergeRootId, OnGroups, OnMergeRoots, OnTreeNodes}
 use crate::bddc::Bddc;
 use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
+use crate::bddc::loads::{ClusterAnswer, ClusterLoads, Constants};
 use crate::bddc::local::Vectors;
-use crate::bddc::slipping::{SlipLaws, Slipping, SlippingSolution};
+use crate::bddc::slipping::{Slipping, SlippingSolution};
 use crate::bytes::Reals;
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
@@ -16,19 +17,6 @@ use crate::context::Context;
 use crate::plan::Plan;
 use crate::schur::condensed::InterfaceDof;
 use crate::vector::axpy;
-
-/// The loads on this rank under a fixed active set.
-#[derive(Clone, Copy, Debug)]
-pub struct ClusterLoads<'a> {
-    /// Loads on the boundaries of clusters, by node.
-    pub clusters: &'a OnTreeNodes<Vec<f64>>,
-    /// The values of the closed jumps of every contact group, followed by those of its ties (m).
-    pub prescribed: &'a OnGroups<Vec<f64>>,
-    /// The forces on the open jumps of every group with friction (N/m); other groups have none.
-    pub forces: &'a OnGroups<Vec<f64>>,
-    /// The laws that the forces of slipping points follow if an iterative solver is to find them, starting from `forces`.
-    pub laws: Option<&'a SlipLaws>,
-}
 
 /// Accuracy to which a solution is iterated.
 #[derive(Clone, Copy, Debug)]
@@ -63,20 +51,6 @@ pub struct BddcSolution {
     /// True if the iteration converged.
     pub is_solved: bool,
 }
-
-/// The unknowns of this rank's clusters, and the jumps and forces of its contact groups.
-#[derive(Debug, Default)]
-pub(super) struct ClusterAnswer {
-    /// The unknowns, by cluster.
-    pub clusters: Vectors,
-    /// The jumps and forces of every contact group between clusters; 0 force where open.
-    pub groups: OnGroups<Iterate>,
-    /// The forces at the jumps of their ties.
-    pub tied: OnGroups<Vec<f64>>,
-}
-
-/// The constants of tied displacements (m).
-pub(super) type Constants = BTreeMap<InterfaceDof, f64>;
 
 impl Bddc {
     /// Solves for `loads` on the unknowns of the clusters of this rank, and for the forces of slipping points if they

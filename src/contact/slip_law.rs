@@ -124,28 +124,6 @@ impl SlipLaw {
         }
     }
 
-    /// Forces that nearly cancel a `residual` of the law: what they change by the point's own compliance 1/r, (1 + κ P/r)
-    /// λ_t, is taken into account.
-    pub fn set_correction(&self, residual: &[f64], forces: &mut [f64]) {
-        let turning = self.turning / self.point.stiffness;
-        let e = self.direction;
-        match self.point.tangents {
-            [Some(first), Some(second)] => {
-                let along = e[0] * residual[first] + e[1] * residual[second];
-                for (t, e) in [first, second].into_iter().zip(e) {
-                    forces[t] = along * e + (residual[t] - along * e) / (1.0 + turning);
-                }
-            }
-            tangents => {
-                for (t, e) in tangents.into_iter().zip(e) {
-                    if let Some(t) = t {
-                        forces[t] = residual[t] / (1.0 + turning * (1.0 - e * e));
-                    }
-                }
-            }
-        }
-    }
-
     /// Its part of a product of two vectors of forces, a·b / r (J).
     pub fn product(&self, a: &[f64], b: &[f64]) -> f64 {
         let sum: f64 = self.limits().map(|t| a[t] * b[t]).sum();
@@ -212,31 +190,15 @@ mod tests {
     }
 
     #[test]
-    fn a_correction_cancels_the_residual_against_the_compliance_of_the_point_itself() {
+    fn a_change_of_forces_against_the_compliance_of_the_point_itself_is_its_residual() {
         let status = POINT.status(&at([2.0, 0.5, -0.9], [0.3, -0.7]), 0.0);
-        let one = PointLaw {
-            tangents: [Some(1), None],
-            ..POINT
-        };
-        for point in [POINT, one] {
-            let law = SlipLaw::new(&point, &status, true).unwrap();
-            assert!(law.turning() > 0.0);
-            let residual = [
-                0.0,
-                0.4,
-                if point.tangents[1].is_some() {
-                    -1.3
-                } else {
-                    0.0
-                },
-            ];
-            let (mut forces, mut found) = ([0.0; 3], [0.0; 3]);
-            law.set_correction(&residual, &mut forces);
-            let slip = |t: usize| -forces[t] / point.stiffness;
-            law.add_residual(&forces, slip, true, &mut found);
-            for t in 1..3 {
-                assert!((found[t] - residual[t]).abs() < 1e-14, "{t}: {}", found[t]);
-            }
+        let law = SlipLaw::new(&POINT, &status, true).unwrap();
+        assert!(law.turning() > 0.0);
+        let (forces, mut residual) = ([0.0, 0.4, -1.3], [0.0; 3]);
+        let slip = |t: usize| -forces[t] / POINT.stiffness;
+        law.add_residual(&forces, slip, true, &mut residual);
+        for t in 1..3 {
+            assert!((forces[t] - residual[t]).abs() < 1e-14, "{t}: {residual:?}");
         }
     }
 }

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 
 use contact_dd_partition::id::{GroupId, OnGroups};
 
-use crate::bddc::solution::{Accuracy, ClusterLoads};
+use crate::bddc::loads::ClusterLoads;
+use crate::bddc::solution::Accuracy;
 use crate::comm::Comm;
 use crate::contact::active_equalities::ActiveEqualities;
 use crate::contact::laws::{ContactLaws, Iterate};

@@ -6,7 +6,7 @@
 //! products. Slips determined by closed limits aren't prescribed; their forces are the unknowns.
 //!
 //! Where slips aren't prescribed, an iterative solver between clusters finds these forces with its own unknowns
-//! ([`slipping`](crate::bddc::slipping)).
+//! (`bddc/slipping.rs`).
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,8 @@ use contact_dd_partition::id::{GroupId, OnGroups, OnTreeNodes};
 use faer::linalg::solvers::SolveLstsq;
 use faer::{Col, Mat};
 
-use crate::bddc::solution::{Accuracy, ClusterLoads};
+use crate::bddc::loads::ClusterLoads;
+use crate::bddc::solution::Accuracy;
 use crate::contact::laws::{ContactLaws, Iterate};
 use crate::contact::slip_law::SlipLaw;
 use crate::context::Context;

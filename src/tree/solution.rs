@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use contact_dd_partition::id::{OnGroups, OnTreeNodes, TreeNodeId};
 
 use super::fronts::{ActiveSetFront, ActiveSetFronts};
-use crate::bddc::solution::{Accuracy, ClusterLoads};
+use crate::bddc::loads::ClusterLoads;
+use crate::bddc::solution::Accuracy;
 use crate::comm::Comm;
 use crate::contact::laws::Iterate;
 use crate::context::Context;

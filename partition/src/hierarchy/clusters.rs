@@ -11,8 +11,8 @@ const DOFS_IN_SPACE: usize = 5_000;
 
 impl Catalog {
     /// Chooses the clusters: starting with the roots, splits the largest one until there are `count`, or, without
-    /// `count`, until none that can be split exceeds the bound. None has friction inside, as slip forces between clusters
-    /// are found together with what these share.
+    /// `count`, until none that can be split exceeds the bound. None of several has friction inside, as slip forces
+    /// between clusters are found together with what these share.
     pub fn choose_clusters(&mut self, count: Option<usize>) {
         let parents = &self.hierarchy.parent;
         let mut dofs = vec![0; parents.len()];
@@ -35,6 +35,7 @@ impl Catalog {
             let size = |&c: &usize| (has_friction[clusters[c]], dofs[clusters[c]]);
             let largest = can_be_split.max_by_key(size);
             let wanted = |&c: &usize| match count {
+                Some(1) => false,
                 _ if has_friction[clusters[c]] => true,
                 Some(count) => clusters.len() < count,
                 None => dofs[clusters[c]] > most,

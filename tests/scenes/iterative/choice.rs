@@ -112,7 +112,10 @@ fn what_friction_holds_far_from_other_contacts_is_solved_as_directly() {
         let difference = difference(&direct, &iterative);
         assert!(difference < 1e-10, "{clusters}: {difference:e}");
         assert_eq!(direct.closed(), iterative.closed());
-        assert!(iterative.report["sweeps"].as_u64() < Some(60), "{clusters}");
+        // Newton's method stalls where no point holds the upper block, and starts again from the convex problem; where it
+        // stalls differs with the clusters.
+        let sweeps = &iterative.report["sweeps"];
+        assert!(sweeps.as_u64() < Some(100), "{clusters}: {sweeps}");
     }
 }
 

@@ -204,7 +204,7 @@ fn facets_of_curves_are_told_of_where_errors_are_stated() {
     // Sagitta of eight chords of the outer radius, 2.
     let said = warnings(quarter(), true);
     assert!(
-        said.len() == 1 && said[0].contains("stand off by up to 0.0096 m"),
+        said.len() == 1 && said[0].contains("stand off by up to 0.0096"),
         "{said:?}"
     );
     assert!(warnings(quarter(), false).is_empty());
