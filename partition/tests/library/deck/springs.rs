@@ -66,16 +66,12 @@ fn springs_that_arent_supported_are_refused_with_their_line() {
             "line 49: elements of type SPRING3 aren't supported; expected SPRING1, SPRING2 or SPRINGA",
         ),
         (
-            between("SPRING2", "1, 2\n5."),
-            "line 52: *SPRING of SPRING2 between different degrees of freedom isn't read",
-        ),
-        (
             springs(3, "40.").replace("SPRING, ", "SPRING, NONLINEAR, "),
             "line 52: *SPRING with NONLINEAR isn't read; expected one stiffness",
         ),
         (
             springs(4, "40."),
-            "line 53: *SPRING along the degree of freedom 4; expected 1 to 3",
+            "line 52: *SPRING: the node 15 has no degree of freedom 4; expected 1 to 3, of reference nodes to 6",
         ),
         (
             springs(3, "-1."),

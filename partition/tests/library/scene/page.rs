@@ -23,7 +23,7 @@ fn shown(page: &str, of_space: bool) -> String {
     blocks
         .map(|block| block.split("```").next().unwrap())
         .filter(|part| {
-            let is_of_space = ["[[coupling]]", "[[cyclic]]"]
+            let is_of_space = ["[[coupling]]", "[[cyclic]]", "coupling = "]
                 .iter()
                 .any(|key| part.contains(key));
             is_of_space == of_space
