@@ -183,7 +183,7 @@ mod tests {
         let mut tie = at(0, &[(1, -1.0)], [1.0, 0.0], 1.0);
         tie.law = crate::contact_point::Law::Tied;
         let points = vec![
-            at(0, &[(2, -1.0)], [-0.6, -0.8], 1.0),
+            at(0, &[(2, -1.0)], [-0.28, -0.96], 1.0),
             at(1, &[(3, -0.25), (4, -0.75)], [0.0, -1.0], 3.0),
         ];
         let contact = |points| Contact {
@@ -197,10 +197,12 @@ mod tests {
         assert_eq!(contacts, before);
         join(&mut contacts, &mesh, &HashSet::new());
         assert_eq!(contacts[0], before[0]);
-        let size = (0.6_f64 * 0.6 + 3.8 * 3.8).sqrt();
+        let size = 0.28_f64.hypot(3.96);
         for (node, point) in (0..).zip(&contacts[1].points) {
             let [x, y, _] = point.normal();
-            assert!((x + 0.6 / size).abs() < 1e-15 && (y + 3.8 / size).abs() < 1e-15);
+            let expected = [-0.28 / size, -3.96 / size];
+            let off = (x - expected[0]).hypot(y - expected[1]);
+            assert!(off < 1e-15, "{x} {y} {expected:?}");
             assert_eq!(point.gap, 0.75);
             let mut entries = point.entries.clone();
             entries.sort_by_key(|&(node, _)| node);

@@ -123,7 +123,10 @@ fn settings_of_a_scene_are_checked_where_they_stand() {
         ("method = 'newtn'", "solver.method … did you mean 'newton'"),
         ("tolerence = 1e-8", "tolerence … did you mean 'tolerance'"),
         ("tolerance = 0.0", "solver.tolerance … a positive number"),
-        ("tolerance = '1e-8'", "string \"1e-8\", expected f64"),
+        (
+            "tolerance = '1e-8'",
+            "it is the text \"1e-8\"; expected a number",
+        ),
         ("max_sweeps = -1", "solver.max_sweeps … -1"),
         ("threads = 2", "solver.threads … unknown key"),
     ] {
