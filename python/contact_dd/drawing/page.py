@@ -354,7 +354,8 @@ def quantities(report, units):
         for one in found[:MOST_ROWS]
     ]
     words = (
-        "The error of the mesh is an estimate of the value less the exact one; ± where its sign can't be trusted. The parameter is the one that changes a "
+        "The error of the mesh is an estimate of the value less the exact one; ± where its sign can't be "
+        "trusted. The parameter is the one that changes a "
         "quantity most when it rises by its own size, and by how much of the quantity; the report has all derivatives."
     )
     if report.get("without_derivatives"):
