@@ -23,7 +23,7 @@ pub fn print(text: &str) -> Result<(), OutputError> {
     ignoring_closed_pipe((stdout.write_all(text.as_bytes())).and_then(|()| stdout.flush()))
 }
 
-/// The result of a write to stdout; a closed pipe isn't an error, see [`print`].
+/// The result of a write to stdout; a closed pipe isn't an error, see [`print()`].
 ///
 /// # Errors
 /// Other write errors.
