@@ -51,6 +51,15 @@ use crate::error::Failure;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 
+/// The unknowns of contact groups in a cluster.
+#[derive(Debug)]
+struct AtContact {
+    /// Their places among the unknowns of the cluster, ascending.
+    places: Vec<usize>,
+    /// The ties that carry forces from them to others.
+    ties: Vec<usize>,
+}
+
 /// The clusters and the contact groups between them.
 #[derive(Debug)]
 pub struct Bddc {
@@ -63,6 +72,8 @@ pub struct Bddc {
     /// The contact groups of this rank, by number.
     groups: OnGroups<GroupBetween>,
     ties: Ties,
+    /// The unknowns of contact groups in every cluster of this rank.
+    at_contact: OnMergeRoots<AtContact>,
     nodes: SharedNodes,
     classes: Classes,
     sums: ClassSums,
@@ -105,7 +116,18 @@ impl Bddc {
         let mut of_groups = comm.gathered(&group_owners, |i| groups[&numbers[i]].dofs());
         comm.broadcast(&mut of_groups);
         let between = between(&dofs, numbers.into_iter().zip(group_owners).zip(of_groups));
+        let in_contact = unknowns_of(&between);
+        let own = owners.each().filter(|(_, owner)| **owner == comm.rank());
+        let at_contact = own.map(|(c, _)| {
+            let places = dofs[c].iter().enumerate();
+            let places = places.filter(|(_, dof)| in_contact.contains(dof));
+            let places = places.map(|(i, _)| i).collect();
+            let ties = Vec::new();
+            (c, AtContact { places, ties })
+        });
+        let at_contact = at_contact.collect();
         Ok(Self {
+            at_contact,
             stale: dofs.like(true),
             nodes: SharedNodes::new(context, &dofs),
             level: PreconditionerLevel::first(context.catalog.dim),
@@ -188,8 +210,7 @@ impl Bddc {
         } = *context;
         self.fix_groups(context, open)?;
         let (before, changed) = self.classify(context, touched, renewed);
-        let unknowns = self.between.iter().flat_map(|group| &group.dofs);
-        let sprung: BTreeSet<InterfaceDof> = unknowns.copied().collect();
+        let sprung = unknowns_of(&self.between);
         let cluster = |c: MergeRootId| &clusters[&plan.merge_roots[c]];
         let placement = |c| Placement::new(c, cluster(c), &self.classes, &self.ties);
         let shared = |c| Shared::new(cluster(c), placement(c), (&sprung, spring), par);
@@ -280,6 +301,10 @@ impl Bddc {
         self.stale = (changed.ids())
             .map(|c| !changed[c] && is_touched(c))
             .collect();
+        for (&c, at) in &mut self.at_contact {
+            let dofs = &self.unknowns.dofs[c];
+            at.ties = ties.reached(at.places.iter().map(|&i| dofs[i]).collect());
+        }
         self.ties = ties;
         self.sums = ClassSums::new(comm, &classes, &self.owners);
         (std::mem::replace(&mut self.classes, classes), changed)
@@ -337,6 +362,12 @@ impl Bddc {
     fn group_owners(&self) -> Vec<usize> {
         self.between.iter().map(|group| group.owner).collect()
     }
+}
+
+/// The unknowns of contact groups between clusters.
+fn unknowns_of(between: &[Between]) -> BTreeSet<InterfaceDof> {
+    let unknowns = between.iter().flat_map(|group| &group.dofs);
+    unknowns.copied().collect()
 }
 
 fn free_motion(Mechanism: Mechanism) -> Failure {

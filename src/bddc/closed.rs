@@ -1,6 +1,6 @@
 //! Contact constraints between clusters: a closed one ties a displacement to others, an open one ties nothing.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use contact_dd_partition::id::GroupId;
 use serde::{Deserialize, Serialize};
@@ -194,12 +194,23 @@ impl Ties {
         }
     }
 
-    /// Adds forces at tied displacements to those at the unknowns in their terms, without removing them.
-    pub fn carry(&self, forces: &mut BTreeMap<InterfaceDof, f64>) {
-        for (dof, terms) in &self.direct {
-            let Some(&force) = forces.get(dof) else {
-                continue;
-            };
+    /// The ties, by their index, that carry forces from these unknowns to others, directly or by way of others.
+    pub fn reached(&self, mut unknowns: BTreeSet<InterfaceDof>) -> Vec<usize> {
+        let mut reached = Vec::new();
+        for (i, (dof, terms)) in self.direct.iter().enumerate() {
+            if unknowns.contains(dof) {
+                reached.push(i);
+                unknowns.extend(terms.iter().map(|(staying, _)| *staying));
+            }
+        }
+        reached
+    }
+
+    /// Adds forces at tied displacements to those at the unknowns in their terms, without removing them, by the ties
+    /// that are `reached` from the unknowns of the forces.
+    pub fn carry(&self, reached: &[usize], forces: &mut BTreeMap<InterfaceDof, f64>) {
+        for (dof, terms) in reached.iter().map(|&i| &self.direct[i]) {
+            let force = forces.get(dof).copied().unwrap_or(0.0);
             for (staying, c) in terms {
                 *forces.entry(*staying).or_insert(0.0) += c * force;
             }

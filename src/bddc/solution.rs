@@ -162,7 +162,10 @@ impl Bddc {
                 let s = &clusters[&context.plan.merge_roots[c]].s;
                 axpy(-1.0, &local.forces(s, &known), &mut load);
             }
-            let (of_own, of_shared) = local.condense(&load);
+            let (of_own, of_shared) = match load.iter().any(|f| *f != 0.0) {
+                true => local.condense(&load),
+                false => (vec![0.0; local.own()], vec![0.0; local.shared()]),
+            };
             own.insert(c, of_own);
             b.insert(c, of_shared);
         }
@@ -276,13 +279,10 @@ impl Bddc {
                 let forces = forces.get(&number).map_or(&[][..], Vec::as_slice);
                 self.groups[&number].loads_of(forces)
             },
-            |i, of_group| {
-                let clusters = &self.between[i].clusters;
+            |_, of_group| {
                 loads.extend(of_group.into_iter().filter_map(|(dof, load)| {
-                    let place = |&c: &MergeRootId| {
-                        Some((c, self.unknowns.dofs[c].binary_search(&dof).ok()?))
-                    };
-                    let (c, place) = clusters.iter().find_map(place)?;
+                    let c = self.unknowns.clusters_of(dof).next()?;
+                    let place = self.unknowns.dofs[c].binary_search(&dof).ok()?;
                     Some((c, place, load))
                 }));
             },
@@ -316,12 +316,10 @@ impl Bddc {
             .flat_map(|(i, group)| group.clusters.iter().map(move |&c| (i, c)))
             .collect();
         let forces = self.locals.keys().map(|&c| {
-            let at = self.unknowns.dofs[c]
-                .iter()
-                .copied()
-                .zip(unbalanced[&c].iter().copied());
-            let mut forces = at.collect();
-            self.ties.carry(&mut forces);
+            let at = &self.at_contact[&c];
+            let force = |&i: &usize| (self.unknowns.dofs[c][i], unbalanced[&c][i]);
+            let mut forces = at.places.iter().map(force).collect();
+            self.ties.carry(&at.ties, &mut forces);
             (c, forces)
         });
         let forces: OnMergeRoots<BTreeMap<InterfaceDof, f64>> = forces.collect();
@@ -332,20 +330,22 @@ impl Bddc {
                 .map(|&(i, c)| (self.owners[c], self.between[i].owner)),
             |route| {
                 let (i, c) = routes[route];
-                let of_dofs = self.between[i].dofs.iter().map(|dof| {
+                let of_dof = |(dof, force): (&InterfaceDof, &f64)| {
+                    let place = self.between[i].dofs.binary_search(dof).ok()?;
                     let at = self.unknowns.dofs[c].binary_search(dof).ok();
-                    (at.map(|at| clusters[&c][at]), forces[&c].get(dof).copied())
-                });
-                of_dofs.collect::<Vec<_>>()
+                    Some((place, at.map(|at| clusters[&c][at]), *force))
+                };
+                forces[&c].iter().filter_map(of_dof).collect::<Vec<_>>()
             },
             |route, of_dofs| {
                 let group = &self.between[routes[route].0];
                 let [x, r] = of_groups.entry(group.number).or_default();
-                for (dof, (of_x, of_r)) in group.dofs.iter().zip(of_dofs) {
+                for (place, of_x, of_r) in of_dofs {
+                    let dof = group.dofs[place];
                     if let Some(of_x) = of_x {
-                        x.entry(*dof).or_insert(of_x);
+                        x.entry(dof).or_insert(of_x);
                     }
-                    *r.entry(*dof).or_insert(0.0) += of_r.unwrap_or(0.0);
+                    *r.entry(dof).or_insert(0.0) += of_r;
                 }
             },
         );
