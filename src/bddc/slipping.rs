@@ -30,6 +30,10 @@ const CYCLE: usize = 150;
 const STALLS: f64 = 0.5;
 /// Most iterations with a preconditioner of earlier matrices.
 const MAX_WITH_STALE: usize = 40;
+/// Tolerance above which a cycle's own residual is taken for the true one.
+const EXACT: f64 = 1e-10;
+/// Residual relative to the energy norm of the unknowns below which it may be round-off.
+const ROUND_OFF: f64 = 1e-12;
 /// Iterations after which a preconditioner that can be improved is judged, and the reduction to be reached by then.
 const TRIAL: usize = 15;
 const GOOD: f64 = 0.02;
@@ -73,8 +77,18 @@ pub(super) struct SlippingSolution {
 struct Cycle {
     change: Pair,
     iterations: usize,
-    /// True if its residual is small enough.
+    /// The size of the residual that it leaves.
+    left: f64,
+    /// True if that is small enough.
     reached: bool,
+}
+
+/// The residual at a pair.
+struct Evaluation {
+    answer: ClusterAnswer,
+    residual: Pair,
+    /// The energy norm of the unknowns, √(x·A x).
+    energy: f64,
 }
 
 /// The problem of slipping points between clusters.
@@ -89,42 +103,41 @@ pub(super) struct Slipping<'a> {
 }
 
 impl Slipping<'_> {
-    /// Solves from the forces of the loads and from a `start` of shared unknowns, until the residual is less than
-    /// `tolerance` times that without displacements. Collective.
+    /// Solves from the forces of the loads and from a `start` of shared unknowns, or from 0, until the residual is less
+    /// than `tolerance` times the energy norm of the unknowns. Collective.
     pub fn solve(&self, start: Option<Vectors>, tolerance: f64) -> SlippingSolution {
-        let bddc = self.bddc;
         let shared = |(&c, local): (&_, &Local)| (c, vec![0.0; local.shared()]);
-        let zero = Pair {
-            x: bddc.locals.iter().map(shared).collect(),
+        let starts_at_zero = start.is_none();
+        let mut at = Pair {
+            x: start.unwrap_or_else(|| self.bddc.locals.iter().map(shared).collect()),
             forces: self.loads.forces.clone(),
         };
-        let of_zero = self.size(&self.residual(&zero, true).1);
-        let enough = tolerance * of_zero;
-        let mut at = zero;
-        if let Some(x) = start {
-            let from = Pair {
-                x,
-                forces: at.forces.clone(),
-            };
-            if self.size(&self.residual(&from, true).1) < of_zero {
-                at = from;
-            }
-        }
         let (mut iterations, mut last) = (0, f64::INFINITY);
-        let mut reached = true;
+        let (mut reached, mut left) = (true, f64::INFINITY);
         let (answer, is_solved) = loop {
-            let (answer, residual) = self.residual(&at, true);
+            let Evaluation {
+                answer,
+                residual,
+                mut energy,
+            } = self.evaluate(&at);
+            if tolerance > EXACT && left <= tolerance * energy {
+                break (answer, true);
+            }
+            let residual = self.preconditioned(residual);
             let size = self.size(&residual);
+            if starts_at_zero && iterations == 0 {
+                energy = size;
+            }
             // Where cycles reach the goal, and the residual doesn't, the rest is round-off.
             let ends = !reached || size.is_nan() || size > STALLS * last;
-            if size <= enough || ends {
-                break (answer, reached);
+            if ends || size <= tolerance * energy {
+                break (answer, reached || size <= ROUND_OFF * energy);
             }
             last = size;
-            let cycle = self.cycle(residual, size, enough, iterations);
+            let cycle = self.cycle(residual, size, tolerance * energy, iterations);
             at.add(1.0, &cycle.change);
             iterations += cycle.iterations;
-            reached = cycle.reached;
+            (reached, left) = (cycle.reached, cycle.left);
         };
         SlippingSolution {
             answer,
@@ -145,7 +158,7 @@ impl Slipping<'_> {
         let mut h = Mat::<f64>::zeros(most + 1, most);
         let (mut weights, mut sizes) = (Vec::new(), vec![size]);
         for k in 0..most {
-            let (_, mut next) = self.residual(&basis[k][1], false);
+            let mut next = self.preconditioned(self.product(&basis[k][1]));
             // Orthogonalized twice, which is as good as one by one.
             for _ in 0..2 {
                 let shares = self.products(&basis, &next);
@@ -185,48 +198,67 @@ impl Slipping<'_> {
         Cycle {
             change,
             iterations,
+            left: sizes[iterations],
             reached: sizes[iterations] <= enough,
         }
     }
 
-    /// The residual at a pair, of the loads and laws or, without their constants, its negative, with what the
-    /// preconditioner makes of it: [r, M r] with the balance after the correction of slip forces. Collective.
-    fn residual(&self, at: &Pair, has_loads: bool) -> (ClusterAnswer, [Pair; 2]) {
+    /// The residual of the loads and laws at a pair. Collective.
+    fn evaluate(&self, at: &Pair) -> Evaluation {
+        let loads = Some((self.loads.clusters, self.constants));
+        let (answer, residual, mut b) = self.residual(at, loads);
+        self.gradients.add_up(&mut b);
+        add_multiple(-1.0, &residual.x, &mut b);
+        let energy = self.gradients.products(&at.x, &[&b])[0].max(0.0).sqrt();
+        Evaluation {
+            answer,
+            residual,
+            energy,
+        }
+    }
+
+    /// The negative residual at a pair without loads and constants of the laws. Collective.
+    fn product(&self, at: &Pair) -> Pair {
+        self.residual(at, None).1.scaled(-1.0)
+    }
+
+    /// The answer of clusters and contact groups to a pair, the residual, with the balance after the correction of slip
+    /// forces, and the part of the loads on shared unknowns in every cluster. Collective.
+    fn residual(
+        &self,
+        at: &Pair,
+        loads: Option<(&OnTreeNodes<Vec<f64>>, &Constants)>,
+    ) -> (ClusterAnswer, Pair, Vectors) {
         let (bddc, comm) = (self.bddc, self.context.comm);
         let none = Constants::new();
-        let (loads, constants) = match has_loads {
-            true => (Some(self.loads.clusters), self.constants),
-            false => (None, &none),
-        };
-        let acting = bddc.acting(self.context, loads, &at.forces);
-        let (own, _) = bddc.condense(self.context, self.clusters, &acting, constants);
+        let constants = loads.map_or(&none, |(_, constants)| constants);
+        let acting = bddc.acting(self.context, loads.map(|(loads, _)| loads), &at.forces);
+        let (own, b) = bddc.condense(self.context, self.clusters, &acting, constants);
         let solved = bddc.recovered(&own, &at.x, constants);
         let unbalanced = bddc.unbalanced(self.context, self.clusters, acting, &solved);
         let shared = |(&c, r): (&_, &Vec<f64>)| (c, bddc.locals[&c].on_shared(r));
         let mut balance: Vectors = unbalanced.iter().map(shared).collect();
         let answer = bddc.answer(comm, solved, &unbalanced);
         let of_laws = at.forces.iter();
-        let of_laws = of_laws.map(|(&g, forces)| (g, self.of_laws(g, &answer, forces, has_loads)));
-        let of_laws: OnGroups<Vec<f64>> = of_laws.collect();
+        let of_laws =
+            of_laws.map(|(&g, forces)| (g, self.of_laws(g, &answer, forces, loads.is_some())));
+        let forces: OnGroups<Vec<f64>> = of_laws.collect();
         // The balance under forces that cancel this residual against each point's own compliance: it is such that they
         // are the residual itself.
-        let acting = bddc.acting(self.context, None, &of_laws);
+        let acting = bddc.acting(self.context, None, &forces);
         let (_, of_correction) = bddc.condense(self.context, self.clusters, &acting, &none);
-        for (c, r) in &mut balance {
-            axpy(1.0, &of_correction[c], r);
-        }
+        add_multiple(1.0, &of_correction, &mut balance);
         self.gradients.add_up(&mut balance);
-        let sign = if has_loads { 1.0 } else { -1.0 };
-        let z = self.gradients.precondition(&balance);
-        let r = Pair {
-            x: balance,
-            forces: of_laws.clone(),
-        };
+        (answer, Pair { x: balance, forces }, b)
+    }
+
+    /// A residual r with what the preconditioner makes of it: [r, M r]. Collective.
+    fn preconditioned(&self, r: Pair) -> [Pair; 2] {
         let z = Pair {
-            x: z,
-            forces: of_laws,
+            x: self.gradients.precondition(&r.x),
+            forces: r.forces.clone(),
         };
-        (answer, [r.scaled(sign), z.scaled(sign)])
+        [r, z]
     }
 
     /// The negative residual of the laws of group g under these forces of its slipping points.
