@@ -29,8 +29,10 @@ use crate::tree::fronts::ActiveSetFronts;
 use crate::tree::slip_problem::{Laws, OnJumps, SlipProblem, fix};
 use crate::tree::solution::ActiveSetSolution;
 
-/// Best relative accuracy to which slip forces are adapted to the pressure.
+/// Best relative accuracy to which slip forces are adapted to the pressure, by solutions for such forces and by an
+/// iterative solver.
 const FOLLOWED: f64 = 1e-4;
+const FOLLOWED_BY_ITERATIONS: f64 = 1e-2;
 
 /// The part of the problem of the fixed active set that a rank holds.
 #[derive(Clone, Copy)]
@@ -295,10 +297,11 @@ fn follow(
 ) -> Result<ActiveSetSolution, Failure> {
     let at_rest = |(&g, prescribed): (&GroupId, &Vec<f64>)| (g, vec![0.0; prescribed.len()]);
     let forces: OnJumps = problem.prescribed.iter().map(at_rest).collect();
-    let has_to_nest = problem.has_laws() && !problem.is_coupled(fronts);
-    let tolerance = match has_to_nest {
-        true => Accuracy::FULL.tolerance,
-        false => tolerance,
+    let is_coupled = problem.is_coupled(fronts);
+    let (tolerance, accuracy) = match (is_coupled, problem.has_laws()) {
+        (true, _) => (FOLLOWED_BY_ITERATIONS, FOLLOWED_BY_ITERATIONS),
+        (false, true) => (Accuracy::FULL.tolerance, FOLLOWED),
+        (false, false) => (tolerance, FOLLOWED),
     };
-    problem.solve(fronts, forces, (tolerance, None), FOLLOWED)
+    problem.solve(fronts, forces, (tolerance, None), accuracy)
 }

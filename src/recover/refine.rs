@@ -26,7 +26,7 @@ const CORRECTED_ABOVE: f64 = 1e-12;
 /// Equilibrium and penetration that are good enough.
 const GOOD: f64 = 1e-14;
 /// Accuracy of a correction by an iterative solver.
-const CORRECTION: f64 = 1e-6;
+const CORRECTION: f64 = 1e-3;
 /// Most refinements.
 const MAX_REFINEMENTS: usize = 3;
 /// Most refinements with friction, whose forces follow the pressure, and turn in space.

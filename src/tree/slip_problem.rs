@@ -36,8 +36,10 @@ const PRODUCTS: usize = 40;
 /// Tolerance of the first product relative to the goal of GMRES. The nearer that goal, the less a product matters:
 /// later ones may be less exact in proportion (Bouras and Frayssé, SIAM J. Matrix Anal. Appl. 26, 2005).
 const PRODUCT: f64 = 0.3;
-/// Tolerance of an iterative solver that finds slip forces together with its own unknowns, relative to that without.
+/// Tolerance of an iterative solver that finds slip forces together with its own unknowns, relative to that without, and
+/// the least one: the rest is left to the refinement of the whole problem.
 const COUPLED: f64 = 0.01;
+const FINEST: f64 = 1e-14;
 /// Largest tolerance of a product.
 const LEAST_EXACT: f64 = 1e-2;
 
@@ -198,7 +200,7 @@ impl SlipProblem<'_> {
         let is_coupled = self.is_coupled(fronts);
         let laws = Some(self.laws).filter(|_| is_coupled);
         let first = match is_coupled {
-            true => (COUPLED * tolerance).max(f64::EPSILON),
+            true => (COUPLED * tolerance).max(FINEST),
             false => tolerance,
         };
         let mut solution = respond(fronts, (&forces, laws), first, start)?;
@@ -217,7 +219,7 @@ impl SlipProblem<'_> {
                 forces.clone_from(&solution.open_forces);
             }
             if is_coupled && round == 0 {
-                let finer = (reduction * first).max(f64::EPSILON);
+                let finer = (reduction * first).max(FINEST);
                 solution = respond(fronts, (&forces, laws), finer, Some(&solution))?;
                 continue;
             }
