@@ -134,7 +134,7 @@ impl<'a> Contacts<'a> {
             warnings.extend(self.interference(&points, &side_a, off, &what));
         }
         let count = points.len();
-        let kept = self.without_prescribed((number, &what), points)?;
+        let [kept, prescribed] = self.without_prescribed((number, &what), points)?;
         if kept.is_empty() {
             warnings.push(format!(
                 "{what}: all its nodes are prescribed; it has no condition"
@@ -150,6 +150,7 @@ impl<'a> Contacts<'a> {
             name: keys.name.clone(),
             points: kept,
             probes,
+            prescribed,
         })
     }
 
@@ -181,12 +182,12 @@ impl<'a> Contacts<'a> {
         Ok((side_a, paired))
     }
 
-    /// Removes points whose normal jump is prescribed by supports.
+    /// The points whose normal jump is free, and those of which supports prescribe it.
     fn without_prescribed(
         &self,
         of: (u32, &str),
         points: Vec<ContactPoint<u32>>,
-    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+    ) -> Result<[Vec<ContactPoint<u32>>; 2], InputError> {
         let slack = ROUNDING * self.size;
         (self.held).without_prescribed(of, points, slack, self.units)
     }
