@@ -185,6 +185,14 @@ impl ContactGroup {
         condition.is_tied && self.is_dropped(condition, &self.frames())
     }
 
+    /// Flags of the constraints of ties whose jump supports prescribe.
+    pub fn prescribed_ties(&self) -> Vec<bool> {
+        let frames = self.frames();
+        let of_tie =
+            |condition: Condition| condition.is_tied && self.row(&condition, &frames).is_empty();
+        self.conditions().map(of_tie).collect()
+    }
+
     /// True if a constraint of a tie is dropped in favour of the support of its slave node: the opposite nodes lie
     /// beside that node, and the constraint would repeat on them what the support prescribes.
     fn is_dropped(&self, condition: &Condition, frames: &[Frame]) -> bool {

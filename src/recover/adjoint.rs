@@ -20,6 +20,7 @@ mod contact_edges;
 mod crack_tip;
 mod derivatives;
 mod functional;
+mod held_ends;
 mod mesh_error;
 mod near_change;
 mod slip_conditions;
@@ -36,6 +37,7 @@ use contact_dd_partition::quantity::{Parameter, Quantity, QuantityKind};
 
 use self::derivatives::{Sensitivity, derivatives};
 use self::functional::{Functional, MaterialForces};
+use self::held_ends::HeldEnds;
 use self::mesh_error::MeshError;
 use self::near_change::about_to_change;
 use self::slipping::SlippingPoints;
@@ -111,6 +113,11 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
     if has_derivatives {
         all.about_to_change = about_to_change(solved);
     }
+    let sums_forces = |of: &Quantity| of.kind.adds_forces() || of.kind == QuantityKind::Reaction;
+    let held_ends = match has_derivatives && catalog.quantities.iter().any(sums_forces) {
+        true => HeldEnds::new(solved),
+        false => HeldEnds::default(),
+    };
     let directions = RefCell::default();
     for number in 0..catalog.quantities.len() {
         let functional = Functional::new(solved, number, &forces);
@@ -127,7 +134,7 @@ fn quantities(solved: Solved<'_>, without: Option<String>) -> Quantities {
                 ));
             } else {
                 found = derivatives(&sensitivity(parts, &problem, &state));
-                if let Some(of_mesh) = MeshError::new(solved, &functional, &state) {
+                if let Some(of_mesh) = MeshError::new(solved, (&functional, &held_ends), &state) {
                     error = Some(of_mesh.error);
                     error_bar = Some(of_mesh.bar);
                     if number == 0 {

@@ -18,7 +18,7 @@ use crate::problem::{
     Absent, Body, Catalog, ContactKind, ContactSummary, InitialStress, InterfaceNode, LoadStep,
     Problem, StepLoads, Subdomain, SubdomainNode, SubdomainSummary,
 };
-use crate::quantity::{LoadForce, NodalShares, NodeWeight};
+use crate::quantity::{Goals, LoadForce, NodalShares, NodeWeight, QuantityKind};
 
 impl Problem {
     /// Gives every subdomain its slice of `model`.
@@ -185,7 +185,7 @@ fn cut(
         subdomains[index as usize].springs.push(spring);
     }
     give_initial_stress(model, decomposition, owners, &mut subdomains);
-    give_shares(&model.goals.shares, owners, &mut subdomains);
+    give_shares(&model.goals, owners, &mut subdomains);
     Ok(subdomains)
 }
 
@@ -212,11 +212,19 @@ fn give_loads(model: &Model, owners: &Owners, subdomains: &mut [Subdomain]) {
     }
 }
 
-/// Gives every subdomain the weights and forces at nodes of which it is the lowest subdomain.
-fn give_shares(all: &NodalShares, owners: &Owners, subdomains: &mut [Subdomain]) {
+/// Gives every subdomain the weights and forces at nodes of which it is the lowest subdomain; those of reactions to all
+/// subdomains of a node, as supports are.
+fn give_shares(goals: &Goals, owners: &Owners, subdomains: &mut [Subdomain]) {
+    let all = &goals.shares;
     let first = |node: u32| owners.of.of(node as usize).first().copied();
     for weight in &all.weights {
-        if let Some((owner, node)) = first(weight.node) {
+        let quantity = &goals.quantities[weight.quantity as usize];
+        let owners = owners.of.of(weight.node as usize);
+        let count = match quantity.kind {
+            QuantityKind::Reaction => owners.len(),
+            _ => owners.len().min(1),
+        };
+        for &(owner, node) in &owners[..count] {
             let weights = &mut subdomains[owner as usize].shares.weights;
             weights.push(NodeWeight { node, ..*weight });
         }

@@ -1,5 +1,6 @@
 //! Γ_c: contacts n·(u_a − u_b) ≤ g as rows of B u ≤ g.
 
+mod given_gap;
 mod laws;
 mod single_nodes;
 mod tie;
@@ -15,14 +16,12 @@ use super::surface::{Surface, SurfaceFacet};
 use super::{Contact, groups, node_pairs, obstacle};
 use crate::contact_point::{ContactPoint, Probe};
 use crate::error::InputError;
-use crate::magnitude::short;
 use crate::mesh::Mesh;
 use crate::mesh::topology::Topology;
 use crate::scene::Scene;
 use crate::scene::condition::{Names, Obstacle};
 use crate::scene::contact::{self, Pairing, Partner};
 use crate::scene::material::PlaneState;
-use crate::scene::number::Number;
 use crate::scene::units::Units;
 
 /// Relative measured gap in space below which it is set to zero: round-off of coordinates would hold bodies apart, or
@@ -135,7 +134,7 @@ impl<'a> Contacts<'a> {
             warnings.extend(self.interference(&points, &side_a, off, &what));
         }
         let count = points.len();
-        let kept = self.without_prescribed((number, &what), points)?;
+        let [kept, prescribed] = self.without_prescribed((number, &what), points)?;
         if kept.is_empty() {
             warnings.push(format!(
                 "{what}: all its nodes are prescribed; it has no condition"
@@ -151,6 +150,7 @@ impl<'a> Contacts<'a> {
             name: keys.name.clone(),
             points: kept,
             probes,
+            prescribed,
         })
     }
 
@@ -182,12 +182,12 @@ impl<'a> Contacts<'a> {
         Ok((side_a, paired))
     }
 
-    /// Removes points whose normal jump is prescribed by supports.
+    /// The points whose normal jump is free, and those of which supports prescribe it.
     fn without_prescribed(
         &self,
         of: (u32, &str),
         points: Vec<ContactPoint<u32>>,
-    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+    ) -> Result<[Vec<ContactPoint<u32>>; 2], InputError> {
         let slack = ROUNDING * self.size;
         (self.held).without_prescribed(of, points, slack, self.units)
     }
@@ -253,47 +253,6 @@ impl<'a> Contacts<'a> {
                 .chain(paired.warning)
                 .collect(),
         })
-    }
-
-    /// Replaces the gaps measured on the mesh by a given one; returns a warning if the two differ much.
-    ///
-    /// # Errors
-    /// A gap that isn't finite at a point.
-    fn give_gap(
-        &self,
-        gap: &Number,
-        paired: &mut Paired,
-        side_a: &Surface,
-        what: &str,
-    ) -> Result<Option<String>, InputError> {
-        let unit = self.units.length();
-        let at = |x: [f64; 3]| {
-            gap.at(x)
-                .map_err(|reason| InputError::new(format!("{what}.gap: {reason}")))
-        };
-        paired.off = 0.0;
-        let mut furthest = (0.0, 0.0, 0.0);
-        for point in &mut paired.points {
-            let given = at(point.position)?;
-            let measured = std::mem::replace(&mut point.gap, given);
-            furthest = match (given - measured).abs() {
-                away if away > furthest.0 => (away, given, measured),
-                _ => furthest,
-            };
-        }
-        for probe in &mut paired.probes {
-            let place = (probe.entries.first()).map(|&(node, _)| self.mesh.points[node as usize]);
-            probe.gap = at(place.unwrap_or_default())?;
-        }
-        let (away, given, measured) = furthest;
-        Ok((away > side_a.extent()).then(|| {
-            format!(
-                "{what}.gap: it is {} {unit} where the mesh has {} {unit}, which is off by more than the side \
-                 measures; are place and units right?",
-                short(given),
-                short(measured)
-            )
-        }))
     }
 
     fn side(&self, names: &Names, what: &str) -> Result<(Vec<u32>, Surface), InputError> {

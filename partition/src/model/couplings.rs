@@ -207,6 +207,7 @@ impl CouplingOnMesh<'_> {
                 name: self.coupling.name.clone(),
                 points,
                 probes: Vec::new(),
+                prescribed: Vec::new(),
             },
             cell: cell as u32,
             loads: steps.iter().map(|step| frame.loads(step)).collect(),

@@ -64,6 +64,7 @@ pub(super) fn cyclic(
             name: cyclic.name.clone(),
             points,
             probes: Vec::new(),
+            prescribed: Vec::new(),
         });
     }
     Ok(all)

@@ -37,6 +37,7 @@ pub(super) fn equations(
                     name: name.clone(),
                     points: Vec::new(),
                     probes: Vec::new(),
+                    prescribed: Vec::new(),
                 });
                 all.len() - 1
             }

@@ -44,7 +44,8 @@ impl HeldNodes {
         held.map(|held| held.direction[k].powi(2)).sum::<f64>() > ALONG
     }
 
-    /// The points of contact `number` whose normal jump isn't prescribed by supports; gaps are exact to `slack` (m).
+    /// The points of contact `number` whose normal jump isn't prescribed by supports, and those of which it is; gaps are
+    /// exact to `slack` (m).
     ///
     /// # Errors
     /// A point at which supports prescribe penetration.
@@ -54,9 +55,10 @@ impl HeldNodes {
         points: Vec<ContactPoint<u32>>,
         slack: f64,
         units: Units,
-    ) -> Result<Vec<ContactPoint<u32>>, InputError> {
+    ) -> Result<[Vec<ContactPoint<u32>>; 2], InputError> {
         let unit = units.length();
         let mut kept = Vec::with_capacity(points.len());
+        let mut prescribed = Vec::new();
         for point in points {
             let Some(jumps) = self.prescribed_jump(&point) else {
                 kept.push(ContactPoint {
@@ -75,8 +77,9 @@ impl HeldNodes {
                     point.gap
                 )));
             }
+            prescribed.push(point);
         }
-        Ok(kept)
+        Ok([kept, prescribed])
     }
 
     /// The normal jump in every load step of a point all of whose nodes are prescribed along the normal. `None` if one

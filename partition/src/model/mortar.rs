@@ -37,3 +37,4 @@ mod weights;
 pub(super) use self::foot::foot_on;
 pub(super) use self::pairing::{Mortar, pair};
 pub(super) use self::probes::opposite;
+pub(super) use self::rows::bounded;

@@ -65,4 +65,6 @@ pub struct Contact {
     pub points: Vec<ContactPoint<u32>>,
     /// Points at which the side without constraints is checked for penetration; none for matching nodes.
     pub probes: Vec<Probe<u32>>,
+    /// Points without constraints, as supports prescribe their normal jumps.
+    pub prescribed: Vec<ContactPoint<u32>>,
 }

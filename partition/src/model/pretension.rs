@@ -69,7 +69,7 @@ impl Pretensions {
             let number = (first + all.contacts.len()) as u32;
             let points = bolt.equations(&given);
             let slack = 0.0;
-            let points =
+            let [points, _] =
                 held.without_prescribed((number, &bolt.what), points, slack, scene.units)?;
             all.contacts.push(contact(pretension.name.clone(), points));
             let is_free = |given: &Tightening| matches!(given, Tightening::Force(_));
@@ -95,6 +95,7 @@ fn contact(name: String, points: Vec<ContactPoint<u32>>) -> Contact {
         name,
         points,
         probes: Vec::new(),
+        prescribed: Vec::new(),
     }
 }
 

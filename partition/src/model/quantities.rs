@@ -6,7 +6,7 @@ mod shared_nodes;
 use super::bodies::Bodies;
 use super::crack_tips::CrackTips;
 use super::initial_stress::{InitialStress, mean_weights};
-use super::{Contact, Material, PlaneState};
+use super::{Contact, Material, PlaneState, groups};
 use crate::contact_point::ContactPoint;
 use crate::error::InputError;
 use crate::mesh::topology::Topology;
@@ -83,7 +83,13 @@ impl Known<'_> {
             Target::Reaction { on, along } => {
                 quantity.kind = QuantityKind::Reaction;
                 quantity.direction = self.of_force(along)?;
-                quantity.of = self.conditions(on)?;
+                let is_part;
+                (quantity.of, is_part) = self.conditions(on)?;
+                if is_part {
+                    let nodes = groups::nodes(&self.bodies.mesh, &on.clone().into(), "on");
+                    let nodes = nodes.map_err(|error| error.to_string())?;
+                    weights.extend(nodes.into_iter().map(|node| (node, along.value)));
+                }
             }
             Target::CrackTip { tip, kind } => {
                 quantity.kind = *kind;
@@ -144,7 +150,8 @@ impl Known<'_> {
     /// Sets the contact whose forces a quantity adds up, and what of it belongs to nodes that both sides share.
     fn set_forces(&self, name: &str, or_tie: bool, quantity: &mut Quantity) -> Result<(), String> {
         let (number, points) = self.contact(name, or_tie)?;
-        let shared = self.shared_nodes(points);
+        let mut shared = self.shared_nodes(points);
+        shared.add_prescribed(&self.contacts[number as usize].prescribed, points);
         quantity.of = vec![number];
         if !shared.beside.is_empty() {
             quantity.length = shared.area;
@@ -219,8 +226,8 @@ impl Known<'_> {
         })
     }
 
-    /// The numbers of the supports and springs on a group.
-    fn conditions(&self, on: &str) -> Result<Vec<u32>, String> {
+    /// The numbers of the supports and springs on a group, and whether any of them is on other groups, too.
+    fn conditions(&self, on: &str) -> Result<(Vec<u32>, bool), String> {
         let scene = self.scene;
         let loadings = scene.loadings();
         let displacements = loadings.first().map_or(&[][..], |of| of.displacement);
@@ -235,12 +242,16 @@ impl Known<'_> {
                 .clone()
                 .map(|of| of.into_iter().flat_map(|of| of.iter()))
         };
-        let found = (0..).zip(groups());
-        let found =
-            found.filter_map(|(number, mut groups)| groups.any(|of| of == on).then_some(number));
-        let found: Vec<u32> = found.collect();
+        let (mut found, mut is_part) = (Vec::new(), false);
+        for (number, groups) in (0..).zip(groups()) {
+            let groups: Vec<&str> = groups.collect();
+            if groups.contains(&on) {
+                found.push(number);
+                is_part |= groups.len() > 1;
+            }
+        }
         if !found.is_empty() {
-            return Ok(found);
+            return Ok((found, is_part));
         }
         let mut known: Vec<&str> = groups().flatten().collect();
         known.sort_unstable();

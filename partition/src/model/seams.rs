@@ -190,6 +190,7 @@ mod tests {
             name: String::new(),
             points,
             probes: Vec::new(),
+            prescribed: Vec::new(),
         };
         let mut contacts = [contact(vec![tie]), contact(points)];
         let before = contacts.clone();

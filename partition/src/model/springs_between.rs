@@ -31,6 +31,7 @@ pub(super) fn springs_between(
             name: spring.title(),
             points: points(spring, mesh, &what, (first + number) as u32)?,
             probes: Vec::new(),
+            prescribed: Vec::new(),
         })
     };
     scene.springs_between().enumerate().map(spring).collect()

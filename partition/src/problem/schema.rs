@@ -277,17 +277,19 @@ pub const FIELDS: &[Field] = &[
     field("/quantity/point", "J, d", Numbers, "reference point of a moment [m]; zeros for other kinds"),
     field("/quantity/length", "J", NotNegative,
         "length over which a largest pressure is smoothed [m], 0 for that of a point; for forces of a contact (3, 4, 11) the area of \
-         the nodes that both sides share [m, in space m²]; 0 for other kinds"),
+         the nodes that both sides share, or that supports hold [m, in space m²]; 0 for other kinds"),
     field("/quantity/constant", "J, L?", Numbers,
         "constant added to the sum of weights times displacements, in every load step: the mean of the initial stress"),
     field("/quantity/node", "J", Integers, "name (`GlobalNodeId`) of the node of a displacement or a gap; −1 for other kinds"),
     field("/quantity/of_offset", "J + 1", Offsets('D'), "slices of `of`"),
     field("/quantity/of", "D", Integers,
         "by kind: 1 the materials of the body; 2 the conditions, indices into `/support/name`; 3 to 5 and 11 the contact, followed \
-         by the places in it of the points beside nodes that both sides share (not 5); 6 the contact \
+         by the places in it of the points beside such nodes (not 5); 6 the contact \
          and the point's place in it; 8 to 10 the crack tip; none for others"),
     field("/weight/offset", "N + 1", Offsets('w'), "slices of the datasets below"),
-    field("/weight/quantity", "w", Indices("quantity", 'J'), "index of a quantity of kind 0 or 1"),
+    field("/weight/quantity", "w", Indices("quantity", 'J'),
+        "index of a quantity of kind 0 or 1, or of kind 2 for the nodes whose reactions count, in all subdomains \
+         that have them; without any all nodes of its conditions count"),
     field("/weight/node", "w", Integers, "node, counted within the subdomain"),
     field("/weight/value", "w, d", Numbers,
         "factors of its displacement in the quantity; the parts of several subdomains add up"),

@@ -76,6 +76,7 @@ impl Builder {
             name: name.into(),
             points,
             probes: Vec::new(),
+            prescribed: Vec::new(),
         });
     }
 

@@ -131,7 +131,7 @@ fn point_pairs(solved: Solved<'_>, of: &Transposed, g: GroupId) -> Vec<PointPair
 }
 
 /// The pairs of neighbouring points: hardly farther from each other than from their nearest ones.
-fn neighbours(at: &[[f64; 3]]) -> Vec<(usize, usize)> {
+pub(super) fn neighbours(at: &[[f64; 3]]) -> Vec<(usize, usize)> {
     let extent = |axis: usize| {
         let all = at.iter().map(|x| x[axis]);
         let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {

@@ -16,12 +16,14 @@
 //! the quantity's own weights with the mesh. Its bar allows for them. Weights of stresses that vary from cell to cell,
 //! as those around a crack tip, make σ(w) as rough as they are: recovery can't estimate its error there.
 
+use contact_dd_partition::element::ElementKind;
 use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::quantity::QuantityKind;
 
 use super::contact_edges::edges;
 use super::functional::Functional;
+use super::held_ends::HeldEnds;
 use super::solved::Solved;
 use super::transposed::Transposed;
 use crate::context::Context;
@@ -33,11 +35,18 @@ const OF_ENERGY: f64 = 0.5;
 /// What gaps add to the error of an energy, relative to that of loads, below which it is left out.
 const OF_GAPS: f64 = 0.25;
 
+/// What linear triangles and tetrahedra, and other linear cells, have as an error relative to its estimate at most, as
+/// recovery sees a part of it only where stresses are unbounded, or cells few; in place of `OF_ESTIMATE`.
+const OF_TRIANGLES: f64 = 1.75;
+const OF_TETRAHEDRA: f64 = 3.0;
+const OF_LINEAR: f64 = 1.6;
 /// The bar relative to the estimate; to the sum of the sizes of its contributions, which may cancel by chance; and to
 /// the products at the edges of contact. The values fit the comparisons with fine meshes in docs/accuracy.md.
 const OF_ESTIMATE: f64 = 1.5;
 const OF_SIZES: f64 = 0.75;
 const OF_EDGES: f64 = 0.1;
+/// The bar relative to what forces lack at supports, in addition to its part of the estimate.
+const OF_LACK: f64 = 0.5;
 /// What a bar is longer by where the nodes of contacts don't match.
 const NOT_MATCHING: f64 = 1.5;
 /// The least bar relative to the value, for round-off.
@@ -57,7 +66,11 @@ pub struct MeshError {
 impl MeshError {
     /// The error of a quantity whose transposed problem is solved; `None` without stresses, where nothing changes the
     /// quantity, and for the pressure of a single point or a quantity of a crack tip. Collective.
-    pub fn new(solved: Solved<'_>, functional: &Functional, of: &Transposed) -> Option<Self> {
+    pub fn new(
+        solved: Solved<'_>,
+        (functional, held_ends): (&Functional, &HeldEnds),
+        of: &Transposed,
+    ) -> Option<Self> {
         let context = &solved.fixed.context;
         let quantity = &context.catalog.quantities[functional.number];
         let has_estimate = match quantity.kind {
@@ -93,7 +106,10 @@ impl MeshError {
                 (error, sizes, of_cells) = (by_loads, sizes.max(sizes_by_loads), of_loads);
             }
         }
-        let least = (OF_ESTIMATE * most.max(error.abs())).max(OF_SIZES * sizes);
+        let lack = held_ends.lack(solved, functional);
+        error -= lack;
+        let of_estimate = of_estimate(context);
+        let least = (of_estimate * most.max(error.abs())).max(OF_SIZES * sizes);
         let matching = match nodes_match(context.catalog) {
             true => 1.0,
             false => NOT_MATCHING,
@@ -101,11 +117,25 @@ impl MeshError {
         Some(Self {
             error,
             bar: matching * (least + OF_EDGES * edges(solved, of))
+                + OF_LACK * lack.abs()
                 + functional.beside
                 + ROUND_OFF * functional.value.abs(),
             of_cells,
         })
     }
+}
+
+/// The bar relative to the estimate: the largest for any cell. Collective.
+fn of_estimate(context: &Context<'_>) -> f64 {
+    let cells = context.blocks.values().flat_map(|block| block.cells());
+    let factors = cells.map(|cell| match cell.kind {
+        ElementKind::Triangle3 => OF_TRIANGLES,
+        ElementKind::Tetrahedron4 => OF_TETRAHEDRA,
+        kind if kind.is_linear() => OF_LINEAR,
+        _ => OF_ESTIMATE,
+    });
+    let own = factors.fold(OF_ESTIMATE, f64::max);
+    context.comm.largest([&own])
 }
 
 /// The sum of contributions, and that of their sizes; on the root. Collective.

@@ -1,7 +1,11 @@
 //! The largest pressure of a contact, smoothed over a length.
 //!
 //! With the distance r of two points and k = max(0, 1 − r/length), the smoothed pressure at a point is Σ k λ / Σ k A
-//! over all points with their forces λ and areas A: the mean pressure in a window whose weights fall to its rim.
+//! over all points with their forces λ and areas A: the mean pressure in a window whose weights fall to its rim. On a
+//! finer mesh the weights within the facets count, too: the pressure with weights averaged over the neighbours of each
+//! point, as those of a consistent mass matrix, tells how much that may change.
+
+use std::collections::HashMap;
 
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{difference, length};
@@ -9,9 +13,13 @@ use contact_dd_partition::id::GroupId;
 use contact_dd_partition::problem::{Catalog, SubdomainNode};
 use contact_dd_partition::quantity::Quantity;
 
+use super::contact_edges::neighbours;
 use super::functional::Functional;
 use super::solved::Solved;
 use crate::bytes::Reals;
+
+/// The part of the difference that averaged weights make which is added to the bar.
+const OF_WINDOW: f64 = 0.5;
 
 /// The points of a contact, along the axis in which they extend farthest.
 struct Surface<'a> {
@@ -76,6 +84,36 @@ impl<'a> Surface<'a> {
             .sum()
     }
 
+    /// The smoothed pressure around a point with weights averaged over neighbours, ⅔ k + ⅓ of the mean of theirs.
+    fn averaged(&self, forces: &[f64], center: usize) -> f64 {
+        let mut own = vec![0.0; self.order.len()];
+        let at: Vec<[f64; 3]> = (self.order.iter())
+            .map(|&place| self.point(place).position)
+            .collect();
+        let number: HashMap<usize, usize> = (self.order.iter().enumerate())
+            .map(|(i, &place)| (place, i))
+            .collect();
+        for (place, k) in self.around(center) {
+            own[number[&place]] = k;
+        }
+        let mut beside = vec![(0.0, 0.0); own.len()];
+        for (i, j) in neighbours(&at) {
+            for (i, j) in [(i, j), (j, i)] {
+                beside[i] = (beside[i].0 + own[j], beside[i].1 + 1.0);
+            }
+        }
+        let (mut force, mut area) = (0.0, 0.0);
+        for ((&place, k), (sum, count)) in self.order.iter().zip(own).zip(beside) {
+            let k = match count > 0.0 {
+                true => (2.0 * k + sum / count) / 3.0,
+                false => k,
+            };
+            force += k * forces[place];
+            area += k * self.point(place).area;
+        }
+        force / area
+    }
+
     /// The largest smoothed pressure of forces, by indices in the catalog, and its point.
     fn largest(&self, forces: &[f64]) -> Option<(f64, usize)> {
         let pressure = |&center: &usize| {
@@ -112,6 +150,9 @@ impl Functional {
         );
         let is_root = context.comm.is_root();
         let mut largest = is_root.then(|| surface.largest(&forces)).flatten();
+        if let Some((pressure, center)) = largest {
+            self.beside = OF_WINDOW * (surface.averaged(&forces, center) - pressure).abs();
+        }
         context.comm.broadcast(&mut largest);
         let Some((pressure, center)) = largest else {
             return;

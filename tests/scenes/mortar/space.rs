@@ -63,6 +63,51 @@ fn is_uniform(solution: &Solution) {
     assert!(solution.points().all(|point| point.tags[1] == -1));
 }
 
+/// Displacements of the shape of a given gap fill it at every point, also of faces whose points have several nodes.
+#[test]
+fn a_displacement_of_the_shape_of_a_given_gap_fills_it_at_every_point() {
+    let gap = |[x, y, _]: [f64; 3]| 1e-4 * (3.0 + x * x + x * y - y);
+    let given = "gap = '1e-4*(3 + x^2 + x*y - y)'";
+    for kind in SOLIDS {
+        let mesh = joined(
+            block("lower", kind, [2, 3, 2], [0.0; 3], [2.0, 2.0, 1.0]),
+            block("upper", kind, [3, 2, 1], [0.0, 0.0, 1.0], [2.0; 3]),
+        );
+        let scene = SCENE.replace("'lower z0', ", "");
+        let text = format!(
+            "{scene}[[contact]]\nname = 'joint'\nsides = ['upper z0', 'lower z1']\n{given}\n[[contact]]\n\
+             name = 'floor'\nsides = ['lower z0']\nobstacle = {{point = [0, 0, 0], normal = [0, 0, 1]}}\n{given}\n"
+        );
+        let model = model(&text, mesh);
+        // The nodes of one body alone move: of two sides those that carry the constraints.
+        for (contact, sides) in model
+            .contacts
+            .iter()
+            .zip([["upper z0", "lower z1"], ["lower z0"; 2]])
+        {
+            let moved = sides.map(|side| {
+                let mut u = vec![0.0; 3 * model.mesh.points.len()];
+                for &facet in &model.mesh.groups[side].members {
+                    for &node in model.mesh.facets.nodes_of(facet as usize) {
+                        u[3 * node as usize + 2] = gap(model.mesh.points[node as usize]);
+                    }
+                }
+                u
+            });
+            for point in &contact.points {
+                let moved = &moved[usize::from(point.tag_a == -1)];
+                let filled = point.jump_along(point.normal(), 3, moved).abs();
+                assert!(
+                    (filled - point.gap).abs() < 1e-15,
+                    "{kind:?} at {:?}: {filled:e}, gap {:e}",
+                    point.position,
+                    point.gap
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn a_uniform_pressure_passes_between_solids_of_any_cells() {
     for (i, lower) in SOLIDS.into_iter().enumerate() {

@@ -121,6 +121,77 @@ fn the_energy_of_prescribed_displacements_has_its_error() {
     }
 }
 
+/// Two layers that are tied, and clamped at the end of the tie.
+fn layers(cells: &str, fine: usize, layer: usize) -> Value {
+    let text = "plane = 'strain'
+        materials.rock = {young = 2e10, poisson = 0.25}
+        materials.steel = {young = 8e10, poisson = 0.3}
+        bodies.low.material = 'rock'
+        bodies.high.material = 'steel'
+        [[displacement]]
+        on = 'low left'
+        x = 0
+        y = 0
+        [[displacement]]
+        on = 'high left'
+        x = 0
+        y = 0
+        [[pressure]]
+        on = 'high top'
+        value = 1e6
+        [[tie]]
+        name = 'glue'
+        sides = ['high bottom', 'low top']
+        [[quantity]]
+        name = 'shear'
+        kind = 'contact_force'
+        contact = 'glue'
+        direction = 'x'
+        [[quantity]]
+        name = 'pressed'
+        kind = 'contact_force'
+        contact = 'glue'
+        [[quantity]]
+        name = 'held'
+        kind = 'reaction'
+        on = 'low left'
+        direction = 'y'
+        [[quantity]]
+        name = 'held above'
+        kind = 'reaction'
+        on = 'high left'
+        direction = 'y'";
+    let blocks = Blocks::new()
+        .rectangle("low", [0.0, 2.0], [0.0, 1.0], [8 * fine, 4 * fine])
+        .rectangle("high", [0.0, 2.0], [1.0, 2.0], [layer * fine, 4 * fine]);
+    solve(&model(text, sort(cells).of(&blocks.mesh)), 4).report
+}
+
+/// Nodes at the support carry no force of the tie, whose sum lacks it.
+#[test]
+fn bars_hold_the_error_of_a_tie_that_ends_at_a_support() {
+    let exact = quantities(&layers("quad9", 8, 8));
+    for (cells, layer) in [
+        ("quad4", 8),
+        ("quad8", 8),
+        ("triangle6", 8),
+        ("quad4", 6),
+        ("quad8", 6),
+    ] {
+        let mesh = quantities(&layers(cells, 1, layer));
+        for (name, exact) in &exact {
+            let error = number(&mesh[name], "value") - number(exact, "value");
+            let [told, bar] = ["error", "error_bar"].map(|key| number(&mesh[name], key));
+            let words = format!("{cells}, {layer}, {name}: {error:e}, told {told:e}, bar {bar:e}");
+            assert!(error.abs() < bar, "{words}");
+            assert!(
+                name != "shear" || (0.6 < error / told && error / told < 1.4),
+                "{words}"
+            );
+        }
+    }
+}
+
 /// A crack in a plate under a uniform pressure, which is that on its faces, too.
 #[test]
 fn the_force_of_a_crack_counts_its_tip() {

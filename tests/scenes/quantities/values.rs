@@ -2,13 +2,14 @@
 
 use contact_dd_partition::model::Model;
 use contact_dd_partition::scene::Scene;
+use serde_json::Value;
 
 use super::{FRICTION, KNOBS, Knob, in_plane, plane, quantities, varied};
 use crate::support::blocks::Blocks;
 use crate::support::close::close;
 use crate::support::scenes::model;
 use crate::support::solution::Solution;
-use crate::support::solver::{Case, solve_steps};
+use crate::support::solver::{Case, solve, solve_steps};
 
 #[test]
 fn quantities_are_those_of_the_fields() {
@@ -82,6 +83,58 @@ fn quantities_are_those_of_the_fields() {
     let error = report["error_estimate"]["error"].as_f64().unwrap();
     let stored = all["stored"]["value"].as_f64().unwrap();
     assert!((stored - 0.5 * norm * norm).abs() <= 0.5 * error * error + 1e-9 * stored);
+}
+
+/// A support and a foundation of several groups: of each group its own part, on nodes of several subdomains, too.
+#[test]
+fn the_reaction_of_a_group_is_without_those_of_others_of_its_condition() {
+    let scene = |on: [&str; 2], asked: &str| {
+        format!(
+            "plane = 'strain'
+            materials.rock = {{young = 2e10, poisson = 0.25}}
+            bodies.beam.material = 'rock'
+            {}
+            [[spring]]
+            on = ['beam bottom', 'beam top']
+            stiffness = [1e7, 3e9]
+            [[force]]
+            on = 'beam top'
+            total = [1e4, -3e5]
+            {asked}",
+            on.map(|on| format!("[[displacement]]\non = {on}\nx = 0\ny = '1e-5*x'\n"))
+                .join("\n"),
+        )
+    };
+    let asked = ["left", "right", "bottom", "top"].map(|side| {
+        format!(
+            "[[quantity]]\nname = '{side}'\nkind = 'reaction'\non = 'beam {side}'\ndirection = [1.0, 2.0]\n"
+        )
+    });
+    let asked = asked.join("");
+    let blocks = Blocks::new().rectangle("beam", [0.0, 3.0], [0.0, 1.0], [9, 5]);
+    let solved = |scene: &str, subdomains: usize| {
+        quantities(&solve(&model(scene, blocks.mesh.clone()), subdomains).report)
+    };
+    let apart = solved(&scene(["'beam left'", "'beam right'"], &asked), 1);
+    let number = |of: &Value| of["value"].as_f64().unwrap();
+    for subdomains in [1, 5] {
+        let both = scene(["['beam left', 'beam right']"; 2], &asked);
+        let both = both.replacen(
+            "[[displacement]]\non = ['beam left', 'beam right']\nx = 0\ny = '1e-5*x'\n",
+            "",
+            1,
+        );
+        let all = solved(&both, subdomains);
+        for side in ["left", "right"] {
+            close(number(&all[side]), number(&apart[side]), 1e-6);
+            let of = |all: &Value| all["derivatives"][0]["derivative"].as_f64().unwrap();
+            close(of(&all[side]), of(&apart[side]), 1e-6);
+        }
+        // All forces are in balance.
+        let sum: f64 = all.values().map(number).sum();
+        close(sum, -(1e4 - 6e5) / 5f64.sqrt(), 1e-5);
+        assert!((number(&all["top"]) - number(&all["bottom"])).abs() > 1.0);
+    }
 }
 
 /// The derivative in a load step is with respect to its own loads, without friction.

@@ -59,6 +59,7 @@ impl Contacts<'_> {
             name: keys.name.clone(),
             points: points.collect(),
             probes: Vec::new(),
+            prescribed: Vec::new(),
         })
     }
 

@@ -19,6 +19,11 @@ const ROUND_OFF: f64 = 1e-13;
 /// about equal.
 const LEAST_GAP_RATIO: f64 = 0.8;
 
+/// A weighted gap, bounded by the smallest gap around it.
+pub(in crate::model) fn bounded(gap: f64, least: f64) -> f64 {
+    gap.max(least.min(LEAST_GAP_RATIO * least))
+}
+
 /// Mean square of the distances of nodes, relative to the part of side a, below which they coincide.
 const COINCIDENT: f64 = 1e-8;
 
@@ -256,7 +261,7 @@ impl Row {
         entries.sort_by_key(|&(node, _)| node != a.node);
         let tag_a = mesh.node_tags[a.node as usize];
         ContactPoint {
-            gap: (self.gap / self.area).max(self.least_gap.min(LEAST_GAP_RATIO * self.least_gap)),
+            gap: bounded(self.gap / self.area, self.least_gap),
             area: self.area,
             force_point,
             ..ContactPoint::new(entries, normal, a.position, tag_a)

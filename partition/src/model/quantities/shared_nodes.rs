@@ -1,11 +1,16 @@
-//! Nodes that both sides of a contact share: crack tips, in space crack fronts. No point carries the pressure on their
-//! part of the sides, which quantities of the contact count by that of the points beside them.
+//! Nodes that both sides of a contact share: crack tips, in space crack fronts; and nodes of both sides at a support that
+//! prescribes the jump between them. No point carries the pressure on their part of the sides, which quantities of the
+//! contact count by that of the points beside them.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::Known;
 use crate::contact_point::ContactPoint;
+use crate::element::geometry::{difference, length};
 use crate::model::surface::{Surface, SurfaceFacet};
+
+/// Distance of neighbours, relative to that of the nearest one.
+const NEIGHBOUR: f64 = 1.5;
 
 /// The part of a contact that belongs to shared nodes.
 #[derive(Default)]
@@ -14,6 +19,37 @@ pub(super) struct SharedNodes {
     pub area: f64,
     /// The points that have a facet with them, by their places in the contact.
     pub beside: Vec<u32>,
+}
+
+impl SharedNodes {
+    /// Adds points at supports that end a contact of two sides with these `points`. Where supports hold whole facets
+    /// they carry the force, not the contact: only points beside others count.
+    pub fn add_prescribed(
+        &mut self,
+        prescribed: &[ContactPoint<u32>],
+        points: &[ContactPoint<u32>],
+    ) {
+        // The weights of two sides cancel, unlike those of a side and an obstacle.
+        let has_sides = |point: &&ContactPoint<u32>| {
+            let weights = point.entries.iter().map(|(_, weight)| weight);
+            weights.sum::<f64>().abs() < 0.5
+        };
+        for end in prescribed.iter().filter(has_sides) {
+            let away = |other: &ContactPoint<u32>| length(difference(other.position, end.position));
+            let others = prescribed.iter().map(away).filter(|away| *away > 0.0);
+            let nearest = points.iter().map(away).fold(f64::INFINITY, f64::min);
+            if nearest > NEIGHBOUR * others.fold(f64::INFINITY, f64::min) {
+                continue;
+            }
+            let beside = points
+                .iter()
+                .filter(|point| away(point) <= NEIGHBOUR * nearest);
+            self.beside.extend(beside.map(|point| point.place));
+            self.area += end.area;
+        }
+        self.beside.sort_unstable();
+        self.beside.dedup();
+    }
 }
 
 impl Known<'_> {
