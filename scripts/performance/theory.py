@@ -1,4 +1,4 @@
-"""The picture of docs/theory.md: the bar that the page computes by hand, and the laws of contact and friction; run it by
+"""The picture of docs/theory.md: the bar that the page computes by hand, and the laws of contact and friction; run by
 scripts/sketches.
 
     theory.py PICTURE.svg"""

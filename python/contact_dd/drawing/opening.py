@@ -97,7 +97,7 @@ def stresses(result, units):
 
 def place(result, node, units):
     point = result.points[node][: 3 if result.is_in_space else 2]
-    # What is round-off of the size is nothing.
+    # Round-off relative to the size of the model.
     nothing = 1e-9 * np.ptp(result.points, axis=0).max()
     axes = zip("xyz" if result.is_in_space else "xy", point, strict=True)
     return ", ".join(f"{name} = {si(0 if abs(at) < nothing else at, units.length)}" for name, at in axes)

@@ -23,8 +23,8 @@ DASHES = (0, (5, 3))
 # Where contacts press within so small a part of the size, a second panel shows that part.
 SMALL = 1 / 6
 
-# Where it is smaller than this part of the size, the first panel shows what is around it, so many times as wide: all
-# would be a plain area.
+# Share of the size below which the first panel shows the surroundings only, and their width over that of the part: a
+# panel of everything would be a plain area.
 SMALLER, SURROUNDINGS = 1 / 12, 7.0
 
 # Width of that part over the width of what presses.

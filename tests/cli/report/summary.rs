@@ -76,8 +76,11 @@ fn what_is_no_result_gets_no_page() {
     fs::write(&file, "other").unwrap();
     let refused = summary(&[&file]);
     assert_eq!(refused.code(), 2);
-    let said = &refused.stderr;
-    assert!(said.contains("other.vtkhdf: isn't a result"), "{said}");
+    let printed = &refused.stderr;
+    assert!(
+        printed.contains("other.vtkhdf: isn't a result"),
+        "{printed}"
+    );
     assert!(!file.with_extension("html").exists());
 }
 
@@ -122,10 +125,10 @@ fn a_second_result_is_not_taken_for_the_name_of_the_page() {
     fs::write(&other, "other").unwrap();
     let refused = summary(&[&case.result(), &other]);
     assert_eq!(refused.code(), 2);
-    let said = &refused.stderr;
+    let printed = &refused.stderr;
     assert!(
-        said.contains("other.vtkhdf: isn't the name of a page"),
-        "{said}"
+        printed.contains("other.vtkhdf: isn't the name of a page"),
+        "{printed}"
     );
     assert_eq!(fs::read_to_string(&other).unwrap(), "other");
 }
