@@ -64,6 +64,10 @@ fn a_page_says_how_the_run_ended_and_draws_its_contacts() {
     assert!(converged.contains("left crack") && converged.contains("31 of 48"));
     assert!(short.contains("<h2>Warnings</h2>") && !converged.contains("<h2>Warnings</h2>"));
     assert!(linear.contains("No contact"));
+    // Numbers that aren't to be used stand behind that sentence.
+    let first = "<h2>In short</h2><p>The run did not converge";
+    assert!(short.contains(first) && !converged.contains("did not converge"));
+    assert!(short.contains("not solved in") && converged.contains(", solved in"));
 }
 
 #[test]
