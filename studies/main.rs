@@ -47,7 +47,7 @@ enum Study {
 
 /// Date and commit of a measured page, in the words of all of them.
 fn measured() -> String {
-    let said = |command: &mut Command| match command.output() {
+    let printed = |command: &mut Command| match command.output() {
         Ok(output) => String::from_utf8_lossy(&output.stdout).trim().to_owned(),
         Err(_) => "unknown".to_owned(),
     };
@@ -60,8 +60,8 @@ fn measured() -> String {
     ];
     format!(
         "Measured on {} at commit {}",
-        said(Command::new("date").arg("+%F")),
-        said(Command::new("git").args(commit))
+        printed(Command::new("date").arg("+%F")),
+        printed(Command::new("git").args(commit))
     )
 }
 

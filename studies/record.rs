@@ -134,7 +134,7 @@ pub fn run(arguments: &Arguments) -> ExitCode {
                 };
                 record.rows.insert(key, Row::new(ran.friction, &ran.trial));
             }
-            // What is known by now is there even if this is stopped.
+            // Results so far are kept if the study is stopped.
             std::fs::write(&arguments.file, record.to_text()).unwrap();
         }
     }

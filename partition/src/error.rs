@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_message_is_short_whatever_it_cites() {
-        let said = |found: &str| {
+        let printed = |found: &str| {
             InputError::new(format!(
                 "line 3: expected a number, found `{found}`; expected more"
             ))
@@ -105,13 +105,13 @@ mod tests {
             .to_string()
         };
         assert_eq!(
-            said("x\u{1b}[31m"),
+            printed("x\u{1b}[31m"),
             "a.inp: line 3: expected a number, found `x\\u{1b}[31m`; expected more"
         );
-        let word = said(&"9".repeat(100_000));
+        let word = printed(&"9".repeat(100_000));
         assert!(word.len() < 1200, "{}", word.len());
         assert!(word.ends_with("9… expected more"), "{word}");
-        let text = said(&"9 ".repeat(100_000));
+        let text = printed(&"9 ".repeat(100_000));
         assert!(text.len() < 5200, "{}", text.len());
         assert!(text.ends_with('…'), "{text}");
     }

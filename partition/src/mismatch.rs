@@ -80,7 +80,7 @@ mod tests {
     use std::collections::BTreeMap;
     use std::path::PathBuf;
 
-    fn said<'de, T: Deserialize<'de>>(value: &'de str) -> String {
+    fn printed<'de, T: Deserialize<'de>>(value: &'de str) -> String {
         match serde_json::from_str::<T>(value) {
             Ok(_) => "nothing".into(),
             Err(error) => {
@@ -107,58 +107,67 @@ mod tests {
 
     #[test]
     fn no_type_of_rust_is_named_to_a_user() {
-        for (said, expected) in [
-            (said::<f64>("true"), "it is true; expected a number"),
+        for (printed, expected) in [
+            (printed::<f64>("true"), "it is true; expected a number"),
             (
-                said::<f64>("\"a, expected b\""),
+                printed::<f64>("\"a, expected b\""),
                 "it is the text \"a, expected b\"; expected a number",
             ),
             (
-                said::<usize>("-1"),
+                printed::<usize>("-1"),
                 "it is the number -1; expected a whole number, 0 or more",
             ),
             (
-                said::<u32>("1.5"),
+                printed::<u32>("1.5"),
                 "it is the number 1.5; expected a whole number, 0 or more",
             ),
-            (said::<i64>("[]"), "it is a list; expected a whole number"),
             (
-                said::<bool>("1"),
+                printed::<i64>("[]"),
+                "it is a list; expected a whole number",
+            ),
+            (
+                printed::<bool>("1"),
                 "it is the number 1; expected true or false",
             ),
             (
-                said::<String>("{}"),
+                printed::<String>("{}"),
                 "it is a table; expected a text in quotes",
             ),
             (
-                said::<String>("null"),
+                printed::<String>("null"),
                 "it is null; expected a text in quotes",
             ),
             (
-                said::<PathBuf>("7"),
+                printed::<PathBuf>("7"),
                 "it is the number 7; expected the name of a file in quotes",
             ),
-            (said::<Vec<f64>>("7"), "it is the number 7; expected a list"),
             (
-                said::<BTreeMap<String, f64>>("7"),
+                printed::<Vec<f64>>("7"),
+                "it is the number 7; expected a list",
+            ),
+            (
+                printed::<BTreeMap<String, f64>>("7"),
                 "it is the number 7; expected a table",
             ),
-            (said::<Table>("7"), "it is the number 7; expected a table"),
-            (said::<Table>("{}"), "the key 'state' is missing"),
             (
-                said::<Table>("{\"stat\": 1}"),
+                printed::<Table>("7"),
+                "it is the number 7; expected a table",
+            ),
+            (printed::<Table>("{}"), "the key 'state' is missing"),
+            (
+                printed::<Table>("{\"stat\": 1}"),
                 "unknown key 'stat'; expected 'state'",
             ),
             (
-                said::<State>("\"shut\""),
+                printed::<State>("\"shut\""),
                 "unknown value 'shut'; expected 'open' or 'closed'",
             ),
             (
-                said::<[f64; 3]>("[1]"),
+                printed::<[f64; 3]>("[1]"),
                 "the number of entries is 1; expected a list of 3 entries",
             ),
         ] {
-            assert_eq!(said, expected);
+            assert_eq!(printed, expected);
         }
     }
 }

@@ -20,8 +20,8 @@ MOST_ROUNDS = 12
 # several small rounds find that out at less cost than a large one.
 MOST_PER_ROUND = 9.0
 
-# What of the error that is asked is aimed at; times this again whenever less than half of it is missing, as a mesher
-# doesn't quite make the sizes that it is asked for.
+# Target of a round over the requested error; multiplied again if a round ends close above the request, as a mesher
+# doesn't quite reach the prescribed sizes.
 AIM = 0.9
 
 
@@ -48,7 +48,7 @@ def adapt(
     `geometry` is a file that Gmsh meshes, with the groups of the model; without one it is Gmsh's current model. The
     first mesh has the sizes that the geometry asks for; the last one is that of the model then. Cells are quadratic.
 
-    Warns of what is wrong with the last mesh. Raises `NotConverged` where the error is still larger after 12 rounds.
+    Warnings are those of the last mesh. Raises `NotConverged` where the error is still larger after 12 rounds.
     """
     if not 0 < error < 1:
         raise InputError(f"an error of {error}; expected one above 0 and below 1")
@@ -59,7 +59,7 @@ def adapt(
     order = wanted.copy()
     path = None if geometry is None else Path(geometry)
     start, sizes, rounds, aim = time.perf_counter(), None, list[Round](), AIM * error
-    said: list[warnings.WarningMessage] = []
+    printed: list[warnings.WarningMessage] = []
     try:
         # Cells have errors of the first one.
         wanted.sort(key=lambda one: quantity is not None and one["name"] != quantity)
@@ -67,8 +67,8 @@ def adapt(
             if folder is not None and rounds:
                 keep(rounds[-1].result, len(rounds))
             model.mesh = meshed(path, sizes)
-            # What is wrong with a mesh that another one takes the place of is no matter.
-            with warnings.catch_warnings(record=True) as said:
+            # Warnings of a mesh that the next one replaces don't matter.
+            with warnings.catch_warnings(record=True) as printed:
                 warnings.simplefilter("always")
                 result = model.run(ranks, folder=folder, progress=False)
             found, squares = relative_errors(result) if quantity is None else errors_of(result, quantity)
@@ -89,7 +89,7 @@ def adapt(
                 aim *= AIM
     finally:
         wanted[:] = order
-        for message, category in dict.fromkeys((str(one.message), one.category) for one in said):
+        for message, category in dict.fromkeys((str(one.message), one.category) for one in printed):
             warnings.warn(message, category, stacklevel=2)
 
 

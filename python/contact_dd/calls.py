@@ -25,7 +25,7 @@ class Calls:
 
     def worded(self, message: str, scene: Mapping[str, Any], written: Path, name: str) -> str:
         """A message of the programs on the scene that was `written`, with calls in place of its lines and entries, and
-        the scene and its mesh called by the names that the caller knows, the scene by none where that is empty."""
+        the scene and its mesh under the caller's names, the scene without a name if that is empty."""
 
         def of_entry(found: re.Match[str]) -> str:
             entries, number = scene.get(found[1]), int(found[2])

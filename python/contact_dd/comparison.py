@@ -11,11 +11,11 @@ from contact_dd.errors import InputError
 from contact_dd.result import Result
 from contact_dd.sizes import relative_errors
 
-# Meshes whose sizes differ by less tell little.
+# Least ratio of mesh sizes from which an error follows.
 LEAST_RATIO = 1.3
-# Orders of convergence that are believed. With less there may be no limit. Above is that of forces at edges, whose
-# stresses go like the root of the distance, and of stresses in linear cells: what shows more is as a rule chance, as of
-# values that are about to turn.
+# Accepted orders of convergence. Below the least there may be no limit. The largest is that of forces at edges, whose
+# stresses vary with the root of the distance, and of stresses in linear cells: a higher order is mostly chance, as of
+# values that aren't monotonic.
 ORDERS = (0.3, 1.0)
 # Bars over the extrapolated error with the order observed on three meshes and without: Roache's grid convergence index.
 OBSERVED, UNKNOWN = 1.25, 3.0
@@ -46,8 +46,8 @@ class Compared:
 
 def compare(results: Sequence[Result], adapted: bool = False) -> list[Compared]:
     """Error bars of the largest pressures, forces, reactions and the work of friction in the last load step, from
-    results of one scene on two or three meshes of one kind of cells. Of more results count the finest one and what is
-    1.3 times coarser, and 1.3 times again.
+    results of one scene on two or three meshes of one kind of cells. Of more results the finest one counts,
+    one 1.3 times coarser, and one 1.3 times coarser again.
 
     With three meshes the order of convergence is observed and the error extrapolated, times 1.25; of an order above 1
     with 1, and from the difference that this leads one to expect where that is larger. With two the order is taken as

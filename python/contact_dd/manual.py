@@ -33,8 +33,8 @@ def commands_of(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str, arg
     """Name, summary and parser of each command."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
-            for said in action._choices_actions:
-                yield said.dest, said.help or "", action.choices[said.dest]
+            for printed in action._choices_actions:
+                yield printed.dest, printed.help or "", action.choices[printed.dest]
 
 
 def options_of(parser: argparse.ArgumentParser) -> list[argparse.Action]:
@@ -83,7 +83,7 @@ def bash(parser: argparse.ArgumentParser) -> str:
     case ${{COMP_WORDS[1]}} in
 {cases}        *) words='{" ".join(name for name, _, _ in commands)} {words_of(parser)}' ;;
     esac
-    # Of what doesn't begin with a dash the shell knows the files.
+    # Words without a dash at their beginning are files, which the shell completes.
     if [[ $COMP_CWORD -eq 1 || ${{COMP_WORDS[COMP_CWORD]}} == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$words" -- "${{COMP_WORDS[COMP_CWORD]}}")
     fi
@@ -93,18 +93,18 @@ complete -o default -F _contact_dd {parser.prog}
 
 
 def zsh(parser: argparse.ArgumentParser) -> str:
-    def said(text: str) -> str:
+    def printed(text: str) -> str:
         return re.sub(r"([\[\]:])", r"\\\1", text.replace("'", "'\\''"))
 
     def arguments(of: argparse.ArgumentParser) -> str:
         found = [
-            f"'{name}[{said(help_of(action))}]{'' if action.nargs == 0 else ':value:_files'}'"
+            f"'{name}[{printed(help_of(action))}]{'' if action.nargs == 0 else ':value:_files'}'"
             for action in options_of(of) for name in action.option_strings
         ]
         return " ".join([*found, "'*:file:_files'"])
 
     commands = list(commands_of(parser))
-    names = " ".join(f"'{name}:{said(text)}'" for name, text, _ in commands)
+    names = " ".join(f"'{name}:{printed(text)}'" for name, text, _ in commands)
     cases = "".join(f"        {name}) _arguments {arguments(of)} ;;\n" for name, _, of in commands)
     return f"""#compdef {parser.prog}
 _contact_dd() {{
@@ -125,7 +125,7 @@ _contact_dd "$@"
 
 
 def fish(parser: argparse.ArgumentParser) -> str:
-    def said(text: str) -> str:
+    def printed(text: str) -> str:
         return text.replace("\\", "\\\\").replace("'", "\\'")
 
     def listed(of: argparse.ArgumentParser, where: str) -> Iterator[str]:
@@ -133,10 +133,10 @@ def fish(parser: argparse.ArgumentParser) -> str:
             for name in action.option_strings:
                 letter = f"-l {name[2:]}" if name.startswith("--") else f"-s {name[1:]}"
                 value = "" if action.nargs == 0 else " -r"
-                yield f"complete -c {parser.prog} -n '{where}' {letter}{value} -d '{said(help_of(action))}'"
+                yield f"complete -c {parser.prog} -n '{where}' {letter}{value} -d '{printed(help_of(action))}'"
 
     lines = list(listed(parser, "__fish_use_subcommand"))
     for name, text, of in commands_of(parser):
-        lines.append(f"complete -c {parser.prog} -n '__fish_use_subcommand' -a {name} -d '{said(text)}'")
+        lines.append(f"complete -c {parser.prog} -n '__fish_use_subcommand' -a {name} -d '{printed(text)}'")
         lines += listed(of, f"__fish_seen_subcommand_from {name}")
     return "\n".join(lines) + "\n"

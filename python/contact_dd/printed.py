@@ -244,7 +244,7 @@ class Printed:
         return total
 
 
-# What isn't printed in the states of the plane.
+# Tables without values in plane states, with the reason.
 WITHOUT: dict[str | None, dict[str, str]] = {
     "stress": {"E": "plane stress"}, "axisymmetric": {"EVOL": "cells around an axis"},
 }

@@ -27,7 +27,7 @@ Worded = Callable[[str], str]
 # The name of its explanation behind a message.
 NAMED = re.compile(r" \[--explain [\w-]+\]$")
 
-# OpenMPI starts neither as root nor with more ranks than cores unless it is told to; who asks for ranks means it.
+# OpenMPI starts neither as root nor with more ranks than cores by default; a call that names ranks permits it.
 ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -150,10 +150,10 @@ def run_solver(
 def run(command: Sequence[str], take_line: Callable[[str], None], worded: Worded) -> None:
     """Runs a program, whose output `take_line` gets line by line. Raises its error, `worded`."""
     text: Any = {"encoding": "utf-8", "errors": "replace"}
-    with tempfile.TemporaryFile("w+", **text) as said:
+    with tempfile.TemporaryFile("w+", **text) as printed:
         try:
             program = subprocess.Popen(
-                command, stdout=subprocess.PIPE, stderr=said, env={**ENVIRONMENT, **os.environ}, **text
+                command, stdout=subprocess.PIPE, stderr=printed, env={**ENVIRONMENT, **os.environ}, **text
             )
         except (OSError, ValueError) as error:
             raise errors.ContactError(f"{command[0]}: can't be started: {error}") from error
@@ -165,17 +165,17 @@ def run(command: Sequence[str], take_line: Callable[[str], None], worded: Worded
                 program.terminate()
                 raise
             if program.wait() != 0:
-                said.seek(0)
-                raise error_of(program.returncode, said.read(), worded)
+                printed.seek(0)
+                raise error_of(program.returncode, printed.read(), worded)
 
 
-def error_of(code: int, said: str, worded: Worded) -> errors.ContactError:
+def error_of(code: int, printed: str, worded: Worded) -> errors.ContactError:
     """The error of a program that ended with `code`: the message of its event, or all of its output."""
-    for line in said.splitlines():
+    for line in printed.splitlines():
         event = event_of(line)
         if event is not None and event["event"] == "error":
             return errors.by_exit_code(event["exit_code"], worded(event["message"]))
-    return errors.by_exit_code(code, worded(said.strip().removeprefix("error: ")))
+    return errors.by_exit_code(code, worded(printed.strip().removeprefix("error: ")))
 
 
 def event_of(line: str) -> dict[str, Any] | None:
@@ -187,7 +187,7 @@ def event_of(line: str) -> dict[str, Any] | None:
 
 
 def show(event: dict[str, Any]) -> None:
-    """Prints a line for an event that people want to see."""
+    """Prints a line for an event of interest to users."""
     match event:
         case {"event": "problem", "dofs": dofs, "ranks": ranks}:
             print(f"{dofs} degrees of freedom, {ranks} rank{'s' * (ranks > 1)}", flush=True)

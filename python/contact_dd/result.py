@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 # Kinds of problems by the `plane` of a result.
 KINDS = {"strain": "plane strain", "stress": "plane stress", "axisymmetric": "axisymmetric"}
 
-# What of a contact table has a row for each load step.
+# Columns of a contact table with a row for each load step.
 STATES = ("gap", "force", "pressure", "status", "tangential_force", "slip", "overclosure")
 
 
@@ -87,7 +87,7 @@ class Result:
         except ValueError as error:
             raise InputError(f"{path}: isn't a whole result of contact-dd-mpi: {error}") from error
         except (OSError, LookupError, TypeError, AttributeError, RuntimeError) as error:
-            # What HDF5 and NumPy raise of a file that has something else where fields should be.
+            # Exceptions of HDF5 and NumPy for a file with other contents in the place of fields.
             raise InputError(f"{path}: isn't a result of contact-dd-mpi, a file .vtkhdf") from error
 
     def __repr__(self) -> str:

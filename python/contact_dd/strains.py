@@ -17,7 +17,7 @@ TRIANGLES, QUADRILATERALS, TETRAHEDRA, HEXAHEDRA = (5, 22), (9, 23, 28), (10, 24
 LINEAR = (5, 9, 10, 12)
 # Kinds of cells with incompatible modes, where their material has them.
 WITH_MODES = (9, 12)
-# Those whose integration is reduced where their material says it.
+# Kinds of cells that may have reduced integration, by their material.
 WITH_REDUCED = (23, 25)
 
 

@@ -53,7 +53,7 @@ def key(name: str) -> str:
 
 
 def text(value: str) -> str:
-    # JSON's escapes are TOML's, which wants one more.
+    # TOML has JSON's escapes and one more.
     written = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if any("\ud800" <= letter <= "\udfff" for letter in value):
         raise InputError(f"{value!r} can't stand in a scene; expected whole characters, no halves of them")

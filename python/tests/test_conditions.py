@@ -186,3 +186,21 @@ def test_an_arrow_that_pushes_ends_at_its_node():
     assert np.isclose(pushing[:, 1].max(), 20)
     assert np.isclose(pulling[:, 1].max(), 0)
     assert np.isclose(pulling[:, 1].min(), -20)
+
+
+def test_the_scale_is_below_arrows_that_end_at_the_lower_side(scene, tmp_path):
+    plane = Plane(Model.from_scene(scene("hertz")).run(folder=tmp_path, progress=False))
+    figure = overview(plane, 1.0)
+    axes = figure.axes[0]
+    figure.canvas.draw()
+    (bar,) = (one for one in axes.artists if hasattr(one, "size_bar"))
+    inch = figure.dpi_scale_trans.inverted()
+    top = inch.transform(bar.size_bar.get_window_extent(figure.canvas.get_renderer()).corners())[:, 1].max()
+    side = inch.transform(axes.transData.transform([[0, -2]]))[0, 1]
+    # Arrows of the tractions of the half plane push up from below, 24 points long.
+    conditions, low = of_plane(plane.result), plane.points[:, 1].min()
+    pushes = conditions.forces[plane.points[conditions.nodes, 1] == low][:, 1]
+    assert len(pushes) > 0
+    assert pushes.max() > 0
+    assert top < side - 24 / 72
+    plt.close("all")

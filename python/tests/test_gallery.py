@@ -21,12 +21,12 @@ def granite(path, **friction):
 
 
 def test_granite(scene):
-    path = scene("granite")
+    path = scene("granite", "--refine", "1")
     result = granite(path).run(ranks=2, subdomains=8, progress=False)
     agrees_with_the_gallery(result, "granite")
     assert result.report["ranks"] == 2
-    assert [int((table["status"] == 1).sum()) for table in result.contacts.values()] == [7, 24]
-    assert np.linalg.norm(result.displacement, axis=1).max().round(7) == 1.18544e-2
+    assert [int((table["status"] == 1).sum()) for table in result.contacts.values()] == [15, 48]
+    assert np.linalg.norm(result.displacement, axis=1).max().round(7) == 1.18486e-2
     assert len(result.points) == len(np.unique(result.nodes)) == result.report["dofs"] / 2
 
 

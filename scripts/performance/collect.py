@@ -19,7 +19,7 @@ def columns(schema, part, prefix=""):
     """Names and paths of all fields of `part` but lists of anything else than words."""
     for name in part["required"]:
         field = part["properties"][name]
-        # What may be missing is a choice between its type and null.
+        # An optional value is a choice between its type and null.
         for choice in [field, *field.get("anyOf", [])]:
             if "$ref" in choice:
                 field = schema["$defs"][choice["$ref"].removeprefix("#/$defs/")]

@@ -60,7 +60,7 @@ class Unfit(Exception):
 
 
 def read_tree(path):
-    """The tree of a problem file, and what a report says of the problem that it is of."""
+    """The tree of a problem file, and the entries of a report about the problem."""
     try:
         file = h5py.File(path)
     except OSError as error:
@@ -99,18 +99,18 @@ def read_tree(path):
 
 
 def read_report(path):
-    """A report, and what it says of its problem."""
+    """A report, and its entries about the problem."""
     try:
         report = json.loads(path.read_text())
-        said = {name: report[name] for name in ("dofs", "subdomains", "contact_conditions", "ranks")}
-        said["contacts"] = sorted(contact["name"] for contact in report["contacts"])
-        said["supports"] = sorted(support["support"] for support in report["reactions"])
-        said["problem"] = pathlib.Path(report["settings"]["problem"]).name
+        printed = {name: report[name] for name in ("dofs", "subdomains", "contact_conditions", "ranks")}
+        printed["contacts"] = sorted(contact["name"] for contact in report["contacts"])
+        printed["supports"] = sorted(support["support"] for support in report["reactions"])
+        printed["problem"] = pathlib.Path(report["settings"]["problem"]).name
     except OSError as error:
         raise Unfit(f"{path}: can't be read: {error.strerror}") from error
     except (ValueError, LookupError, TypeError) as error:
         raise Unfit(f"{path}: isn't a report of contact-dd-mpi; expected PROBLEM REPORT") from error
-    return report, said
+    return report, printed
 
 
 def of_points(contact, of_unit, nodes, numbers):
@@ -280,7 +280,7 @@ def predict(tree, rates, ranks):
     free = np.zeros(ranks)
     ready = np.zeros(len(own))
     root = len(own) - 1
-    # What a rank owns whole comes first, then the fronts in which others have a part.
+    # Fronts that a rank has to itself come first, then those shared with others.
     for node in range(len(own)):
         at = free[owner[node]]
         for child in below[node]:
@@ -356,22 +356,22 @@ def bottleneck(all_times):
         ("with the fronts on the way to the root they", ("root", "sweeps", "merges"), "solve", "solve phases"),
         ("the root's front, sweeps and writing", ("root", "sweeps", "write"), "total", "whole run"),
     ]
-    said = []
+    printed = []
     for words, keys, of, whole in parts:
         half = (n for n, times in all_times if sum(times[key] for key in keys) > times[of] / 2)
         at = next(half, None)
         where = f"from {at} ranks on" if at else f"nowhere up to {all_times[-1][0]} ranks"
-        said.append(f"{words} are more than half of the {whole} {where}")
-    text = "; ".join(said)
+        printed.append(f"{words} are more than half of the {whole} {where}")
+    text = "; ".join(printed)
     print(f"{text[0].upper()}{text[1:]}.")
 
 
-def check_belongs(said, problem, arguments):
+def check_belongs(printed, problem, arguments):
     """Raises `Unfit` unless the report is that of a run of the problem on one rank."""
     for name, expected in [*problem.items(), ("ranks", 1)]:
-        if said[name] != expected:
+        if printed[name] != expected:
             raise Unfit(
-                f"{arguments.report}: {name.replace('_', ' ')}: {shown(said[name])}; expected {shown(expected)}, the "
+                f"{arguments.report}: {name.replace('_', ' ')}: {shown(printed[name])}; expected {shown(expected)}, the "
                 f"report of a run of {arguments.problem} on one rank"
             )
 
@@ -395,8 +395,8 @@ def main():
 
     try:
         tree, problem = read_tree(arguments.problem)
-        report, said = read_report(arguments.report)
-        check_belongs(said, problem, arguments)
+        report, printed = read_report(arguments.report)
+        check_belongs(printed, problem, arguments)
     except Unfit as error:
         print(f"scaling predict: {error}", file=sys.stderr)
         sys.exit(2)

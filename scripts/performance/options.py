@@ -17,7 +17,7 @@ def listed(kind):
     def read(text):
         return [kind(word) for word in text.split(",") if word]
 
-    # What argparse calls it where it can't be read.
+    # Its name in messages of argparse.
     read.__name__ = "list, by commas"
     return read
 

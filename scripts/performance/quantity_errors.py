@@ -14,7 +14,7 @@ PROGRAMS = pathlib.Path(os.environ["PROGRAMS"])
 # Cells along sides, relative to the coarsest mesh: of the meshes, and of the two that stand for the truth.
 MESHES = (1, 2, 4)
 FINEST = {"quad4": (16, 32), "quad8": (8, 16)}
-# What the two finest meshes may differ by, relative to a true error, and the least one relative to the value.
+# Largest difference of the two finest meshes over a true error, and least error over the value.
 UNCERTAIN, LEAST = 0.4, 1e-7
 
 

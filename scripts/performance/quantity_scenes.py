@@ -214,7 +214,7 @@ def pull(x, y):
 
 STEPS = "[[step]]\nscale = 0.5\n[[step]]\nscale = 1.0\n"
 
-# What is common to some scenes, and these scenes.
+# Parts that some scenes share, and these scenes.
 SCENES = {
     "no contact": {"clamped": clamped, "angle": angle, "lame": lame, "crack, open": crack(pull(0, 1e6))},
     "contact, edges at corners": {"stack": stack(""), "pillars": pillars(""), "crack, closed": crack(pull(0, -1e6))},

@@ -143,7 +143,7 @@ class Pardiso:
 
     # Of iparm, from 0: values are given, no iterative refinement, indices count from 0.
     OPTIONS = {0: 1, 7: 0, 34: 1}
-    # What it may choose from, by `fastest`: ordering by minimum degree, nested dissection, the same
+    # Variants of which `fastest` takes the best: ordering by minimum degree, nested dissection, the same
     # in parallel; factorization classic, two-level, improved two-level.
     CHOICES = {
         "nested dissection, classic": {1: 2, 23: 0},

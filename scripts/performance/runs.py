@@ -46,7 +46,7 @@ def default_programs():
 
 
 def call(command):
-    """Runs a command; where it fails, says what it said and ends."""
+    """Runs a command; where it fails, says what it printed and ends."""
     ran = subprocess.run([str(word) for word in command], capture_output=True, text=True)
     if ran.returncode != 0:
         sys.exit(f"{shlex.join(map(str, command))}\n{ran.stdout}{ran.stderr}exit code {ran.returncode}")

@@ -160,7 +160,7 @@ def around(plane):
     return Path(points, codes)
 
 
-# What scenes say of obstacles: their line, and to which side they are.
+# Obstacles of scenes: their line, and the side on which they are.
 OBSTACLES = {
     "hertz": lambda panel: (parabola([0, 2], 16), [0, 0.25]),
     "raous": lambda panel: ([(0, 0), (panel[1][0], 0)], [0, -0.05 * panel[1][0]]),

@@ -27,7 +27,7 @@ LARGEST_DIFFERENCE = 1e-6
 
 
 def gamg(cells, tied):
-    """What gamg.py says of its run on 2 ranks."""
+    """The output of gamg.py on 2 ranks."""
     found = sorted(glob.glob(PETSC))
     if not found:
         sys.exit("bench: petsc4py isn't there; on Debian: apt-get install python3-petsc4py python3-scipy")

@@ -38,7 +38,7 @@ impl QuantityValue {
     }
 }
 
-/// The estimated error of a quantity as it is told.
+/// The estimated error of a quantity as it is printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToldError {
     /// With its sign: the value less the exact one.

@@ -134,7 +134,7 @@ mod tests {
     use crate::rigid::squares::{coulomb, scene, square};
 
     /// The description for a square on a floor with these normal and tangential forces at its lower corners.
-    fn said(forces: [[f64; 2]; 2], sticks: bool) -> Vec<String> {
+    fn messages(forces: [[f64; 2]; 2], sticks: bool) -> Vec<String> {
         let body = square([0.0; 3]);
         let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0]];
         let mut rows = corners.map(|x| body.row(0, x, [0.0, -1.0, 0.0])).to_vec();
@@ -165,12 +165,12 @@ mod tests {
             ([[2.0, 1.0], [4.0, 1.9]], false, false),
             ([[0.0, 0.0], [4.0, 0.0]], true, false),
         ] {
-            let said = said(forces, sticks);
+            let found = messages(forces, sticks);
             let expected = match is_at_limit {
                 true => vec!["'brick 0' (translation along (1.0000, 0.0000))".to_owned()],
                 false => Vec::new(),
             };
-            assert_eq!(said, expected, "{forces:?} {sticks}");
+            assert_eq!(found, expected, "{forces:?} {sticks}");
         }
     }
 }

@@ -68,13 +68,13 @@ impl Sweeps<'_, '_> {
     fn relaxation(&mut self, rho: f64) -> f64 {
         let theta = self.settings.relaxation.unwrap_or(2.0 / (2.0 + rho));
         let verdict = if rho < 1.0 {
-            "(18) as printed converges here"
+            "(18) as printed converges"
         } else {
-            "(18) as printed diverges here"
+            "(18) as printed diverges"
         };
         self.outcome.notes.push(format!(
-            "picard: the spectral radius of S_0^-1 S_CON' is about {rho:.3}, so that {verdict}; \
-             relaxation {theta:.4}"
+            "picard: the spectral radius of S_0^-1 S_CON' is about {rho:.3} with the contacts that are closed at the \
+             start, with which {verdict}; relaxation {theta:.4}"
         ));
         theta
     }

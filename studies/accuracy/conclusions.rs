@@ -175,7 +175,7 @@ impl Conclusions {
         text + "\n"
     }
 
-    /// Which cells to take for a scene.
+    /// The fastest cells for a scene.
     fn elements(&self, scene: &str) -> Option<String> {
         let quadratic = self.fastest(|p| p.scene == scene && p.is_quadratic)?;
         let linear = self.fastest(|p| p.scene == scene && !p.is_quadratic)?;
@@ -233,7 +233,7 @@ impl Conclusions {
         ))
     }
 
-    /// Which tolerance to take.
+    /// The largest sufficient tolerance.
     fn tolerance(&self) -> String {
         let [enough, share] = self.enough;
         format!(

@@ -143,12 +143,16 @@ fn sizes_alone_are_measured_without_walls() {
     command
         .args(["-B", "-c", code])
         .env("PYTHONPATH", script("performance"));
-    let Ok(said) = command.output() else {
+    let Ok(printed) = command.output() else {
         eprintln!("skipped: there is no python3");
         return;
     };
     let expected = "[] ['wall', 'many'] ['many']\n";
-    assert_eq!(String::from_utf8_lossy(&said.stdout), expected, "{said:?}");
+    assert_eq!(
+        String::from_utf8_lossy(&printed.stdout),
+        expected,
+        "{printed:?}"
+    );
 }
 
 #[test]

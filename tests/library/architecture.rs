@@ -184,6 +184,10 @@ fn a_foreign_library_has_one_importer() {
                 }
             }
         }
-        assert_eq!(importers == 0, homes.is_empty(), "nobody imports {library}");
+        assert_eq!(
+            importers == 0,
+            homes.is_empty(),
+            "no file imports {library}"
+        );
     }
 }

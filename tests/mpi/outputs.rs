@@ -146,19 +146,21 @@ pub fn little_memory(trials: &mut Trials) {
                     .arg(built())
                     .arg(case.problem());
                 let ended = Running::start(&mut command).wait(LIMIT);
-                let said = format!("{megabytes} MB: {}{}", ended.stdout, ended.stderr);
+                let printed = format!("{megabytes} MB: {}{}", ended.stdout, ended.stderr);
                 // If MPI runs out of memory for its own libraries, it may end with a signal before the program starts,
                 // with or without a message.
-                let in_mpi = ["failed to map segment", "mmap(2)"].map(|words| said.contains(words));
+                let in_mpi =
+                    ["failed to map segment", "mmap(2)"].map(|words| printed.contains(words));
                 let in_mpi = in_mpi.contains(&true) || ended.stdout.is_empty();
-                let aborted = said.contains("memory allocation of") || said.contains("panicked");
+                let aborted =
+                    printed.contains("memory allocation of") || printed.contains("panicked");
                 // An abort would be a signal, which launchers report as 128 or more.
                 let is_told = ended.code() < 128 || in_mpi && !aborted;
-                assert!(is_told, "{said}");
-                said
+                assert!(is_told, "{printed}");
+                printed
             });
             let words = ["out of memory", "of memory, and"];
-            let is_told = |said: &String| words.iter().any(|word| said.contains(word));
+            let is_told = |printed: &String| words.iter().any(|word| printed.contains(word));
             assert!(limits.iter().any(is_told), "{limits:?}");
         });
     }

@@ -78,16 +78,16 @@ fn sudden_end(case: &Case, [rank, ranks]: [usize; 2], kind: &str, phase: &str) {
         .arg(case.problem())
         .env("CONTACT_DD_END", format!("{rank} {kind} {phase}"));
     let ended = Running::start(&mut command).wait(LIMIT);
-    let said = format!("rank {rank}\n{}{}", ended.stdout, ended.stderr);
+    let printed = format!("rank {rank}\n{}{}", ended.stdout, ended.stderr);
     match kind {
-        "failure" => assert_eq!(ended.code(), 4, "{said}"),
-        "panic" => assert_eq!(ended.code(), 1, "{said}"),
-        _ => assert_ne!(ended.code(), 0, "{said}"),
+        "failure" => assert_eq!(ended.code(), 4, "{printed}"),
+        "panic" => assert_eq!(ended.code(), 1, "{printed}"),
+        _ => assert_ne!(ended.code(), 0, "{printed}"),
     }
     ended.leaves_no_process(LIMIT);
     if kind != "kill" {
         let [error] = ended.errors()[..] else {
-            panic!("expected one message\n{said}");
+            panic!("expected one message\n{printed}");
         };
         let place = format!("rank {rank} of {ranks}");
         assert!(error.contains(&place), "{error}");

@@ -10,7 +10,7 @@ use crate::support::solver::Case;
 use crate::support::sorts::{SORTS, sort};
 
 /// The warnings of strains of the last load step.
-fn said(text: &str, mesh: contact_dd_partition::mesh::Mesh, args: &[&str]) -> Vec<String> {
+fn printed(text: &str, mesh: contact_dd_partition::mesh::Mesh, args: &[&str]) -> Vec<String> {
     let case = Case::of(&model(text, mesh), 3);
     let ended = case.run(args);
     assert_eq!(ended.code(), 0, "{}{}\n{text}", ended.stdout, ended.stderr);
@@ -41,7 +41,7 @@ fn the_largest_strain_is_said_with_its_place() {
         for name in SORTS.map(|sort| sort.name) {
             let blocks = Blocks::new().rectangle("block", [0.0, 1.0], [0.0, 0.05], [20, 1]);
             let text = format!("plane = 'strain'\n{}", stretched(strain, "y = 0"));
-            let words = said(&text, sort(name).of(&blocks.mesh), &[]);
+            let words = printed(&text, sort(name).of(&blocks.mesh), &[]);
             assert_eq!(words.len(), usize::from(is_said), "{name}: {words:?}");
             let Some(words) = words.first() else { continue };
             let number = |from: &str, to: &str| -> f64 {
@@ -72,7 +72,7 @@ fn strains_of_space_and_around_an_axis_are_said_in_their_load_step_alone() {
             {steps}"
         );
         let mesh = solid("block", kind, [2, 2, 2], between([0.0; 3], [1.0; 3]));
-        let words = said(&text, mesh, &[]);
+        let words = printed(&text, mesh, &[]);
         assert_eq!(words.len(), 1, "{words:?}");
         assert!(
             words[0].starts_with("step 'far': body 'block': strains of up to 0.08 at ("),
@@ -87,11 +87,11 @@ fn strains_of_space_and_around_an_axis_are_said_in_their_load_step_alone() {
         on = ['block left', 'block right', 'block bottom', 'block top']
         x = 0.1
         y = 0";
-    let words = said(text, blocks.mesh.clone(), &[]);
+    let words = printed(text, blocks.mesh.clone(), &[]);
     assert!(
         words[0].contains("strains of up to 0.09677 at (1.033,"),
         "{words:?}"
     );
     // Without stresses, strains aren't computed.
-    assert!(said(text, blocks.mesh, &["--no-stress"]).is_empty());
+    assert!(printed(text, blocks.mesh, &["--no-stress"]).is_empty());
 }

@@ -226,11 +226,11 @@ fn straightened(mut mesh: Mesh) -> Mesh {
 
 #[test]
 fn quadratic_facets_that_are_straight_on_a_curve_are_named() {
-    let said = |mesh: Mesh| model(BETWEEN, mesh).warnings.join("; ");
+    let printed = |mesh: Mesh| model(BETWEEN, mesh).warnings.join("; ");
     let expected = "the quadratic facets of side a are straight and stand off a curve by up to 0.0";
-    let warnings = said(straightened(dome(0.0)));
+    let warnings = printed(straightened(dome(0.0)));
     assert!(warnings.contains(expected), "{warnings}");
-    let warnings = said(dome(0.0));
+    let warnings = printed(dome(0.0));
     assert!(!warnings.contains("straight"), "{warnings}");
 }
 

@@ -61,8 +61,8 @@ impl Pretensions {
             Some(data) => {
                 let is_turned = |(_, position): &(String, Position)| position.is_turned();
                 if places.instances().iter().any(is_turned) {
-                    let message = "*PRE-TENSION SECTION gives a direction in a part whose instances are turned, where it isn't \
-                                   said whether it turns; expected none, for the normal of the faces, or the section outside \
+                    let message = "*PRE-TENSION SECTION gives a direction in a part whose instances are turned, which may \
+                                   turn or not; expected none, for the normal of the faces, or the section outside \
                                    of the part";
                     return Err(source.error(data.place, message));
                 }

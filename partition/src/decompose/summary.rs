@@ -54,9 +54,9 @@ impl Summary<'_> {
     fn sizes_of_groups(&self) -> String {
         let sizes = self.groups();
         let words = [
-            (1..=1, "of a single one"),
-            (2..=2, "of two"),
-            (3..=usize::MAX, "of three or more"),
+            (1..=1, "of one subdomain"),
+            (2..=2, "of two subdomains"),
+            (3..=usize::MAX, "of three or more subdomains"),
         ];
         let words = words.map(|(sought, word)| {
             let count = sizes.iter().filter(|&size| sought.contains(size)).count();
@@ -65,7 +65,7 @@ impl Summary<'_> {
         let words: Vec<String> = words.into_iter().flatten().collect();
         match words.is_empty() {
             true => "none".into(),
-            false => format!("{} subdomains joined by contact", words.join(", ")),
+            false => format!("{}, linked by contact", words.join(", ")),
         }
     }
 }

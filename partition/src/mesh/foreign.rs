@@ -182,11 +182,11 @@ mod tests {
             ("p.frd", "is a file of results of CalculiX"),
             ("p.msh", "isn't a Gmsh mesh"),
         ] {
-            let said = refusal(Path::new(name), b"").to_string();
-            let mut rest = &said[..];
+            let printed = refusal(Path::new(name), b"").to_string();
+            let mut rest = &printed[..];
             for part in expected.split(" … ") {
                 let at = rest.find(part);
-                assert!(at.is_some(), "{name}: {said}");
+                assert!(at.is_some(), "{name}: {printed}");
                 rest = &rest[at.unwrap_or_default()..];
             }
         }
@@ -199,11 +199,11 @@ mod tests {
             (b"(0 \"GAMBIT to Fluent File\")", "a Fluent mesh"),
             (b"solid part\n facet normal", "an STL surface"),
         ] {
-            let said = refusal(Path::new("p.msh"), head).to_string();
-            assert!(said.contains(expected), "{said}");
+            let printed = refusal(Path::new("p.msh"), head).to_string();
+            assert!(printed.contains(expected), "{printed}");
             assert!(
-                !said.contains("-o p.msh"),
-                "the file isn't written over: {said}"
+                !printed.contains("-o p.msh"),
+                "the file isn't written over: {printed}"
             );
         }
     }

@@ -220,8 +220,8 @@ mod tests {
             ("nset", &["on", "value"], "did you mean 'on'"),
             ("3d", &["strain", "stress"], "'plane' is left out"),
         ] {
-            let said = hint(word, known.iter().copied());
-            assert!(said.contains(expected), "{word}: {said}");
+            let printed = hint(word, known.iter().copied());
+            assert!(printed.contains(expected), "{word}: {printed}");
         }
     }
 

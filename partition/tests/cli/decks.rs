@@ -57,12 +57,12 @@ fn a_deck_and_the_scene_that_is_written_of_it_make_the_same_problem() {
         assert!(output.status.success(), "{output:?}");
         String::from_utf8(output.stdout).unwrap()
     };
-    let said = done(&["part.inp"]);
-    assert!(said.contains("HIGH on LOW, node by node"), "{said}");
-    let said = done(&["part.inp", "--write-scene", "made"]);
+    let printed = done(&["part.inp"]);
+    assert!(printed.contains("HIGH on LOW, node by node"), "{printed}");
+    let printed = done(&["part.inp", "--write-scene", "made"]);
     assert!(
-        said.ends_with("contact-dd-partition made/scene.toml\n"),
-        "{said}"
+        printed.ends_with("contact-dd-partition made/scene.toml\n"),
+        "{printed}"
     );
     // Existing files with the same content are accepted.
     done(&["part.inp", "--write-scene", "made", "-o", "again.h5"]);
@@ -116,9 +116,12 @@ fn a_deck_that_isnt_computed_ends_with_2_and_its_line() {
     ] {
         fs::write(&path, DECK.replacen(from, to, 1)).unwrap();
         let output = program(&["part.inp"], dir.path());
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.starts_with(&format!("error: {expected}")), "{said}");
+        let printed = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{printed}");
+        assert!(
+            printed.starts_with(&format!("error: {expected}")),
+            "{printed}"
+        );
         assert!(!dir.path().join("part.h5").exists());
     }
     fs::write(&path, DECK.replace("CPE4", "CPE4I")).unwrap();

@@ -24,10 +24,10 @@ fn a_problem_file_without_space_leaves_the_older_one_and_says_so() {
             return;
         };
         let ended = program.output().unwrap();
-        let said = String::from_utf8(ended.stderr).unwrap();
-        assert_eq!(ended.status.code(), Some(5), "{place:?}: {said}");
-        assert_eq!(said.lines().count(), 1, "{said}");
-        assert!(said.contains(&output.display().to_string()), "{said}");
-        assert!(said.contains(words), "{said}");
+        let printed = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(5), "{place:?}: {printed}");
+        assert_eq!(printed.lines().count(), 1, "{printed}");
+        assert!(printed.contains(&output.display().to_string()), "{printed}");
+        assert!(printed.contains(words), "{printed}");
     }
 }

@@ -11,19 +11,19 @@ fn program(args: &[&str], folder: &Path) -> Output {
 
 /// The output of a program that ended with this exit code.
 #[track_caller]
-fn said(output: &Output, code: i32) -> String {
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{said}");
-    said
+fn printed(output: &Output, code: i32) -> String {
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{printed}");
+    printed
 }
 
 #[test]
 fn a_scene_that_was_edited_is_not_written_over() {
     let folder = tempfile::tempdir().unwrap();
     let write = ["--example", "pin", "--write-scene", "here"];
-    said(&program(&write, folder.path()), 0);
+    printed(&program(&write, folder.path()), 0);
     // What is there already may be written again.
-    said(&program(&write, folder.path()), 0);
+    printed(&program(&write, folder.path()), 0);
     let here = folder.path().join("here");
     let files: Vec<_> = fs::read_dir(&here)
         .unwrap()
@@ -34,7 +34,7 @@ fn a_scene_that_was_edited_is_not_written_over() {
         let before = fs::read(file).unwrap();
         let edited = [&before[..], b"\n"].concat();
         fs::write(file, &edited).unwrap();
-        let words = said(&program(&write, folder.path()), 5);
+        let words = printed(&program(&write, folder.path()), 5);
         let name = file.file_name().unwrap().to_str().unwrap();
         assert!(
             words.contains(name) && words.contains("expected"),
@@ -44,11 +44,11 @@ fn a_scene_that_was_edited_is_not_written_over() {
         // Nothing else is written then.
         fs::remove_file(&files[0]).unwrap();
         if file != &files[0] {
-            said(&program(&write, folder.path()), 5);
+            printed(&program(&write, folder.path()), 5);
             assert!(!files[0].exists());
         }
         fs::write(file, &before).unwrap();
-        said(&program(&write, folder.path()), 0);
+        printed(&program(&write, folder.path()), 0);
     }
 }
 
@@ -71,16 +71,16 @@ fn a_problem_file_takes_the_place_of_no_file_that_it_is_made_from() {
     std::os::unix::fs::symlink("part.inc", folder.path().join("link.h5")).unwrap();
     for (output, _) in inputs.into_iter().chain([("link.h5", "")]) {
         let refused = program(&["scene.toml", "-o", output], folder.path());
-        assert!(said(&refused, 2).contains("would overwrite its input"));
+        assert!(printed(&refused, 2).contains("would overwrite its input"));
     }
     for (name, text) in inputs {
         assert_eq!(fs::read_to_string(folder.path().join(name)).unwrap(), text);
     }
-    said(
+    printed(
         &program(&["scene.toml", "-o", "problem.h5"], folder.path()),
         0,
     );
-    said(
+    printed(
         &program(&["scene.toml", "-o", "problem.h5"], folder.path()),
         0,
     );
@@ -101,7 +101,7 @@ fn what_cant_be_said_is_an_error_but_for_a_closed_pipe() {
         command.args(args).current_dir(folder.path());
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
         let output = command.stdout(full).output().unwrap();
-        let words = said(&output, 5);
+        let words = printed(&output, 5);
         assert!(
             words.contains("stdout") && words.contains("No space left"),
             "{words}"
@@ -152,7 +152,7 @@ fn the_same_scene_is_the_same_bytes_whenever_it_is_written() {
         let scenes = ["granite-friction", "tunnel", "gears", "cube-crack"].into_iter();
         let written = scenes.map(|scene| {
             let args = ["--example", scene, "-n", "8", "-o", name];
-            said(&program(&args, folder.path()), 0);
+            printed(&program(&args, folder.path()), 0);
             fs::read(folder.path().join(name)).unwrap()
         });
         written.collect()

@@ -61,8 +61,11 @@ fn the_program_says_how_the_sides_of_a_contact_are_paired() {
             std::fs::write(&path, scene.replace("[[contact]]", pairing)).unwrap();
         }
         let output = program(&["scene.toml", "-n", "2"], dir.path());
-        let said = String::from_utf8(output.stdout).unwrap();
-        assert!(said.lines().any(|line| line.ends_with(expected)), "{said}");
+        let printed = String::from_utf8(output.stdout).unwrap();
+        assert!(
+            printed.lines().any(|line| line.ends_with(expected)),
+            "{printed}"
+        );
     }
 }
 
@@ -80,11 +83,11 @@ fn what_is_printed_of_a_problem_is_in_words_and_has_no_empty_line() {
     std::fs::write(&path, untitled.join("\n")).unwrap();
     for args in [&["scene.toml", "-n", "4"][..], &["--info", "scene.h5"]] {
         let output = program(args, dir.path());
-        let said = String::from_utf8(output.stdout).unwrap();
-        assert!(said.contains("subdomains joined by contact"), "{said}");
-        assert!(said.contains("the costliest part takes 1."), "{said}");
+        let printed = String::from_utf8(output.stdout).unwrap();
+        assert!(printed.contains("linked by contact"), "{printed}");
+        assert!(printed.contains("the costliest part takes 1."), "{printed}");
         let is_empty = |line: &str| line.split_whitespace().count() == 1;
-        assert!(!said.lines().any(is_empty), "{said}");
+        assert!(!printed.lines().any(is_empty), "{printed}");
     }
 }
 
@@ -102,11 +105,11 @@ fn the_program_lists_every_example() {
 #[track_caller]
 fn refused(args: &[&str], dir: &Path, code: i32, expected: &str) {
     let output = program(args, dir);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+    let printed = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {printed}");
     assert!(
-        said.starts_with("error: ") && said.contains(expected),
-        "{said}"
+        printed.starts_with("error: ") && printed.contains(expected),
+        "{printed}"
     );
 }
 

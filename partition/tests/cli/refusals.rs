@@ -29,10 +29,10 @@ fn refused(dir: &Path, args: &[&str], expected: &str) {
     let before = count();
     let mut command = program();
     let output = command.args(args).current_dir(dir).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-    assert!(said.starts_with("error: "), "{said}");
-    says(&said, expected);
+    let printed = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {printed}");
+    assert!(printed.starts_with("error: "), "{printed}");
+    says(&printed, expected);
     assert_eq!(count(), before, "{args:?} wrote something");
 }
 

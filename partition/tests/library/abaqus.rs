@@ -106,12 +106,12 @@ U
     assert_eq!(tags(&mesh, "outside").len(), 6);
     // Not all between two neighbours: points.
     assert_eq!(tags(&mesh, "Odd"), [[1], [3], [5]]);
-    let said = mesh.warnings.join("\n");
-    says(&said, "CPS4R as CPS4");
-    says(&said, "*ELASTIC, *MATERIAL, *STEP");
+    let printed = mesh.warnings.join("\n");
+    says(&printed, "CPS4R as CPS4");
+    says(&printed, "*ELASTIC, *MATERIAL, *STEP");
     assert!(
-        !said.contains("FILE") && !said.contains("HEADING"),
-        "{said}"
+        !printed.contains("FILE") && !printed.contains("HEADING"),
+        "{printed}"
     );
 }
 

@@ -6,7 +6,7 @@ use contact_dd_partition::example;
 use contact_dd_partition::mesh::Mesh;
 
 /// All that a mesh says, by tags.
-fn said(mesh: &Mesh) -> impl PartialEq + std::fmt::Debug {
+fn printed(mesh: &Mesh) -> impl PartialEq + std::fmt::Debug {
     let tags = |nodes: &[u32]| {
         nodes
             .iter()
@@ -47,7 +47,7 @@ fn said(mesh: &Mesh) -> impl PartialEq + std::fmt::Debug {
 fn a_mesh_along_the_curve_says_the_same_and_has_neighbours_near_each_other() {
     let mesh = example::find("granite").unwrap().mesh(1).unwrap();
     let sorted = mesh.clone().along_curve();
-    assert_eq!(said(&sorted), said(&mesh));
+    assert_eq!(printed(&sorted), printed(&mesh));
     assert_eq!(sorted.clone().along_curve(), sorted);
     let centre = |cell: usize| sorted.points[sorted.cells.nodes_of(cell)[0] as usize];
     let far = |cell: &usize| {

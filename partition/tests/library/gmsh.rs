@@ -127,8 +127,8 @@ $MeshFormat => $Nodes
 #[test]
 fn what_is_wrong_with_a_file_is_said_with_its_place() {
     for (from, to, expected) in cases(WRONG) {
-        let said = complaint(&from, &to);
-        assert!(said.contains(&expected), "{from} → {to}: {said}");
+        let printed = complaint(&from, &to);
+        assert!(printed.contains(&expected), "{from} → {to}: {printed}");
     }
 }
 
@@ -152,10 +152,10 @@ fn a_surface_in_space_is_said_to_have_no_volume() {
             "gmsh -3, not gmsh -2, makes them, and a file holds those of a Physical Volume"
         )
     );
-    let said = upright("3 7 \"die\"");
+    let printed = upright("3 7 \"die\"");
     assert!(
-        said.contains("the group 'die' of volumes is empty: gmsh -3"),
-        "{said}"
+        printed.contains("the group 'die' of volumes is empty: gmsh -3"),
+        "{printed}"
     );
 }
 

@@ -191,13 +191,13 @@ fn the_mesh_lies_beside_the_scene() {
 fn files_that_are_no_scene_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
-    let said = |path: &std::path::Path| Scene::read(path).unwrap_err().to_string();
-    assert!(said(&path).contains("scene.toml: can't be read"));
-    assert!(said(folder.path()).contains("can't be read"));
+    let printed = |path: &std::path::Path| Scene::read(path).unwrap_err().to_string();
+    assert!(printed(&path).contains("scene.toml: can't be read"));
+    assert!(printed(folder.path()).contains("can't be read"));
     std::fs::write(&path, b"title = 'a'\nmesh = '\xff'").unwrap();
-    assert!(said(&path).contains("scene.toml: line 2: isn't UTF-8"));
+    assert!(printed(&path).contains("scene.toml: line 2: isn't UTF-8"));
     std::fs::write(&path, "mesh = 1").unwrap();
-    assert!(said(&path).contains("scene.toml: line 1: mesh: "));
+    assert!(printed(&path).contains("scene.toml: line 1: mesh: "));
 }
 
 #[test]

@@ -56,22 +56,22 @@ def legend(axes, columns):
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -below), ncol=columns, frameon=False)
 
 
-def scale_bar(axes, width, units):
-    """A bar of a round length, about a fifth of `width`, below the axes on the left."""
+def scale_bar(axes, width, units, down=0.0):
+    """A bar of a round length, about a fifth of `width`, below the axes on the left, so much further down (inches)."""
     length = round_below(0.25 * width)
     (shown,), unit = in_units(np.array([length]), units.length)
     bar = AnchoredSizeBar(
         axes.transData, length, f"{shown:g} {unit}", loc="upper left", pad=1.0, sep=4,
         frameon=False, size_vertical=0.006 * width, bbox_to_anchor=(0, 0),
-        bbox_transform=axes.transAxes,
+        bbox_transform=axes.transAxes + ScaledTranslation(0, -down, axes.figure.dpi_scale_trans),
     )
     axes.add_artist(bar)
 
 
-def directions(axes, names):
-    """Arrows along both coordinates, with their names, below the axes on the right."""
+def directions(axes, names, down=0.0):
+    """Arrows along both coordinates, with their names, below the axes on the right, so much further down (inches)."""
     inches = axes.figure.dpi_scale_trans + ScaledTranslation(1, 0, axes.transAxes)
-    corner = np.array([-0.42, -0.5])
+    corner = np.array([-0.42, -0.5 - down])
     for along, name in zip(np.eye(2), names, strict=True):
         arrow = {"arrowstyle": "-|>", "lw": 0.9, "fc": "k", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
         axes.annotate("", corner + 0.24 * along, corner, inches, inches, arrowprops=arrow, annotation_clip=False)

@@ -21,7 +21,7 @@ class Label:
 
     name: str
     remark: str = ""
-    """What is below the name."""
+    """Second line, below the name."""
 
     def with_unit(self, unit):
         return f"{self.name} [{unit}]" + f"\n{self.remark}" * bool(self.remark)
@@ -87,7 +87,7 @@ def unrolled(axis, loaded, normals, points):
     # In a hole normals lead to the axis.
     inward = (arm * np.stack([normals @ first, normals @ second], axis=1)).sum() < 0
     angle = np.arctan2(*(-arm.T if inward else arm.T)[::-1])
-    # What lies on the cut lies on one side of it.
+    # Points on the cut belong to one side of it.
     angle[angle < ON_THE_CUT - np.pi] += 2 * np.pi
     zero, label = first_angle(axis, first, second, inward)
     rows = np.arange(len(points))

@@ -8,9 +8,9 @@ import numpy as np
 
 from contact_dd.drawing.integrals import integrals
 
-# Forces below this part of the largest are round-off of what is subtracted from them.
+# Share of the largest force below which a difference of forces is round-off.
 NOTHING = 1e-6
-# What h5py and NumPy raise of a file that is no problem, or a damaged one.
+# Exceptions of h5py and NumPy for a file that isn't a problem file, or is damaged.
 UNREADABLE = (OSError, LookupError, TypeError, ValueError, AttributeError, RuntimeError)
 
 
@@ -79,13 +79,13 @@ class Problem:
             raise ValueError("the problem has another mesh than the result")
         self.dimension = int(file.attrs["dimension"])
         self.first = np.concatenate([[0], np.cumsum(grid["NumberOfPoints"][:])])
-        # Rows of one node that stresses tell apart are one here.
+        # Rows of one node, separate where stresses jump, are merged.
         self.one = np.searchsorted(result.nodes, result.nodes)
         self.is_there = np.zeros(len(result.nodes), dtype=bool)
         for cells in result.cells:
             self.is_there[self.one[cells.nodes]] = True
         in_cells = np.isin(np.arange(len(self.tags)), self.points_of_cells())
-        # What no cell ever has moves with a reference point.
+        # Nodes without cells move with a reference point.
         self.is_there[self.row[~in_cells]] = True
 
     def points_of_cells(self):

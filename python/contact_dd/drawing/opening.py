@@ -12,6 +12,8 @@ STATES = {"strain": "in plane strain", "stress": "in plane stress", "axisymmetri
 GOOD, USABLE = 0.01, 0.05
 # Certificates of results that are solved to round-off.
 ROUND_OFF = 1e-12
+# Share of the largest force below which a reaction is round-off.
+NOTHING = 1e-9
 
 
 def title_of(report, result, problem):
@@ -59,8 +61,9 @@ def sentences(report, result, units):
     """Sentences that an engineer would write of the run."""
     found = [
         solved(report, result), stresses(result, units), pressures(report, result, units), balance(report, units),
-        trust(report),
     ]
+    # Numbers that aren't to be used stand behind the warning.
+    found.insert(len(found) if report["status"] == "converged" else 0, trust(report))
     return section("In short", "".join(f"<p>{escape(one)}</p>" for one in found if one))
 
 
@@ -73,9 +76,10 @@ def solved(report, result):
     of_contacts = f" {contacts} contact{'s' * (contacts != 1)}{friction}" if contacts else " no contact"
     last = " What follows is of the last one." if steps else ""
     dofs = f"{report['dofs']:,}".replace(",", " ")
+    ended = "solved" if report["status"] == "converged" else "not solved"
     return (
         f"Linear elastic bodies of {materials if materials > 1 else 'one'} material{'s' * (materials != 1)} "
-        f"{STATES.get(result.plane, 'in space')}, with{of_contacts} and {dofs} degrees of freedom, solved{steps} in "
+        f"{STATES.get(result.plane, 'in space')}, with{of_contacts} and {dofs} degrees of freedom, {ended}{steps} in "
         f"{si(report['seconds']['total'], 's')}.{last}"
     )
 
@@ -97,7 +101,7 @@ def stresses(result, units):
 
 def place(result, node, units):
     point = result.points[node][: 3 if result.is_in_space else 2]
-    # What is round-off of the size is nothing.
+    # Round-off relative to the size of the model.
     nothing = 1e-9 * np.ptp(result.points, axis=0).max()
     axes = zip("xyz" if result.is_in_space else "xy", point, strict=True)
     return ", ".join(f"{name} = {si(0 if abs(at) < nothing else at, units.length)}" for name, at in axes)
@@ -135,11 +139,12 @@ def balance(report, units):
     off = report["certificate"].get("force_balance")
     words = "Loads and reactions balance" + ("" if off is None else f" to {short(off)} of the forces")
     sums = [sum(one["force"][k] or 0 for one in report["reactions"]) for k in range(3)] if report["reactions"] else []
-    largest = max(map(abs, sums), default=0)
-    if largest == 0:
-        return f"{words}; supports carry nothing."
+    of_contacts = (abs(force or 0) for one in report["contacts"] for force in one["force"])
+    largest = max([*map(abs, sums), *of_contacts], default=0)
     named = zip(sums, "xyz", strict=True)
-    parts = [f"{si(force, units.force)} along {name}" for force, name in named if abs(force) > 1e-9 * largest]
+    parts = [f"{si(force, units.force)} along {name}" for force, name in named if abs(force) > NOTHING * largest]
+    if not parts:
+        return f"{words}; supports carry nothing."
     return f"{words}: supports push on the bodies with {', '.join(parts)}."
 
 

@@ -23,8 +23,8 @@ DASHES = (0, (5, 3))
 # Where contacts press within so small a part of the size, a second panel shows that part.
 SMALL = 1 / 6
 
-# Where it is smaller than this part of the size, the first panel shows what is around it, so many times as wide: all
-# would be a plain area.
+# Share of the size below which the first panel shows the surroundings only, and their width over that of the part: a
+# panel of everything would be a plain area.
 SMALLER, SURROUNDINGS = 1 / 12, 7.0
 
 # Width of that part over the width of what presses.
@@ -70,7 +70,8 @@ def overview(result, scale):
     largest = max((side.pressure.max() for side in sides), default=0.0)
     seen, normals = seen_in(conditions, moved, panels), result.normals()
     key = entries(sides, largest, has_moved, is_turned, result.units.stress) + symbols.entries(seen, 2)
-    figure, all_axes, of_colours = layout(panels, len(key))
+    down = symbols.below(conditions, moved, normals, panels)
+    figure, all_axes, of_colours = layout(panels, len(key), down)
     for axes, (low, high) in zip(all_axes, panels):
         axes.tripcolor(mesh, values, shading="gouraud", cmap=colours.cmap, norm=colours.norm)
         size = max(high - low)
@@ -82,10 +83,10 @@ def overview(result, scale):
         lines(axes, moved, result.outline, colors="k", linewidths=0.9)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-        scale_bar(axes, high[0] - low[0], result.units)
+        scale_bar(axes, high[0] - low[0], result.units, down)
         paper = symbols.Paper(moved, normals, np.eye(2), size, result.lengths)
         symbols.draw(axes, paper, seen_in(conditions, moved, [(low, high)]))
-    directions(all_axes[0], "rz" if is_turned else "xy")
+    directions(all_axes[0], "rz" if is_turned else "xy", down)
     for axes, (low, high) in zip(all_axes, panels[1:]):
         axes.add_patch(Rectangle(low, *(high - low), fill=False, ec="k", lw=1.0))
     if largest > 0:
@@ -199,15 +200,15 @@ def bound(mesh, values, panel):
     return max(2 * found if np.ptp(value) < 1e-3 * found else found, 1e-300)
 
 
-def layout(panels, entries):
+def layout(panels, entries, down):
     """Axes side by side, as wide as the shapes of the panels ask for, and those of the colours, above so many entries
-    of a legend."""
+    of a legend and, `down` from them (inches), the scale."""
     ratios = [(high - low)[0] / (high - low)[1] for low, high in panels]
     height = float(np.clip(WIDTHS[len(panels) - 1] / sum(ratios), 2.4, 5.2))
     widths = [height * ratio for ratio in ratios]
     needed = LEFT + sum(widths) + BETWEEN * len(panels) + RIGHT
     total = max(needed, NARROWEST)
-    below = BELOW + OF_LINE * -(-entries // columns_of(total))
+    below = BELOW + down + OF_LINE * -(-entries // columns_of(total))
     tall = below + height + ABOVE
     figure = plt.figure(figsize=(total, tall))
 

@@ -330,17 +330,17 @@ def tips(report, units):
     ]
     words = (
         "The last column is the largest difference of the factors in smaller discs around the tip. Their error is of "
-        "that size or larger: a second mesh tells."
+        "that size or larger; compare with a second mesh."
     )
     rows = table(["crack tip", "K_I", "K_II", "J", "by the disc"], rows, numbers=(1, 2, 3, 4))
     return section("Stress intensity", rows, more(found, ""), f"<p><small>{words}</small></p>")
 
 
-def told_error(one, units):
+def printed_error(one, units):
     error, bar, unit = one.get("error"), one.get("error_bar"), units.of_quantity(one["kind"])
     if error is None:
         return "–"
-    # As the solver tells it, of reports without bars with the sign.
+    # As the solver prints it; in reports without bars with the sign.
     return si(error, unit, 2) if bar is None or abs(error) >= 0.5 * bar else "± " + si(bar, unit, 2)
 
 
@@ -350,7 +350,7 @@ def quantities(report, units):
         return ""
     rows = [
         [one["name"], si(one["value"], units.of_quantity(one["kind"]), 5),
-         told_error(one, units), *most(one)]
+         printed_error(one, units), *most(one)]
         for one in found[:MOST_ROWS]
     ]
     words = (
@@ -392,7 +392,7 @@ def bars(results):
     meshes = len(found[0].values) - 1 if found else 1
     words = (
         f"By comparison with {meshes} coarser mesh{'es' * (meshes > 1)}. A line where the number doesn't converge: at "
-        "an edge or a tip, or where finer meshes would tell."
+        "an edge or a tip, or as the meshes are too coarse."
     )
     table_of = table(["", "", "off at most", "order"], rows, numbers=(1, 2, 3))
     return section("Error bars", table_of, more(found, ""), f"<p><small>{words}</small></p>")

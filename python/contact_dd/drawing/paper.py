@@ -2,6 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
@@ -11,10 +12,14 @@ from contact_dd.drawing.units import in_units
 
 # The steps between levels, times a power of ten.
 ROUND = [1, 2, 5, 10]
-# The longest arm of a cross over the distance of crosses.
-ARM = 0.6
+# Half of the longest line of a cross over the distance of crosses.
+ARM = 0.48
 # Crosses along the larger side.
 ACROSS = 18
+# Stresses below this part of the largest aren't drawn.
+LEAST = 0.02
+# Signs of stresses and their colours.
+SIGNS = {"tension": (1, "tab:red"), "compression": (-1, "tab:blue")}
 
 
 def levels(values):
@@ -106,24 +111,18 @@ def principal(result):
     axes.autoscale()
     for value, turn in ((mean + radius, angle), (mean - radius, angle + np.pi / 2)):
         length = ARM * step * np.clip(np.abs(value) / largest, 0, 1)
-        along = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        for sign, pivot, color in ((1, "tail", "tab:red"), (-1, "tip", "tab:blue")):
-            drawn = (sign * value > 0) & (np.abs(value) > 0.03 * largest)
-            for side in (1, -1):
-                # Tension starts in the middle, compression ends a little before it.
-                foot = centers + side * (0.02 if sign > 0 else 0.07) * step * along
-                axes.quiver(
-                    *foot[drawn].T, *(sign * side * length[:, None] * along)[drawn].T, color=color,
-                    pivot=pivot, angles="xy", scale_units="xy", scale=1, units="xy",
-                    width=0.045 * step, headwidth=3.6, headlength=4, headaxislength=3.6, minlength=0.1,
-                )
+        arm = length[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        drawn = np.abs(value) > LEAST * largest
+        ends = np.stack([centers - arm, centers + arm], axis=1)
+        for sign, color in SIGNS.values():
+            axes.add_collection(LineCollection(ends[drawn & (sign * value > 0)], colors=color, linewidths=1.8))
     (shown,), unit = in_units(np.array([largest]), result.units.stress)
-    arm = round_below(shown)
-    axes.plot([], [], color="tab:red", label="tension ←→")
-    axes.plot([], [], color="tab:blue", label="compression →←")
+    long = round_below(shown)
+    for name, (_, color) in SIGNS.items():
+        axes.plot([], [], color=color, lw=1.8, label=name)
     # Beside the axes on the top, where nothing is.
     axes.add_artist(AnchoredSizeBar(
-        axes.transData, ARM * step * arm / shown, f"{arm:g} {unit}", loc="lower right", bbox_to_anchor=(1, 1),
+        axes.transData, 2 * ARM * step * long / shown, f"{long:g} {unit}", loc="lower right", bbox_to_anchor=(1, 1),
         bbox_transform=axes.transAxes, frameon=False, pad=0.1, sep=6, size_vertical=0.04 * step,
     ))
     legend(axes, 2)

@@ -16,7 +16,7 @@ COLOURS = "inferno_r"
 LEVELS = 101
 # Least and largest width of a map, and what stands beside it, and above and below it (inches).
 NARROWEST, WIDEST, BESIDE, ABOVE = 1.2, 4.2, 1.4, 0.75
-# Width of a part that presses, relative to what is shown of it.
+# Width of a map over that of the part under pressure.
 AROUND = 1.3
 # Share of the nodes of a map that faces have if the map consists of these.
 MOST_NODES = 0.75

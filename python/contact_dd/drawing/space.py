@@ -29,7 +29,7 @@ SEEN = 0.01
 WIDTH = 640
 # Strengths of lines: edges of bodies and outlines, of cells, of bodies behind pressures.
 OF_BODIES, OF_CELLS, BEHIND = 0.85, 0.16, 0.6
-# Height of a figure, of what is seen in it of bodies and of maps, and what glass adds to both (inches).
+# Height of a figure, of the panels of bodies and maps, and of the translucent bodies below them (inches).
 TALL, HEIGHT, OF_GLASS = 5.0, 4.7, 3.2
 # Most that bodies take (inches).
 WIDEST_BODIES = 6.0

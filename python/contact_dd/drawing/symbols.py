@@ -19,6 +19,8 @@ HELD, GIVEN, PAPER = "#222222", "#a3159b", "#ffffff"
 ROLLER = "roller, held along its axis"
 # Height of triangles, and lengths of arrows (points).
 TALL, SHORTEST, LONGEST, OF_BODY = 8.0, 13.0, 24.0, 30.0
+# Arrows at nodes this near to an edge, over the size of a panel, reach beyond it; free room there (points).
+AT_EDGE, FREE_BELOW = 0.05, 8.0
 # Cosine of the angle to the eye above which a direction is drawn as a ring.
 TO_EYE = 0.97
 # Cosine of the angle to a load down to which another one isn't opposite to it.
@@ -207,6 +209,20 @@ def ends(paper, conditions, length):
             pushes = paper.normals[node] @ force <= 0
             found.append(paper.places[node] + (-length if pushes else length) * direction)
     return np.array(found).reshape(-1, 2)
+
+
+def below(conditions, moved, normals, panels):
+    """How far arrows of loads reach below the panels, into the room of the scale (inches)."""
+    nodes, forces = conditions.nodes, conditions.forces
+    if len(nodes) == 0:
+        return 0.0
+    up = forces[:, 1] / np.maximum(np.linalg.norm(forces, axis=1), 1e-300)
+    pushes = (normals[nodes] * forces).sum(axis=1) <= 0
+    places = moved[nodes]
+    lowest = [np.all((places >= low) & (places <= high), axis=1) & (places[:, 1] < low[1] + AT_EDGE * max(high - low))
+              for low, high in panels]
+    reach = np.where(pushes, up, -up)[np.any(lowest, axis=0)].max(initial=0.0)
+    return max(LONGEST * reach - FREE_BELOW, 0.0) / 72
 
 
 def draw_bodies(axes, paper, centres, forces):

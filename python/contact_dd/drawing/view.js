@@ -63,7 +63,7 @@
   };
   const indices = place => place && { count: place.length, of: buffer(numbers(place), gl.ELEMENT_ARRAY_BUFFER) };
   const points = numbers(about.points), nodes = numbers(about.nodes);
-  // What is there in some step: what of it is drawn, and which nodes it has.
+  // Parts that are active in the same steps: their surfaces, and flags of their nodes.
   const surfaces = about.surfaces.map(({ triangles, edges, sides }) => {
     const has = new Uint8Array(nodes.length);
     numbers(triangles).forEach(node => has[node] = 1);
@@ -83,7 +83,7 @@
   let step, field, faces, edges, sides, has, displacements, values, camera, eye, across, up;
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const add = (a, factor, b) => a.map((one, k) => one + factor * b[k]);
-  // What is half of the height of the canvas.
+  // Half of the height of the canvas, in lengths of the model.
   const half = () => 1.06 / camera.zoom * Math.max(camera.size[1], camera.size[0] * canvas.height / canvas.width);
   const factor = () => about.scale * input("scale").value;
 

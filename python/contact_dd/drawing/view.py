@@ -50,7 +50,7 @@ def view(result, scale, picture):
     fields = "".join(f"<option>{escape(field['name'])}</option>" for field in about["steps"][-1]["fields"])
     steps = "".join(f"<option>{escape(step['name'])}</option>" for step in about["steps"])
     # No name ends the script.
-    said = json.dumps(about).replace("<", "\\u003c")
+    data = json.dumps(about).replace("<", "\\u003c")
     return (
         f'<div id="view"><div class="still">{picture}</div><div class="live" hidden>'
         f'<p class="controls"><label>colour <select name="field">{fields}</select></label>'
@@ -62,7 +62,7 @@ def view(result, scale, picture):
         '<p class="bar"><span name="low"></span><i></i><span name="high"></span></p>'
         f'<p><small>{turns}, turn the wheel to zoom, click twice for the whole '
         '<output name="here"></output></small></p>'
-        f'</div><script type="application/json">{said}</script>'
+        f'</div><script type="application/json">{data}</script>'
         f'<script type="text/plain">{numbers}</script></div><script>{script}</script>'
     )
 

@@ -25,10 +25,10 @@ fn what_is_no_terminal_gets_no_control_characters() {
         ] {
             let ended = case.run_on(ranks, args);
             // Open MPI gives ranks a terminal of its own, with other line endings.
-            let said = [ended.stdout, ended.stderr].concat().replace("\r\n", "\n");
+            let printed = [ended.stdout, ended.stderr].concat().replace("\r\n", "\n");
             assert!(
-                !said.contains(is_control),
-                "{ranks} ranks, {args:?}: {said:?}"
+                !printed.contains(is_control),
+                "{ranks} ranks, {args:?}: {printed:?}"
             );
         }
     }

@@ -68,8 +68,8 @@ fn the_man_page_has_every_option_and_exit_code_and_is_well_formed() {
             .args(["-man", "-Tutf8", "-ww", "-z"])
             .arg(&path));
         for output in linted.into_iter().chain(set) {
-            let said = [output.stdout, output.stderr].concat();
-            assert!(said.is_empty(), "{}", String::from_utf8_lossy(&said));
+            let printed = [output.stdout, output.stderr].concat();
+            assert!(printed.is_empty(), "{}", String::from_utf8_lossy(&printed));
         }
     }
 }
@@ -154,9 +154,12 @@ fn the_help_names_the_defaults_that_hold() {
             number => format!("{:e}", number.as_f64().unwrap()).replace("1e0", "1"),
         };
         let words: Vec<&str> = help.split_whitespace().collect();
-        let said = words.join(" ");
-        let option = said.split(&format!("--{name} ")).nth(1).unwrap();
-        let said = option.split("[default: ").nth(1).unwrap();
-        assert!(said.starts_with(&format!("{value}]")), "{name}: {said}");
+        let printed = words.join(" ");
+        let option = printed.split(&format!("--{name} ")).nth(1).unwrap();
+        let printed = option.split("[default: ").nth(1).unwrap();
+        assert!(
+            printed.starts_with(&format!("{value}]")),
+            "{name}: {printed}"
+        );
     }
 }

@@ -13,8 +13,8 @@ fn a_relaxation_that_is_not_used_is_said_to_be_so() {
         let ended = case.run(&[&args[..], &[report_file, "--method", method]].concat());
         assert_eq!(ended.code(), 0, "{}{}", ended.stdout, ended.stderr);
         let warnings = report(&case)["warnings"].to_string();
-        let said = warnings.contains("--relaxation goes with --method picard");
-        assert_eq!(said, word, "{method}: {warnings}");
+        let printed = warnings.contains("--relaxation goes with --method picard");
+        assert_eq!(printed, word, "{method}: {warnings}");
     }
 }
 

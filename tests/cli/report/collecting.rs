@@ -75,11 +75,11 @@ fn what_is_no_report_is_named() {
         let Some(ended) = collect(&[&other]) else {
             return;
         };
-        let said = &ended.stderr;
+        let printed = &ended.stderr;
         assert!(ended.code() == 2 && ended.stdout.is_empty());
         assert!(
-            said.contains("other.json") && said.contains(words),
-            "{said}"
+            printed.contains("other.json") && printed.contains(words),
+            "{printed}"
         );
     }
     let missing = folder.path().join("missing.json");

@@ -45,10 +45,10 @@ fn gaps_that_close_are_not_enlarged_into_overlaps() {
     assert!(apart.folder().join("pictures/overview.png").exists());
     let asked = figures(&apart, &["--scale", "20"]);
     assert_eq!(asked.code(), 0, "{}", asked.stderr);
-    let said = &asked.stderr;
+    let printed = &asked.stderr;
     assert!(
-        said.contains("× 20 enlarges gaps that close") && said.contains("× 1 isn't"),
-        "{said}"
+        printed.contains("× 20 enlarges gaps that close") && printed.contains("× 1 isn't"),
+        "{printed}"
     );
 
     let touching = figures(&solved(0.0), &["--scale", "20"]);

@@ -64,6 +64,10 @@ fn a_page_says_how_the_run_ended_and_draws_its_contacts() {
     assert!(converged.contains("left crack") && converged.contains("31 of 48"));
     assert!(short.contains("<h2>Warnings</h2>") && !converged.contains("<h2>Warnings</h2>"));
     assert!(linear.contains("No contact"));
+    // Numbers that aren't to be used stand behind that sentence.
+    let first = "<h2>In short</h2><p>The run did not converge";
+    assert!(short.contains(first) && !converged.contains("did not converge"));
+    assert!(short.contains("not solved in") && converged.contains(", solved in"));
 }
 
 #[test]
@@ -76,8 +80,11 @@ fn what_is_no_result_gets_no_page() {
     fs::write(&file, "other").unwrap();
     let refused = summary(&[&file]);
     assert_eq!(refused.code(), 2);
-    let said = &refused.stderr;
-    assert!(said.contains("other.vtkhdf: isn't a result"), "{said}");
+    let printed = &refused.stderr;
+    assert!(
+        printed.contains("other.vtkhdf: isn't a result"),
+        "{printed}"
+    );
     assert!(!file.with_extension("html").exists());
 }
 
@@ -122,10 +129,10 @@ fn a_second_result_is_not_taken_for_the_name_of_the_page() {
     fs::write(&other, "other").unwrap();
     let refused = summary(&[&case.result(), &other]);
     assert_eq!(refused.code(), 2);
-    let said = &refused.stderr;
+    let printed = &refused.stderr;
     assert!(
-        said.contains("other.vtkhdf: isn't the name of a page"),
-        "{said}"
+        printed.contains("other.vtkhdf: isn't the name of a page"),
+        "{printed}"
     );
     assert_eq!(fs::read_to_string(&other).unwrap(), "other");
 }

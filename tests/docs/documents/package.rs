@@ -25,6 +25,9 @@ pub fn passes(file: &Path) {
     command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]);
     command.arg(root().join("python/tests").join(file));
     let ended = folder.run(&mut command);
-    let said = format!("{}{}", ended.stdout, ended.stderr);
-    assert!(ended.code() == 0 && !said.contains(" skipped"), "{said}");
+    let printed = format!("{}{}", ended.stdout, ended.stderr);
+    assert!(
+        ended.code() == 0 && !printed.contains(" skipped"),
+        "{printed}"
+    );
 }

@@ -77,8 +77,12 @@ fn sinks(text: &str, mesh: Mesh, axis: usize) {
             for point in solution.points() {
                 close(point.pressure, PRESSURE, 1e-9 * PRESSURE);
             }
-            let said = &solution.report["contacts"][0]["largest_overclosure"];
-            close(said.as_f64().unwrap(), PRESSURE / STIFFNESS, 1e-9 * scale);
+            let printed = &solution.report["contacts"][0]["largest_overclosure"];
+            close(
+                printed.as_f64().unwrap(),
+                PRESSURE / STIFFNESS,
+                1e-9 * scale,
+            );
             let file = hdf5::File::open(case.result()).unwrap();
             let overclosure = file.dataset("contact/joint/overclosure").unwrap();
             for of_point in overclosure.read_raw::<f64>().unwrap() {

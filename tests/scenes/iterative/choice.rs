@@ -131,9 +131,9 @@ fn what_does_not_converge_between_clusters_is_solved_directly_from_there() {
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
         let report = trial.report.unwrap();
         let words = "didn't converge";
-        for said in ["warnings", "fallbacks", "interface_choice"] {
-            let is_said = report[said].to_string().contains(words);
-            assert!(is_said, "{seed}: {}", report[said]);
+        for printed in ["warnings", "fallbacks", "interface_choice"] {
+            let is_said = report[printed].to_string().contains(words);
+            assert!(is_said, "{seed}: {}", report[printed]);
         }
     }
 }

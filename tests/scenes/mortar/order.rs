@@ -62,11 +62,11 @@ fn both_orders_of_sides_agree_within_the_estimate_of_the_error_and_the_penetrati
         worst = worst.max(apart / (bound + deepest));
         sum += apart / bound;
         beyond += usize::from(apart > bound);
-        let said = |of: &Solution| of.report["warnings"].to_string().contains("penetrate by");
-        let is_said = apart <= bound || solutions.iter().any(said);
+        let printed = |of: &Solution| of.report["warnings"].to_string().contains("penetrate by");
+        let is_said = apart <= bound || solutions.iter().any(printed);
         if apart > bound + deepest || !is_said {
             wrong.push(format!(
-                "seed {seed}: {apart} beyond {bound} and {deepest}, said: {is_said}, of {punch:?}"
+                "seed {seed}: {apart} beyond {bound} and {deepest}, printed: {is_said}, of {punch:?}"
             ));
         }
     }

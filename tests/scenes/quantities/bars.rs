@@ -273,10 +273,10 @@ fn facets_of_curves_are_told_of_where_errors_are_stated() {
         })
     };
     // Sagitta of eight chords of the outer radius, 2.
-    let said = warnings(quarter(), true);
+    let printed = warnings(quarter(), true);
     assert!(
-        said.len() == 1 && said[0].contains("stand off by up to 0.0096"),
-        "{said:?}"
+        printed.len() == 1 && printed[0].contains("stand off by up to 0.0096"),
+        "{printed:?}"
     );
     assert!(warnings(quarter(), false).is_empty());
     let square = Blocks::new().rectangle("body", [0.0, 1.0], [0.0, 1.0], [4, 4]);

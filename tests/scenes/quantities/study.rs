@@ -43,8 +43,8 @@ fn asked() -> Value {
 #[test]
 fn a_case_is_a_run_of_its_own_with_the_same_bits_on_any_number_of_ranks_and_after_any_other_case() {
     let case = Case::of(&scene(0.3, 0.0), 6);
-    let (alone, code, said) = table(&case, 0, &asked(), &[]);
-    assert_eq!(code, 0, "{said}");
+    let (alone, code, printed) = table(&case, 0, &asked(), &[]);
+    assert_eq!(code, 0, "{printed}");
     let alone = alone.unwrap();
     for (row, (friction, gap)) in [(0, (0.3, 0.0)), (1, (0.1, 0.0)), (3, (0.5, 1e-6))] {
         let report = Case::of(&scene(friction, gap), 6).solve(&[]).report;
@@ -57,8 +57,12 @@ fn a_case_is_a_run_of_its_own_with_the_same_bits_on_any_number_of_ranks_and_afte
         }
     }
     for ranks in [1, 2, 3, 4] {
-        let (found, code, said) = table(&case, ranks, &asked(), &[]);
-        assert_eq!((found.as_ref(), code), (Some(&alone), 0), "{ranks}: {said}");
+        let (found, code, printed) = table(&case, ranks, &asked(), &[]);
+        assert_eq!(
+            (found.as_ref(), code),
+            (Some(&alone), 0),
+            "{ranks}: {printed}"
+        );
     }
     let mut reversed = asked();
     reversed["cases"].as_array_mut().unwrap().reverse();
@@ -70,8 +74,8 @@ fn a_case_is_a_run_of_its_own_with_the_same_bits_on_any_number_of_ranks_and_afte
 #[test]
 fn a_case_without_friction_slips_as_without_any() {
     let case = Case::of(&scene(0.3, 0.0), 6);
-    let (found, code, said) = table(&case, 0, &asked(), &["--interface", "iterative"]);
-    assert_eq!(code, 0, "{said}");
+    let (found, code, printed) = table(&case, 0, &asked(), &["--interface", "iterative"]);
+    assert_eq!(code, 0, "{printed}");
     let found = &found.unwrap()["cases"][2]["quantities"];
     let (none, code, _) = table(
         &Case::of(&scene(0.0, 0.0), 6),
@@ -122,8 +126,8 @@ contact = 'table'
     let case = Case::of(&model(text, mesh.mesh), 2);
     let asked =
         json!({"parameters": ["pressure[1] on 'block top'"], "cases": [[1.0], [-1.0], [2.0]]});
-    let (found, code, said) = table(&case, 0, &asked, &[]);
-    assert_eq!(code, 3, "{said}");
+    let (found, code, printed) = table(&case, 0, &asked, &[]);
+    assert_eq!(code, 3, "{printed}");
     let cases = found.unwrap()["cases"].clone();
     let status = |k: usize| cases[k]["status"].as_str().unwrap().to_owned();
     assert_eq!(
@@ -153,14 +157,14 @@ fn what_a_study_cannot_be_is_refused() {
         ("contact 'joint': friction", -0.1, "of friction 0 or more"),
     ] {
         let asked = json!({"parameters": [parameter], "cases": [[value]]});
-        let (found, code, said) = table(&case, 2, &asked, &[]);
-        assert_eq!((found, code), (None, 2), "{said}");
-        assert!(said.contains(expected), "{said}");
+        let (found, code, printed) = table(&case, 2, &asked, &[]);
+        assert_eq!((found, code), (None, 2), "{printed}");
+        assert!(printed.contains(expected), "{printed}");
     }
-    let (_, code, said) = table(&case, 0, &json!({"parameters": [], "cases": [[1.0]]}), &[]);
+    let (_, code, printed) = table(&case, 0, &json!({"parameters": [], "cases": [[1.0]]}), &[]);
     assert!(
-        code == 2 && said.contains("case 1 has 1 values; expected 0"),
-        "{said}"
+        code == 2 && printed.contains("case 1 has 1 values; expected 0"),
+        "{printed}"
     );
     for (asked, expected) in [
         (
@@ -180,9 +184,9 @@ fn what_a_study_cannot_be_is_refused() {
             "line 1: it is the text \"1\"; expected a number",
         ),
     ] {
-        let (_, code, said) = table(&case, 0, &asked, &[]);
-        assert!(code == 2 && said.contains(expected), "{said}");
+        let (_, code, printed) = table(&case, 0, &asked, &[]);
+        assert!(code == 2 && printed.contains(expected), "{printed}");
     }
-    let (_, code, said) = table(&case, 0, &asked(), &["--restart"]);
-    assert!(code == 2 && said.contains("--restart"), "{said}");
+    let (_, code, printed) = table(&case, 0, &asked(), &["--restart"]);
+    assert!(code == 2 && printed.contains("--restart"), "{printed}");
 }

@@ -55,8 +55,11 @@ fn linear_displacements_are_exact_in_the_hexahedra_of_macneal_and_harder() {
     let path = folder.path().join("patch.inp");
     std::fs::write(&path, deck()).unwrap();
     let mesh = mesh::read(&path).unwrap();
-    let said = mesh.warnings.join("\n");
-    assert!(said.contains("is folded: its Jacobian is -"), "{said}");
+    let printed = mesh.warnings.join("\n");
+    assert!(
+        printed.contains("is folded: its Jacobian is -"),
+        "{printed}"
+    );
     let text = "
 materials.a = {young = 1e6, poisson = 0.25}
 bodies.cube.material = 'a'

@@ -238,13 +238,13 @@ impl<'a> Assembly<'a> {
         warnings.extend(notes.warnings());
         let moved = self.whole.instances.iter();
         let mut moved = moved.filter(|(name, offsets)| offsets.nodes != 0 && !name.is_empty());
-        let told = moved.by_ref().take(MOST_LISTED).map(|(instance, offsets)| {
+        let shifted = moved.by_ref().take(MOST_LISTED).map(|(instance, offsets)| {
             format!(
                 "the nodes of the instance '{instance}' are numbered as in its part + {}, its elements + {}",
                 offsets.nodes, offsets.elements
             )
         });
-        warnings.extend(told);
+        warnings.extend(shifted);
         let more = moved.count();
         if more > 0 {
             warnings.push(format!(

@@ -71,8 +71,8 @@ mod tests {
             (29, "gmsh -order 2"),
             (99, "isn't supported"),
         ] {
-            let said = kind(7, number).unwrap_err();
-            assert!(said.contains(words), "{said}");
+            let printed = kind(7, number).unwrap_err();
+            assert!(printed.contains(words), "{printed}");
         }
     }
 }

@@ -94,9 +94,9 @@ fn instances_are_shifted_turned_and_told_apart() {
         assert!((found - expected).abs() < 1e-15, "{at:?}");
     }
     assert!((mesh.measure(1) - 2.0).abs() < 1e-14);
-    let said = mesh.warnings.join("\n");
+    let printed = mesh.warnings.join("\n");
     says(
-        &said,
+        &printed,
         "'HIGH' are numbered as in its part + 8, its elements + 1",
     );
 }

@@ -33,10 +33,10 @@ High, S2
 #[track_caller]
 fn quiet(deck: &str, warning: &str) -> Mesh {
     let mut mesh = read(deck).unwrap();
-    let said = mesh.warnings.join("\n");
+    let printed = mesh.warnings.join("\n");
     match warning {
-        "" => assert_eq!(said, ""),
-        _ => says(&said, warning),
+        "" => assert_eq!(printed, ""),
+        _ => says(&printed, warning),
     }
     mesh.warnings.clear();
     mesh

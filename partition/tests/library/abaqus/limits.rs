@@ -98,6 +98,9 @@ fn numbers_of_instances_stay_numbers() {
     let mesh = read(few).unwrap();
     assert_eq!(mesh.cells.len(), 1000);
     assert!(mesh.node_tags.is_sorted() && mesh.node_tags[0] == 1);
-    let said = mesh.warnings.join("\n");
-    says(&said, "979 more instances are numbered on in the same way");
+    let printed = mesh.warnings.join("\n");
+    says(
+        &printed,
+        "979 more instances are numbered on in the same way",
+    );
 }

@@ -118,8 +118,8 @@ fn a_mistake_is_named_with_its_line() {
             "files are included in each other",
         ),
     ] {
-        let said = read(&format!("{SQUARES}{more}\n")).unwrap_err();
-        assert!(said.contains(expected), "{more}: {said}");
+        let printed = read(&format!("{SQUARES}{more}\n")).unwrap_err();
+        assert!(printed.contains(expected), "{more}: {printed}");
     }
     for (deck, expected) in [
         (
@@ -135,15 +135,15 @@ fn a_mistake_is_named_with_its_line() {
             "has no cells",
         ),
     ] {
-        let said = read(deck).unwrap_err();
-        says(&said, expected);
+        let printed = read(deck).unwrap_err();
+        says(&printed, expected);
     }
-    let said = read_all(&[
+    let printed = read_all(&[
         ("a.inp", "*INCLUDE, INPUT=b.inp"),
         ("b.inp", "** \n*NODE\n1, x"),
     ])
     .unwrap_err();
-    assert!(said.starts_with("b.inp: line 3: "), "{said}");
+    assert!(printed.starts_with("b.inp: line 3: "), "{printed}");
 }
 
 #[test]
@@ -163,15 +163,15 @@ fn a_mistake_is_short_however_long_its_words_are() {
         format!("*INCLUDE, INPUT={long}\n"),
         format!("*PART, NAME={long}\n*PART, NAME={long}\n"),
     ] {
-        let said = read(&format!("{SQUARES}{more}\n")).unwrap_err();
-        assert!(said.len() < 2500, "{}: {said}", said.len());
-        says(&said, "part.inp: line … ");
+        let printed = read(&format!("{SQUARES}{more}\n")).unwrap_err();
+        assert!(printed.len() < 2500, "{}: {printed}", printed.len());
+        says(&printed, "part.inp: line … ");
     }
     let mesh = read(&format!(
         "{long}\n{SQUARES}*{long}\n*NSET, NSET={long}\n77\n*ELEMENT, TYPE=MASS{long}\n9, 1\n"
     ));
-    let said = mesh.unwrap().warnings.join("\n");
-    assert!(said.len() < 2000, "{}: {said}", said.len());
+    let printed = mesh.unwrap().warnings.join("\n");
+    assert!(printed.len() < 2000, "{}: {printed}", printed.len());
 }
 
 #[test]

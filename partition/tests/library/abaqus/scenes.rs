@@ -137,7 +137,7 @@ fn what_a_deck_is_warned_of_is_a_line_of_the_problem_file_whatever_the_deck_hold
     let path = folder.path().join("problem.h5");
     problem(scene, mesh.unwrap(), 1).write(&path).unwrap();
     let read = ProblemFile::open(&path).and_then(|file| file.problem());
-    let said = read.unwrap().catalog.warnings.join(" | ");
-    assert!(!said.contains(char::is_control), "{said:?}");
-    says(&said, r"*FOO\u{1b}[31MRED");
+    let printed = read.unwrap().catalog.warnings.join(" | ");
+    assert!(!printed.contains(char::is_control), "{printed:?}");
+    says(&printed, r"*FOO\u{1b}[31MRED");
 }

@@ -9,7 +9,7 @@ const LOAD: &str = "*DLOAD\nUpper, P2, 1.";
 pub fn refused(deck: &str, expected: &str) {
     match read(deck) {
         Ok(translation) => panic!("{expected}: {}", translation.scene),
-        Err(said) => says(&said, expected),
+        Err(printed) => says(&printed, expected),
     }
 }
 

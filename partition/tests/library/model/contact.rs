@@ -318,8 +318,8 @@ fn a_pair_that_is_prescribed_on_both_sides_carries_no_condition() {
     for (keys, is_lost) in [("", false), ("friction = 0.5\n", true)] {
         let rough = text(-0.25).replacen("[[bilateral]]", &format!("{keys}[[bilateral]]"), 1);
         let warnings = stack(0.25).model(&rough).unwrap().warnings;
-        let said = warnings.iter().any(|warning| warning.starts_with(lost));
-        assert_eq!(said, is_lost, "{warnings:?}");
+        let printed = warnings.iter().any(|warning| warning.starts_with(lost));
+        assert_eq!(printed, is_lost, "{warnings:?}");
     }
     let error = conditions(&stack(0.25), &text(-0.26)).unwrap_err();
     says(&error, "contact 'c': at node … by 0.26 m");

@@ -28,12 +28,12 @@ fn bodies_that_touch_without_a_contact_are_named() {
         stack(0.0).quadratic(),
         stack(0.0).disguised(),
     ] {
-        let said = warned(&blocks, HELD);
+        let printed = warned(&blocks, HELD);
         assert!(
-            said.starts_with("bodies 'lower' and 'upper' touch without a contact, as at ("),
-            "{said}"
+            printed.starts_with("bodies 'lower' and 'upper' touch without a contact, as at ("),
+            "{printed}"
         );
-        assert_eq!(said.lines().count(), 1);
+        assert_eq!(printed.lines().count(), 1);
         assert_eq!(warned(&blocks, &format!("{HELD}{CONTACT}")), "");
     }
     assert_eq!(warned(&stack(1e-3), HELD), "");
@@ -48,13 +48,13 @@ fn bodies_that_overlap_without_a_contact_are_named_with_the_depth() {
     };
     let says = "bodies 'lower' and 'upper' overlap without a contact by up to 0.2 m, as at (";
     for blocks in [overlapping(0.8), overlapping(0.8).quadratic()] {
-        let said = warned(&blocks, HELD);
-        assert!(said.starts_with(says), "{said}");
-        assert_eq!(said.lines().count(), 1);
+        let printed = warned(&blocks, HELD);
+        assert!(printed.starts_with(says), "{printed}");
+        assert_eq!(printed.lines().count(), 1);
         // One body is there after the other.
         let steps = "[[step]]\n[[step]]\nremove = 'lower'\nadd = 'upper'\n";
-        let said = warned(&blocks, &format!("{HELD}{steps}"));
-        assert!(!said.contains("overlap"), "{said}");
+        let printed = warned(&blocks, &format!("{HELD}{steps}"));
+        assert!(!printed.contains("overlap"), "{printed}");
     }
     // Apart, and within the distance of straight facets from a curve.
     for low in [1.001, 0.999] {
@@ -95,27 +95,27 @@ fn cracked(shared: &[f64]) -> Blocks {
 
 #[test]
 fn a_crack_without_a_contact_is_named() {
-    let said = warned(&cracked(&[2.0]), HELD);
-    assert!(said.contains("touch without a contact"), "{said}");
-    let said = warned(&cracked(&[2.0]), &format!("{HELD}{CONTACT}"));
-    assert!(!said.contains("touch without a contact"), "{said}");
+    let printed = warned(&cracked(&[2.0]), HELD);
+    assert!(printed.contains("touch without a contact"), "{printed}");
+    let printed = warned(&cracked(&[2.0]), &format!("{HELD}{CONTACT}"));
+    assert!(!printed.contains("touch without a contact"), "{printed}");
 }
 
 #[test]
 fn a_crack_that_its_mouth_holds_together_is_named() {
-    let said = warned(&cracked(&[2.0]), &format!("{HELD}{CONTACT}"));
+    let printed = warned(&cracked(&[2.0]), &format!("{HELD}{CONTACT}"));
     says(
-        &said,
+        &printed,
         "contact 'c': its sides share node … at (2, 1) m, although the outer boundary begins there … \
          OpenBoundaryPhysicalGroup",
     );
-    assert_eq!(said.lines().count(), 1, "{said}");
+    assert_eq!(printed.lines().count(), 1, "{printed}");
     let both = warned(&cracked(&[0.0, 2.0]), &format!("{HELD}{CONTACT}"));
     says(&both, "at (0, 1) m, one of 2 such places");
     // A tie holds its sides together anyway.
     let tie = "[[tie]]\nname = 't'\nsides = ['lower top', 'upper bottom']\n";
-    let said = warned(&cracked(&[2.0]), &format!("{HELD}{tie}"));
-    assert!(!said.contains("its sides share node"), "{said}");
+    let printed = warned(&cracked(&[2.0]), &format!("{HELD}{tie}"));
+    assert!(!printed.contains("its sides share node"), "{printed}");
 }
 
 #[test]
@@ -142,20 +142,20 @@ fn pieces_that_hang_together_where_cracks_meet_are_named() {
     let text = format!("{HELD}{contacts}");
     assert_eq!(warned(&blocks, &text), "");
     let at_junction = nodes_at(&blocks, 1.0, 1.0);
-    let said = warned(&glued(blocks, at_junction[1], at_junction[2]), &text);
+    let printed = warned(&glued(blocks, at_junction[1], at_junction[2]), &text);
     says(
-        &said,
+        &printed,
         "contact 'stem': its sides share node … at (1, 1) m, although it meets contact 'bar' there",
     );
-    assert_eq!(said.lines().count(), 1, "{said}");
+    assert_eq!(printed.lines().count(), 1, "{printed}");
 }
 
 #[test]
 fn contacts_between_the_same_facets_are_named() {
     let again = "[[contact]]\nname = 'again'\nsides = ['upper bottom', 'lower top']\n";
-    let said = (stack(0.0).model(&format!("{HELD}{CONTACT}{again}"))).unwrap_err();
+    let printed = (stack(0.0).model(&format!("{HELD}{CONTACT}{again}"))).unwrap_err();
     says(
-        &said,
+        &printed,
         "contact 'again': there is contact 'c' between the same facets",
     );
     let floor = |name: &str, y: f64| {
@@ -177,9 +177,9 @@ fn a_corner_of_a_side_is_named() {
     let corner = CONTACT.replace("['lower top', 'up", "[['lower top', 'lower left'], 'up");
     assert_eq!(warned(&stack(0.0), &format!("{HELD}{corner}")), "");
     let mortar = format!("{HELD}{corner}pairing = 'mortar'\n");
-    let said = warned(&stack(0.0), &mortar);
+    let printed = warned(&stack(0.0), &mortar);
     says(
-        &said,
+        &printed,
         "contact 'c': side a has a corner of 90° at node … (0, 1)",
     );
     let on_b = CONTACT.replace("'upper bottom'", "['upper bottom', 'upper left']");
@@ -191,26 +191,26 @@ fn loads_beyond_the_stiffness_and_ways_beyond_the_size_are_named() {
     let load =
         |value: &str| format!("{HELD}{CONTACT}[[pressure]]\non = 'upper top'\nvalue = {value}\n");
     assert_eq!(warned(&stack(0.0), &load("2")), "");
-    let said = warned(&stack(0.0), &load("'-100*x'"));
+    let printed = warned(&stack(0.0), &load("'-100*x'"));
     says(
-        &said,
+        &printed,
         "pressure[1] on 'upper top': up to 200 Pa on 'steel' of a stiffness of 240 Pa",
     );
     let traction = "[[traction]]\non = 'upper top'\nvalue = [0, 150]\n";
     let scaled = format!("{HELD}{CONTACT}{traction}[[step]]\nscale = 0.01\n[[step]]\nscale = 1\n");
-    let said = warned(&stack(0.0), &scaled);
+    let printed = warned(&stack(0.0), &scaled);
     assert!(
-        said.starts_with("traction[1] on 'upper top': up to 150 Pa"),
-        "{said}"
+        printed.starts_with("traction[1] on 'upper top': up to 150 Pa"),
+        "{printed}"
     );
-    assert_eq!(said.lines().count(), 1);
+    assert_eq!(printed.lines().count(), 1);
     let pushed = format!("{HELD}{CONTACT}[[displacement]]\non = 'upper top'\ny = -5\n");
-    let said = warned(&stack(0.0), &pushed);
+    let printed = warned(&stack(0.0), &pushed);
     says(
-        &said,
+        &printed,
         "displacement[2] on 'upper top': a displacement of 5 m, and the bodies measure 2 m",
     );
-    assert_eq!(said.lines().count(), 1);
+    assert_eq!(printed.lines().count(), 1);
 }
 
 #[test]
@@ -258,20 +258,20 @@ fn loads_far_beyond_the_stiffness_are_refused_unless_the_scene_says_that_they_ar
             "contact 'c': a gap of -1e10 m presses bodies that measure 2 m … strains of about 5e9",
         ),
     ] {
-        let said = stack(0.0).model(&scene).unwrap_err();
-        says(&said, expected);
-        says(&said, "large_strains = true");
-        let said = warned(&stack(0.0), &format!("large_strains = true\n{scene}"));
-        says(&said, expected);
+        let printed = stack(0.0).model(&scene).unwrap_err();
+        says(&printed, expected);
+        says(&printed, "large_strains = true");
+        let printed = warned(&stack(0.0), &format!("large_strains = true\n{scene}"));
+        says(&printed, expected);
     }
 }
 
 #[test]
 fn places_far_away_are_named() {
     let far = format!("{CONTACT}{TABLE}obstacle = {{point = [0, -50], normal = [0, 1]}}\n");
-    let said = warned(&stack(0.0), &far);
+    let printed = warned(&stack(0.0), &far);
     says(
-        &said,
+        &printed,
         "contact 'table': the smallest gap is 50 m, and the bodies measure 2 m",
     );
     let given = format!("{HELD}{CONTACT}gap = 0\n");
@@ -281,13 +281,16 @@ fn places_far_away_are_named() {
     let high = Blocks::new()
         .block("lower", [0.0, 2.0], [0.0, 1.0], [4, 2])
         .block("upper", [0.0, 2.0], [4.0, 5.0], [4, 2]);
-    let said = warned(&high, &given);
-    says(&said, "contact 'c'.gap: it is 0 m where the mesh has 3 m");
+    let printed = warned(&high, &given);
+    says(
+        &printed,
+        "contact 'c'.gap: it is 0 m where the mesh has 3 m",
+    );
 }
 
 #[test]
 fn an_interference_is_named_however_far_away_the_scene_lies() {
     let far = stack(-1e-3).moved(|[x, y, z]| [x + 1e6, y - 1e6, z]);
-    let said = warned(&far, &format!("{HELD}{CONTACT}"));
-    says(&said, "an interference fit of up to");
+    let printed = warned(&far, &format!("{HELD}{CONTACT}"));
+    says(&printed, "an interference fit of up to");
 }

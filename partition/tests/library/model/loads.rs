@@ -173,12 +173,12 @@ fn initial_stress_does_the_work_of_its_strains() {
 fn heat_in_plane_strain_needs_the_stiffness_out_of_the_plane() {
     let text = "materials.wood.stiffness = [[9, 1, 0], [1, 5, 0], [0, 0, 2]]
 bodies.b = {material = 'wood', thermal = {expansion = 1e-5, temperature = 20}}\n";
-    let said = Blocks::new()
+    let printed = Blocks::new()
         .block("b", [0.0, 2.0], [0.0, 1.0], [5, 4])
         .model(text)
         .unwrap_err();
     assert!(
-        said.starts_with("bodies.b.thermal: in plane strain"),
-        "{said}"
+        printed.starts_with("bodies.b.thermal: in plane strain"),
+        "{printed}"
     );
 }

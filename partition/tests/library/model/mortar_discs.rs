@@ -97,8 +97,8 @@ fn fitting(n: [usize; 2], radius: f64, keys: &str) -> Model {
 #[test]
 fn gaps_that_straight_facets_alone_make_are_named() {
     let is_named = |model: &Model| {
-        let said = model.warnings.join("\n");
-        said.contains("are no larger than straight facets stand off the curve, by up to 0.0045")
+        let printed = model.warnings.join("\n");
+        printed.contains("are no larger than straight facets stand off the curve, by up to 0.0045")
     };
     let model = fitting([50, 33], 1.0, "");
     let gaps = || model.contacts[0].points.iter().map(|point| point.gap);
@@ -129,11 +129,11 @@ fn the_finer_of_two_curved_sides_has_the_conditions_unless_they_fit() {
     for (facets, is_warned) in [([50, 33], false), ([33, 90], true)] {
         let model = fitting(facets, 1.0, "");
         assert!(model.contacts[0].points.iter().all(|point| point.tag_a > 0));
-        let said = model
+        let printed = model
             .warnings
             .join("\n")
             .contains("expected the coarser one first");
-        assert_eq!(said, is_warned, "{:?}", model.warnings);
+        assert_eq!(printed, is_warned, "{:?}", model.warnings);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::says::says;
 use crate::table::cases;
 
 /// The message when `from` in the whole scene is replaced by `to`, with the start of the message.
-fn said(from: &str, to: &str) -> String {
+fn printed(from: &str, to: &str) -> String {
     assert!(WHOLE.contains(from), "{from}");
     match Scene::parse(&WHOLE.replacen(from, to, 1)) {
         Ok(_) => format!("nothing about {to}"),
@@ -41,7 +41,7 @@ normal => norml
 #[test]
 fn unknown_keys_are_named_with_line_and_nearest_known_key() {
     for (from, to, words) in cases(KEYS) {
-        let message = said(&from, &to);
+        let message = printed(&from, &to);
         let (place, near) = words.split_once(" … ").unwrap();
         assert!(message.starts_with(place), "{message}");
         says(&message, &format!("did you mean {near}"));
@@ -192,7 +192,7 @@ young = 5.2e9 => young = 5.2e9\nyoung = 1
 #[test]
 fn values_that_cannot_be_are_refused_at_their_line_and_key() {
     for (from, to, expected) in cases(VALUES) {
-        let message = said(&from, &to);
+        let message = printed(&from, &to);
         assert!(message.contains(&expected), "{to}: {message}");
     }
 }
@@ -243,7 +243,7 @@ gap = 0.0 => gap = [0.0]
 #[test]
 fn a_value_of_another_type_is_refused_in_plain_words_at_its_line_and_key() {
     for (from, to, expected) in cases(TYPES) {
-        let message = said(&from, &to);
+        let message = printed(&from, &to);
         assert!(message.starts_with(&expected), "{to}: {message}");
     }
 }
@@ -312,13 +312,13 @@ fn stress_and_heat_that_cannot_be_are_refused_at_their_key() {
             "bodies.block.thermal.temperature: expression 'z'",
         ),
     ] {
-        let message = said(body, key);
+        let message = printed(body, key);
         assert!(message.contains(expected), "{key}: {message}");
     }
-    let message = said("pressure = []", "temperature = {block = 20}");
+    let message = printed("pressure = []", "temperature = {block = 20}");
     let expected = "step[2].temperature.block: the body 'block' has no 'thermal', so no expansion";
     assert!(message.contains(expected), "{message}");
-    let message = said("pressure = []", "temperature = {blok = 20}");
+    let message = printed("pressure = []", "temperature = {blok = 20}");
     assert!(
         message.contains("there is no body 'blok'; did you mean 'block'?"),
         "{message}"
@@ -328,7 +328,7 @@ fn stress_and_heat_that_cannot_be_are_refused_at_their_key() {
 #[test]
 fn steps_that_cannot_be_are_refused_at_their_line_and_key() {
     for (from, to, expected) in cases(STEPS) {
-        let message = said(&from, &to);
+        let message = printed(&from, &to);
         assert!(
             message.starts_with(&expected)
                 || (!expected.starts_with("line") && message.contains(&expected)),
@@ -351,7 +351,7 @@ fn a_table_that_should_be_a_list_is_answered_with_double_brackets() {
             "; expected [[step.pressure]] in double",
         ),
     ] {
-        says(&said(from, to), expected);
+        says(&printed(from, to), expected);
     }
 }
 
@@ -367,7 +367,7 @@ fn what_is_no_toml_is_shown_with_advice() {
         ),
         ("on = \"top\"", "on = top", "expected quotes: on = \"top\""),
     ] {
-        let message = said(from, to);
+        let message = printed(from, to);
         assert!(message.starts_with("line "), "{message}");
         says(&message, expected);
     }
