@@ -23,6 +23,7 @@ mod functional;
 mod held_ends;
 mod mesh_error;
 mod near_change;
+mod reaction;
 mod slip_conditions;
 mod slipping;
 mod smoothing;

@@ -5,17 +5,14 @@ use std::collections::BTreeMap;
 use contact_dd_partition::contact_point::ContactPoint;
 use contact_dd_partition::element::geometry::{cross, difference, dot as along};
 use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups};
-use contact_dd_partition::model::Support;
 use contact_dd_partition::problem::Catalog;
-use contact_dd_partition::quantity::{NodeWeight, Quantity, QuantityKind};
+use contact_dd_partition::quantity::{Quantity, QuantityKind};
 
 use super::solved::Solved;
 use crate::context::Context;
-use crate::fem::block::Block;
 use crate::fem::contact_group::Condition;
 use crate::fem::elasticity::ElementMatrix;
 use crate::fem::gradients::MAX_NODES;
-use crate::fem::springs::spring_forces;
 use crate::recover::DiscreteSolution;
 use crate::vector::{axpy, dot};
 
@@ -158,79 +155,6 @@ impl Functional {
             .get(solved.step)
             .copied()
             .unwrap_or_default();
-    }
-
-    /// Adds the forces of supports along a direction, and of springs, −K_s u: on all of their nodes, or on those with a
-    /// weight, if there are any.
-    fn weigh_reactions(&mut self, solved: Solved<'_>, quantity: &Quantity) {
-        let fixed = solved.fixed;
-        let context = &fixed.context;
-        let is_one = |condition: u32| quantity.of.contains(&condition);
-        let weights = |block: &Block| {
-            let all = block.subdomain.shares.weights.clone().into_iter();
-            all.filter(|weight| weight.quantity as usize == self.number)
-                .collect::<Vec<NodeWeight>>()
-        };
-        let any = context
-            .blocks
-            .values()
-            .any(|block| !weights(block).is_empty());
-        let is_part = context.comm.largest([&f64::from(u8::from(any))]) > 0.0;
-        let mut parts = BTreeMap::new();
-        for (&b, block) in context.blocks {
-            let mut counts = vec![!is_part; block.nodes()];
-            for weight in weights(block) {
-                counts[weight.node as usize] = true;
-            }
-            let loads = fixed.step.loads.blocks.get(&b);
-            let supports = loads.map_or(&[][..], |loads| &loads.supports);
-            let counted =
-                |support: &&Support| is_one(support.condition) && counts[support.node as usize];
-            let solution = solved.solution.discrete.blocks.get(&b);
-            let mut part = 0.0;
-            if supports.iter().any(|support| counted(&support)) {
-                let weight = |support: &Support| match counted(&support) {
-                    true => along(support.direction, quantity.direction),
-                    false => 0.0,
-                };
-                let weights: Vec<f64> = supports.iter().map(weight).collect();
-                let balance = solution.filter(|_| is_part);
-                if let Some(balance) = balance.and_then(|of_block| fixed.balance(b, of_block)) {
-                    for (support, weight) in supports.iter().zip(&weights) {
-                        let residual = &balance.residual[support.node as usize * block.dim..];
-                        part -=
-                            weight * dot(&residual[..block.dim], &support.direction[..block.dim]);
-                    }
-                }
-                self.of_supports.insert(b, weights);
-            }
-            let mut everywhere = vec![0.0; block.dim * block.nodes()];
-            for (of_node, counts) in everywhere.chunks_exact_mut(block.dim).zip(&counts) {
-                if *counts {
-                    of_node.copy_from_slice(&quantity.direction[..block.dim]);
-                }
-            }
-            let springs = spring_forces(block, &everywhere);
-            for (_, node, force) in springs.filter(|&(condition, ..)| is_one(condition)) {
-                let of_nodes =
-                    (self.of_nodes.entry(b)).or_insert_with(|| vec![0.0; everywhere.len()]);
-                for (component, force) in force.into_iter().enumerate().take(block.dim) {
-                    of_nodes[node as usize * block.dim + component] += force;
-                }
-            }
-            if let (Some(of_nodes), Some(solution)) = (self.of_nodes.get(&b), solution) {
-                part += dot(of_nodes, &solution.u);
-            }
-            parts.insert(b, part);
-        }
-        let of_part = context.sum_of_blocks(|b| parts.get(&b).copied().unwrap_or_default());
-        let reactions = (solved.solution.reactions.iter().enumerate())
-            .filter(|(condition, _)| is_one(*condition as u32));
-        let whole = reactions.map(|(_, of)| along(of.resultant.force, quantity.direction));
-        self.value = match is_part {
-            true => of_part,
-            false => whole.sum(),
-        };
     }
 
     /// Adds forces of a contact along a direction, or normal ones, over an area for a mean pressure, or their moment.
