@@ -27,6 +27,9 @@ pub struct Class {
     pub dofs: Vec<InterfaceDof>,
     /// True if one of the clusters has only some combinations of the unknowns.
     is_partial: bool,
+    /// True if a closed contact constraint interpolates between some of the unknowns, as mortar does: it may hold one of
+    /// the clusters hardly or in no direction of its own, so that clusters can't be solved independently there.
+    is_interpolated: bool,
     /// New unknowns of the class if one of its two clusters has only some combinations.
     pub turned: Option<Turned>,
 }
@@ -61,7 +64,8 @@ impl Class {
 
     /// True if all of its unknowns are coarse, like a vertex's.
     pub fn is_coarse(&self) -> bool {
-        self.is_partial && self.turned.is_none() || self.size() <= SMALL
+        let is_independent = !self.is_interpolated && (!self.is_partial || self.turned.is_some());
+        !is_independent || self.size() <= SMALL
     }
 }
 
@@ -113,6 +117,7 @@ impl Classes {
             of_clusters: dofs.like(Vec::new()),
             own: dofs.like(Vec::new()),
         };
+        let interpolated = ties.interpolated();
         for (clusters, of_class) in of {
             if let [cluster] = clusters[..] {
                 classes.own[cluster] = of_class;
@@ -123,6 +128,7 @@ impl Classes {
             }
             let mut class = Class {
                 is_partial: partial.contains(&clusters),
+                is_interpolated: of_class.iter().any(|dof| interpolated.contains(dof)),
                 clusters,
                 dofs: of_class,
                 turned: None,
@@ -226,4 +232,30 @@ fn complement(a: &Mat<f64>) -> Mat<f64> {
     let independent = diagonal.filter(|&i| r[(i, i)].abs() > ROUND_OFF * largest);
     let rank = independent.count();
     qr.compute_Q().subcols(rank, a.nrows() - rank).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dof(node: u32) -> InterfaceDof {
+        InterfaceDof { node, axis: 0 }
+    }
+
+    /// The classes of two clusters, with ten nodes each, after the nodes of the first are tied to these of the second.
+    fn tied(to: impl Fn(u32) -> Vec<(InterfaceDof, f64)>) -> Classes {
+        let of_cluster = |c: u32| (10 * c..10 * (c + 1)).map(dof).collect();
+        let unknowns = ClusterUnknowns::new((0..2).map(of_cluster).collect());
+        let ties = (0..8).map(|node| (dof(node), to(node))).collect();
+        Classes::new(&unknowns, &Ties::join(vec![Ties::new(ties)]))
+    }
+
+    #[test]
+    fn what_contact_constraints_interpolate_is_coarse() {
+        let of_nodes = tied(|node| vec![(dof(node + 10), 1.0)]);
+        assert!(of_nodes.list.iter().all(|class| !class.is_coarse()));
+        let of_mortar = tied(|node| vec![(dof(node + 10), 0.5), (dof(node + 11), 0.5)]);
+        assert_eq!(of_mortar.list[0].dofs.len(), 9);
+        assert!(of_mortar.list.iter().all(Class::is_coarse));
+    }
 }

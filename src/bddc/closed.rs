@@ -184,6 +184,19 @@ impl Ties {
         terms.cloned().unwrap_or_else(|| vec![(*dof, 1.0)])
     }
 
+    /// The unknowns between which ties interpolate: those in the place of another node's, of several nodes.
+    pub fn interpolated(&self) -> BTreeSet<InterfaceDof> {
+        let mut interpolated = BTreeSet::new();
+        for (tied, terms) in self.tied() {
+            let others = terms.iter().map(|(dof, _)| *dof);
+            let others: Vec<InterfaceDof> = others.filter(|dof| dof.node != tied.node).collect();
+            if others.iter().any(|dof| dof.node != others[0].node) {
+                interpolated.extend(others);
+            }
+        }
+        interpolated
+    }
+
     /// Adds the constants of the unknowns in their terms to those of tied displacements.
     pub fn resolve(&self, constants: &mut BTreeMap<InterfaceDof, f64>) {
         for (dof, terms) in self.direct.iter().rev() {
