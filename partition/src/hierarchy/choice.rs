@@ -23,6 +23,11 @@ const WITH_FRICTION: f64 = 4.0;
 /// constraints, 22 s on two ranks and 33 s with the dense matrix, it would be 3.5; it is more because bodies that friction
 /// alone holds take more steps.
 const ITERATIONS_WITH_FRICTION: f64 = 5.0;
+/// Ratio of the time of iterations with mortar to that node by node, and the same with friction. Fitted to two boxes that
+/// don't match, of 188 and 609 thousand dofs, 7.7 and 37 s on two ranks where the dense matrix takes 10.7 and 84 s, and to a
+/// pin in a plate with 80 and 600 thousand, 7.3 and 79 s instead of 4.7 and 182 s. With friction boxes take 21 and 106 s
+/// instead of 32 and 252 s, but a pin that contact alone holds took ten times as long as with the dense matrix.
+const ITERATIONS_WITH_MORTAR: [f64; 2] = [1.5, 4.0];
 /// Number of contact constraints up to which the dense matrix is used whatever its cost: it is more robust where bodies
 /// are hardly held.
 const FEW_CONDITIONS: usize = 600;
@@ -102,11 +107,7 @@ pub struct OperatorTimes {
 
 impl OperatorTimes {
     /// The times of a problem. The dense matrix is for few constraints; iterations are for scenes in space with
-    /// node-to-node contact and known clusters, with friction if the constraints are many.
-    ///
-    /// Iterations are excluded with mortar, because there constraints tie many unknowns of several clusters to each
-    /// other: they didn't converge in 209 s on a pin in a plate of 20 thousand dofs, which the dense matrix solved in
-    /// 9 s.
+    /// known clusters and many constraints if there is friction or mortar.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
         let has_friction = catalog.has_friction();
@@ -147,12 +148,12 @@ impl OperatorTimes {
             times.left_out.push(why);
         }
         let mut in_contact = catalog.points.iter().filter(|point| !point.law.is_tied());
-        let is_node_by_node = in_contact.all(|point| point.entries.len() <= 2);
+        let has_mortar = in_contact.any(|point| point.entries.len() > 2);
         let why_not = match catalog.hierarchy.clusters.len() {
             _ if dim == 2 => Some("iterations pay in space alone"),
             0 | 1 => Some("there are no clusters to iterate between"),
             _ if has_friction && conditions <= few => Some("iterations take longer with friction"),
-            _ if !is_node_by_node => Some("iterations take longer with mortar"),
+            _ if has_mortar && conditions <= few => Some("iterations take longer with mortar"),
             _ => None,
         };
         match why_not {
@@ -161,21 +162,24 @@ impl OperatorTimes {
                 times.last_resort = can_be.then_some(Operator::Clusters);
                 times.left_out.push(why.to_owned());
             }
-            None => times.add_iterations(&tree, catalog),
+            None => times.add_iterations(&tree, catalog, has_mortar),
         }
         times.all.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         times
     }
 
-    fn add_iterations(&mut self, tree: &Tree, catalog: &Catalog) {
+    fn add_iterations(&mut self, tree: &Tree, catalog: &Catalog, has_mortar: bool) {
         let dim = catalog.dim;
-        let with_friction = if catalog.has_friction() {
+        let has_friction = catalog.has_friction();
+        let mut again = if has_friction {
             ITERATIONS_WITH_FRICTION
         } else {
             1.0
         };
-        let poisson = catalog.materials.iter().filter_map(|of| of.poisson);
-        let again = with_friction * by_incompressibility(poisson);
+        if has_mortar {
+            again *= ITERATIONS_WITH_MORTAR[usize::from(has_friction)];
+        }
+        again *= by_incompressibility(catalog.materials.iter().filter_map(|of| of.poisson));
         let of_cluster = |&c: &TreeNodeId| {
             let below = tree.subtree(c).into_iter();
             let below: f64 = below.map(|v| tree.time(v, dim, true)).sum();

@@ -55,6 +55,23 @@ fn the_operator_that_takes_least_time_is_chosen_and_said_to_be() {
     }
 }
 
+/// Few constraints have a dense matrix, whatever its time.
+#[test]
+fn iterations_are_considered_for_many_mortar_constraints() {
+    let choice = |refinements, clusters| {
+        let case = Case::in_clusters(&built_in_model("pin", refinements), 40, clusters);
+        let checked = case.run(&["--check"]).stdout;
+        let mut lines = checked.lines();
+        lines
+            .find(|line| line.contains("solved by"))
+            .map(str::to_owned)
+    };
+    let few = choice(0, 6).unwrap();
+    assert!(few.contains("iterations take longer with mortar"), "{few}");
+    let many = choice(1, 12).unwrap();
+    assert!(many.contains("for iterations between clusters"), "{many}");
+}
+
 /// Two blocks held together by friction, far below a ball to which one active set would lift the upper one.
 fn blocks_below_a_ball(steps: &str, cells: [usize; 3]) -> Model {
     let block = |name, z: f64| {
