@@ -50,10 +50,11 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Assigns the blocks of `catalog` and the merges of their Schur complements to `ranks` ranks by estimated cost.
-    pub fn new(catalog: &Catalog, ranks: usize, merging: Merging) -> Self {
+    /// Assigns the blocks of `catalog`, whose hierarchy is `tree`, and the merges of their Schur complements to `ranks`
+    /// ranks by estimated cost.
+    pub fn new(catalog: &Catalog, tree: &Tree, ranks: usize, merging: Merging) -> Self {
         let tree = match merging {
-            Merging::All | Merging::ActiveSet | Merging::Clusters => Tree::new(catalog),
+            Merging::All | Merging::ActiveSet | Merging::Clusters => tree.clone(),
             Merging::Linear | Merging::Groups => Tree::by_group(catalog),
         };
         let in_contact = (tree.nodes.ids()).filter(|&v| !tree.nodes[v].points.is_empty());

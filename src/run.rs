@@ -193,9 +193,8 @@ impl Stages<'_> {
 
         // Blocks and contact groups of this rank.
         let is_first = progress.plan.is_none();
-        let choices = self.choices(&stage.catalog, handover.as_ref())?;
         let lap = comm.times();
-        let parts = self.parts(stage, &choices, is_first)?;
+        let parts = self.parts(stage, handover.as_ref(), is_first)?;
         let context = self.context(stage, &parts);
         stop_if_asked(&context, settings, done)?;
         let after = |failure| state::finished(failure, &context, settings, done);
@@ -219,7 +218,7 @@ impl Stages<'_> {
             .map_err(after)?;
 
         // Each load step starts from the state that the one before it left.
-        let robust = self.more_robust(&stage.catalog, parts.plan.merging);
+        let robust = self.more_robust(&stage.catalog, &parts.plan);
         let steps = StageSteps {
             stage,
             whole: self.file.catalog(),

@@ -13,6 +13,7 @@ use contact_dd_mpi::schur::local::{CondensedLoad, LocalSchur};
 use contact_dd_mpi::schur::pattern::SparseSymmetric;
 use contact_dd_partition::decompose::Decomposition;
 use contact_dd_partition::example;
+use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::model::{Material, Model};
 use contact_dd_partition::problem::{Catalog, Problem};
 use faer::{Mat, Par};
@@ -31,7 +32,12 @@ impl Scene {
         let model = Model::new(&scene, mesh).unwrap();
         let decomposition = Decomposition::new(&model, Some(count)).unwrap();
         let problem = Problem::new(&model, &decomposition).unwrap();
-        let plan = Plan::new(&problem.catalog, 1, Merging::All);
+        let plan = Plan::new(
+            &problem.catalog,
+            &Tree::new(&problem.catalog),
+            1,
+            Merging::All,
+        );
         let dim = problem.catalog.dim;
         let block = |subdomain| Block::new(subdomain, &plan.tree, dim);
         let blocks = problem.subdomains.into_iter().map(block).collect();

@@ -118,6 +118,7 @@ impl Classes {
             own: dofs.like(Vec::new()),
         };
         let interpolated = ties.interpolated();
+        let tied = unknowns.tied(ties);
         for (clusters, of_class) in of {
             if let [cluster] = clusters[..] {
                 classes.own[cluster] = of_class;
@@ -134,7 +135,7 @@ impl Classes {
                 turned: None,
             };
             if class.is_partial && class.size() > SMALL {
-                class.turned = turned(&class, dofs, ties);
+                class.turned = turned(&class, (dofs, &tied), ties);
             }
             classes.list.push(class);
         }
@@ -143,10 +144,13 @@ impl Classes {
 }
 
 /// The combinations of the unknowns of a class with two clusters, one of which lacks some; `None` for more than two
-/// clusters and for combinations that neither has.
+/// clusters and for combinations that neither has. Every cluster has unknowns, some of them tied, both ascending.
 fn turned(
     class: &Class,
-    dofs: &Numbered<MergeRootId, Vec<InterfaceDof>>,
+    (dofs, tied): (
+        &Numbered<MergeRootId, Vec<InterfaceDof>>,
+        &Numbered<MergeRootId, Vec<InterfaceDof>>,
+    ),
     ties: &Ties,
 ) -> Option<Turned> {
     let [a, b] = class.clusters[..] else {
@@ -162,7 +166,11 @@ fn turned(
             .collect()
     };
     let rows = [a, b].map(|c| {
-        let rows = dofs[c].iter().map(row);
+        let of_class = (class.dofs.iter()).filter(|dof| dofs[c].binary_search(dof).is_ok());
+        let mut of_cluster: Vec<&InterfaceDof> = of_class.chain(&tied[c]).collect();
+        of_cluster.sort_unstable();
+        of_cluster.dedup();
+        let rows = of_cluster.into_iter().map(row);
         rows.filter(|row| !row.is_empty()).collect::<Vec<_>>()
     });
     let (linked, members) = linked(n, rows.iter().flatten());

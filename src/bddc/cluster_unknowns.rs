@@ -52,6 +52,15 @@ impl ClusterUnknowns {
         of_dof.map(|&(_, c)| c)
     }
 
+    /// The unknowns of every cluster that are tied, ascending.
+    pub fn tied(&self, ties: &Ties) -> Numbered<MergeRootId, Vec<InterfaceDof>> {
+        let mut tied = self.dofs.like(Vec::new());
+        for (&dof, _) in ties.tied() {
+            (self.clusters_of(dof)).for_each(|c| tied[c].push(dof));
+        }
+        tied
+    }
+
     /// The unknowns that are left where `ties` put others in the place of some, by the clusters that have them then; and the
     /// clusters of unknowns that one of them had not before.
     pub fn by_clusters_under(&self, ties: &Ties) -> (ByClusters, BTreeSet<Vec<MergeRootId>>) {

@@ -1,11 +1,17 @@
 //! Owners: distribution of the subtrees of the hierarchy over ranks by estimated cost.
 
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
 use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::id::TreeNodeId;
 use contact_dd_partition::numbered::Numbered;
 
-/// Number of splits tried for every rank.
+/// Most splits for every rank.
 const SPLITS: usize = 8;
+
+/// Most distributions tried.
+const TRIALS: usize = 64;
 
 /// Ratio of the estimated times after and before a further split above which it isn't worth it.
 const GAIN: f64 = 0.97;
@@ -33,35 +39,38 @@ pub(super) fn assign(
     ranks: usize,
 ) -> Numbered<TreeNodeId, usize> {
     let of_subtree = tree.sums(costs);
-    let mut tasks = clusters.to_vec();
-    let mut best = share(
-        tree,
-        by_cost(&tasks, &of_subtree, ranks),
-        costs,
-        &of_subtree,
-        ranks,
-    );
-    for _ in 0..SPLITS * ranks {
-        let dividable = (0..tasks.len()).filter(|&t| !tree.nodes[tasks[t]].children.is_empty());
-        let costliest = dividable.max_by(|&a, &b| {
-            let (a, b) = (tasks[a], tasks[b]);
-            of_subtree[a].total_cmp(&of_subtree[b]).then(b.cmp(&a))
-        });
-        let Some(costliest) = costliest.filter(|_| ranks > 1) else {
-            break;
-        };
-        let node = tasks.swap_remove(costliest);
-        tasks.extend(&tree.nodes[node].children);
-        tasks.sort_unstable();
-        let next = share(
+    let distribution = |tasks: &[TreeNodeId]| {
+        share(
             tree,
-            by_cost(&tasks, &of_subtree, ranks),
+            by_cost(tasks, &of_subtree, ranks),
             costs,
             &of_subtree,
             ranks,
-        );
-        if next.end < GAIN * best.end {
-            best = next;
+        )
+    };
+    let costlier_first =
+        |&a: &TreeNodeId, &b: &TreeNodeId| of_subtree[b].total_cmp(&of_subtree[a]).then(a.cmp(&b));
+    let mut tasks = clusters.to_vec();
+    tasks.sort_by(costlier_first);
+    let mut best = distribution(&tasks);
+    let splits = if ranks > 1 { SPLITS * ranks } else { 0 };
+    // With many ranks a single split changes little.
+    let at_a_time = splits.div_ceil(TRIALS).max(1);
+    for split in 1..=splits {
+        let Some(costliest) = (tasks.iter()).position(|&v| !tree.nodes[v].children.is_empty())
+        else {
+            break;
+        };
+        let node = tasks.remove(costliest);
+        for &child in &tree.nodes[node].children {
+            let at = tasks.partition_point(|task| costlier_first(task, &child).is_lt());
+            tasks.insert(at, child);
+        }
+        if split % at_a_time == 0 {
+            let next = distribution(&tasks);
+            if next.end < GAIN * best.end {
+                best = next;
+            }
         }
     }
     let row = in_a_row(tree, clusters, &of_subtree, ranks);
@@ -72,23 +81,42 @@ pub(super) fn assign(
     }
 }
 
-/// The owners of `tasks`, which are subtrees: the most expensive first, each to the rank with the smallest load.
+/// The owners of `tasks`, which are subtrees, the most expensive first: each goes to the rank with the smallest load.
 fn by_cost(tasks: &[TreeNodeId], of_subtree: &Costs, ranks: usize) -> Vec<(TreeNodeId, usize)> {
-    let mut order = tasks.to_vec();
-    order.sort_by(|&a, &b| of_subtree[b].total_cmp(&of_subtree[a]).then(a.cmp(&b)));
-    let mut busy = vec![0.0f64; ranks];
-    let mut owners = Vec::with_capacity(order.len());
-    for task in order {
-        let mut least = 0;
-        for rank in 1..ranks {
-            if busy[rank] < busy[least] {
-                least = rank;
-            }
-        }
-        busy[least] += of_subtree[task];
-        owners.push((task, least));
+    let mut loads: BinaryHeap<Reverse<Load>> = (0..ranks)
+        .map(|rank| Reverse(Load { busy: 0.0, rank }))
+        .collect();
+    let mut owners = Vec::with_capacity(tasks.len());
+    for &task in tasks {
+        let Some(mut least) = loads.peek_mut() else {
+            break;
+        };
+        owners.push((task, least.0.rank));
+        least.0.busy += of_subtree[task];
     }
     owners
+}
+
+/// The load of a rank.
+#[derive(Clone, Copy, PartialEq)]
+struct Load {
+    busy: f64,
+    rank: usize,
+}
+
+impl Eq for Load {}
+
+impl Ord for Load {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_time = self.busy.total_cmp(&other.busy);
+        by_time.then(self.rank.cmp(&other.rank))
+    }
+}
+
+impl PartialOrd for Load {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 /// The owners of `tasks` if each rank gets adjacent ones in the hierarchy, so that the nodes above are distributed as

@@ -1,6 +1,7 @@
 //! Choice of the operator for contact constraints, with its reason, before any work is done with it.
 
 use contact_dd_partition::hierarchy::choice::{Operator, OperatorTimes};
+use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::solver::Method;
 
@@ -59,12 +60,16 @@ impl Choice {
         Self { merging, why }
     }
 
-    /// The choices for a problem, the best one first: picard inverts S_0 alone, which then consists of the linear
+    /// The choices for a problem with this `tree`, the best one first: picard inverts S_0 alone, which then consists of the linear
     /// subdomains; anderson needs the contact problems of groups; newton takes the operator with the least cost.
     ///
     /// # Errors
     /// The iterative solver is requested, but the problem file has no clusters.
-    pub fn all(catalog: &Catalog, request: SolverRequest) -> Result<Vec<Self>, Failure> {
+    pub fn all(
+        catalog: &Catalog,
+        tree: &Tree,
+        request: SolverRequest,
+    ) -> Result<Vec<Self>, Failure> {
         let only = |merging, why: &str| Ok(vec![Self::new(merging, why)]);
         match request.method {
             Method::Picard => return only(Merging::Linear, "picard inverts S_0 alone"),
@@ -91,7 +96,7 @@ impl Choice {
                 "conjugate gradients between clusters, as --interface iterative demands",
             );
         }
-        let times = OperatorTimes::new(catalog);
+        let times = OperatorTimes::new(catalog, tree);
         let operators: Vec<Operator> = match request.iterative {
             Some(_) => times.direct().collect(),
             None => times.operators().collect(),
@@ -102,8 +107,8 @@ impl Choice {
 
     /// The choice to take over if newton doesn't converge with a `merging`: from the iterative solver the fastest
     /// direct operator, from the tree the dense matrix of all constraints.
-    pub fn more_robust(catalog: &Catalog, merging: Merging) -> Option<Self> {
-        let times = OperatorTimes::new(catalog);
+    pub fn more_robust(catalog: &Catalog, tree: &Tree, merging: Merging) -> Option<Self> {
+        let times = OperatorTimes::new(catalog, tree);
         let operator = match merging {
             Merging::Clusters => times.direct().next()?,
             Merging::ActiveSet => Operator::Dense,
@@ -116,8 +121,13 @@ impl Choice {
     ///
     /// # Errors
     /// The first host with too little memory.
-    fn plan(self, comm: &Comm, catalog: &Catalog, share: f64) -> Result<ChosenPlan, Refusal> {
-        let plan = Plan::new(catalog, comm.size(), self.merging);
+    fn plan(
+        self,
+        comm: &Comm,
+        (catalog, tree): (&Catalog, &Tree),
+        share: f64,
+    ) -> Result<ChosenPlan, Refusal> {
+        let plan = Plan::new(catalog, tree, comm.size(), self.merging);
         let costs = plan.cost_estimates(catalog, comm.size());
         let needed = CostEstimate::sum(&costs).bytes;
         match check_memory(comm, &costs, share) {
@@ -140,16 +150,20 @@ struct Refusal {
 }
 
 impl ChosenPlan {
-    /// The first of some choices for which there is memory, with a margin if possible. Collective.
+    /// The first of some choices for a problem and its tree for which there is memory, with a margin if possible. Collective.
     ///
     /// # Errors
     /// Too little memory for any of them.
-    pub fn new(comm: &Comm, catalog: &Catalog, choices: &[Choice]) -> Result<Self, Failure> {
+    pub fn new(
+        comm: &Comm,
+        problem: (&Catalog, &Tree),
+        choices: &[Choice],
+    ) -> Result<Self, Failure> {
         let mut least: Option<Refusal> = None;
         for share in [LIKELY_SHARE, CERTAIN_SHARE] {
             let mut refused = String::new();
             for choice in choices {
-                match choice.clone().plan(comm, catalog, share) {
+                match choice.clone().plan(comm, problem, share) {
                     Ok(mut chosen) => {
                         if !refused.is_empty() {
                             chosen.choice.why +=

@@ -66,9 +66,13 @@ fn inner(v: usize) -> TreeNodeId {
     TreeNodeId::new(v + 2)
 }
 
+fn plan(catalog: &Catalog, ranks: usize, merging: Merging) -> Plan {
+    Plan::new(catalog, &Tree::new(catalog), ranks, merging)
+}
+
 #[test]
 fn contact_points_belong_where_all_that_have_their_nodes_come_together() {
-    let plan = Plan::new(&catalog(), 3, Merging::All);
+    let plan = plan(&catalog(), 3, Merging::All);
     let [group] = plan.groups.values() else {
         panic!("{:?}", plan.groups);
     };
@@ -84,9 +88,9 @@ fn contact_points_belong_where_all_that_have_their_nodes_come_together() {
 #[test]
 fn the_tree_does_not_depend_on_the_number_of_ranks() {
     let catalog = catalog();
-    let one = Plan::new(&catalog, 1, Merging::All);
+    let one = plan(&catalog, 1, Merging::All);
     for ranks in 2..8 {
-        let plan = Plan::new(&catalog, ranks, Merging::All);
+        let plan = plan(&catalog, ranks, Merging::All);
         assert_eq!(one.tree, plan.tree);
         assert!(plan.node_owners.iter().all(|&owner| owner < ranks));
     }
@@ -95,20 +99,20 @@ fn the_tree_does_not_depend_on_the_number_of_ranks() {
 #[test]
 fn what_picard_merges_has_no_contact() {
     let clusters = |merging| -> Vec<TreeNodeId> {
-        let plan = Plan::new(&catalog(), 2, merging);
+        let plan = plan(&catalog(), 2, merging);
         plan.clusters.iter().map(|c| c.node).collect()
     };
     assert_eq!(clusters(Merging::All), [inner(5), inner(6)]);
     let mut apart = catalog();
     apart.points.clear();
     apart.point_nodes.clear();
-    let plan = Plan::new(&apart, 2, Merging::Linear);
+    let plan = plan(&apart, 2, Merging::Linear);
     assert_eq!(plan.clusters.len(), 2);
 }
 
 #[test]
 fn subtrees_are_split_until_ranks_have_about_the_same_to_do() {
-    let plan = Plan::new(&catalog(), 2, Merging::All);
+    let plan = plan(&catalog(), 2, Merging::All);
     let nodes = [40, 30, 20, 30, 90];
     let of_rank = |rank: usize| -> usize {
         let owners = plan.owners();

@@ -51,8 +51,7 @@ impl Stages<'_> {
             no_stress: true,
             ..self.settings.clone()
         };
-        let choices = self.choices(&stage.catalog, None)?;
-        let parts = self.parts(stage, &choices, false)?;
+        let parts = self.parts(stage, None, false)?;
         let context = self.context(stage, &parts);
         let analyses = analyse_steps(&context, stage.steps.clone(), &[])?;
         let mut state = StepState::default();

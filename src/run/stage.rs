@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use contact_dd_partition::hierarchy::tree::Tree;
 use contact_dd_partition::id::{OnBlocks, OnGroups};
 use contact_dd_partition::problem::Catalog;
 use contact_dd_partition::problem::read::ProblemFile;
@@ -15,7 +16,6 @@ use crate::fem::block::Block;
 use crate::fem::contact_group::ContactGroup;
 use crate::plan::Plan;
 use crate::plan::choice::{Choice, ChosenPlan};
-use crate::plan::cluster::Merging;
 use crate::plan::cost::CostEstimate;
 use crate::read::{check_copies, collect_groups, read_blocks};
 use crate::report::log::{Checked, RunLog};
@@ -57,8 +57,7 @@ impl Stages<'_> {
     /// A part with a free rigid-body motion driven by the load, or contradictory constraints on a node.
     pub fn check(&self, steps: Range<usize>) -> Result<Checked, Failure> {
         let stage = self.file.catalog().stage(steps, &[]);
-        let choices = self.choices(&stage.catalog, None)?;
-        let parts = self.parts(&stage, &choices, self.settings.check)?;
+        let parts = self.parts(&stage, None, self.settings.check)?;
         self.log.phase("looking for free rigid motions", None);
         let analyses = analyse_steps(&self.context(&stage, &parts), stage.steps.clone(), &[])?;
         let warnings = analyses
@@ -73,48 +72,55 @@ impl Stages<'_> {
         })
     }
 
-    /// The choices of the operator for the contact constraints of a stage, the best one first; after a handover to
+    /// The choices of the operator for the contact constraints of a stage with this tree, the best one first; after a handover to
     /// another solver, its choice only. Collective.
     ///
     /// # Errors
     /// Contradictory choices of the user.
-    pub fn choices(
+    fn choices(
         &self,
-        catalog: &Catalog,
+        (catalog, tree): (&Catalog, &Tree),
         handover: Option<&Handover>,
     ) -> Result<Vec<Choice>, Failure> {
         match handover.map(|handover| &handover.to) {
             Some(Successor::Solver { choice, .. }) => Ok(vec![choice.clone()]),
-            _ => (self.comm).agree(Choice::all(catalog, self.settings.solver_request())),
+            _ => (self.comm).agree(Choice::all(catalog, tree, self.settings.solver_request())),
         }
     }
 
-    /// The choice to take over if a `merging` doesn't converge, if there is memory for it. Collective.
-    pub fn more_robust(&self, catalog: &Catalog, merging: Merging) -> Option<Choice> {
+    /// The choice to take over if the operator of a `plan` doesn't converge, if there is memory for it. Collective.
+    pub fn more_robust(&self, catalog: &Catalog, plan: &Plan) -> Option<Choice> {
         // A limit on sweeps applies to all solvers together.
         if self.settings.max_sweeps.is_some() {
             return None;
         }
-        let robust = Choice::more_robust(catalog, merging)?;
-        ChosenPlan::new(self.comm, catalog, std::slice::from_ref(&robust)).ok()?;
+        let robust = Choice::more_robust(catalog, &plan.tree, plan.merging)?;
+        ChosenPlan::new(
+            self.comm,
+            (catalog, &plan.tree),
+            std::slice::from_ref(&robust),
+        )
+        .ok()?;
         Some(robust)
     }
 
-    /// The part of a stage on this rank, by the first of some `choices` for which there is memory; for the `first`
+    /// The part of a stage on this rank, by the best choice of an operator for which there is memory; for the `first`
     /// stage the problem is logged. Collective.
     ///
     /// # Errors
-    /// Too little memory, or invalid data in the problem file.
+    /// Contradictory choices of the user, too little memory, or invalid data in the problem file.
     pub fn parts(
         &self,
         stage: &Stage<'_>,
-        choices: &[Choice],
+        handover: Option<&Handover>,
         first: bool,
     ) -> Result<Parts, Failure> {
         let Self { comm, file, .. } = *self;
         let catalog = &stage.catalog;
         phase("reading");
-        let chosen = ChosenPlan::new(comm, catalog, choices)?;
+        let tree = Tree::new(catalog);
+        let choices = self.choices((catalog, &tree), handover)?;
+        let chosen = ChosenPlan::new(comm, (catalog, &tree), &choices)?;
         let blocks = comm.agree(read_blocks(comm.rank(), file, &chosen.plan))?;
         if first {
             check_copies(comm, file, &blocks)?;

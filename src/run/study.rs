@@ -101,8 +101,7 @@ impl Stages<'_> {
             ..self.settings.clone()
         };
         let stage = &self.file.catalog().stage(0..1, &[]);
-        let choices = self.choices(&stage.catalog, None)?;
-        let parts = self.parts(stage, &choices, true)?;
+        let parts = self.parts(stage, None, true)?;
         let context = self.context(stage, &parts);
         let load_point = LoadPoint::end_of(0);
         let analysis = analyse(&context, load_point, &[])?;

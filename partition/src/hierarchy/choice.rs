@@ -106,10 +106,10 @@ pub struct OperatorTimes {
 }
 
 impl OperatorTimes {
-    /// The times of a problem. The dense matrix is for few constraints; iterations are for scenes in space with
+    /// The times of a problem, merged along this `tree`. The dense matrix is for few constraints; iterations are for scenes in space with
     /// known clusters and many constraints if there is friction or mortar.
-    pub fn new(catalog: &Catalog) -> Self {
-        let (tree, dim) = (Tree::new(catalog), catalog.dim);
+    pub fn new(catalog: &Catalog, tree: &Tree) -> Self {
+        let dim = catalog.dim;
         let has_friction = catalog.has_friction();
         let conditions: usize = tree.roots().map(|root| tree.nodes[root].conditions).sum();
         let few = if has_friction {
@@ -162,7 +162,7 @@ impl OperatorTimes {
                 times.last_resort = can_be.then_some(Operator::Clusters);
                 times.left_out.push(why.to_owned());
             }
-            None => times.add_iterations(&tree, catalog, has_mortar),
+            None => times.add_iterations(tree, catalog, has_mortar),
         }
         times.all.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         times

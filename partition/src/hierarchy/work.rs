@@ -27,7 +27,7 @@ impl Work {
     /// the iterations between clusters if these take less time.
     pub fn new(catalog: &Catalog) -> Self {
         let (tree, dim) = (Tree::new(catalog), catalog.dim);
-        let operators = OperatorTimes::new(catalog);
+        let operators = OperatorTimes::new(catalog, &tree);
         let has_active_set = operators.direct().next() == Some(Operator::Tree);
         let front = |v: TreeNodeId| match has_active_set {
             true => tree.active_set_front(v, dim),
