@@ -288,11 +288,15 @@ impl Bddc {
     ) -> (Classes, Numbered<MergeRootId, bool>) {
         let Context { comm, plan, .. } = *context;
         let ties = self.ties(comm);
-        let classes = Classes::new(&self.unknowns, &ties);
         let mut is_retied = self.stale.like(false);
+        let mut retied: BTreeSet<InterfaceDof> = BTreeSet::new();
         for dof in ties.differences(&self.ties) {
             (self.unknowns.clusters_of(dof)).for_each(|c| is_retied[c] = true);
+            let terms = [&ties, &self.ties].map(|ties| ties.terms(&dof));
+            retied.extend(terms.iter().flatten().map(|(staying, _)| *staying));
+            retied.insert(dof);
         }
+        let classes = Classes::new(&self.unknowns, &ties, (&self.classes, &retied));
         let shares_the_same = |c: MergeRootId| !is_retied[c] && classes.are_as_in(&self.classes, c);
         let is_touched = |c: MergeRootId| self.stale[c] || touched[plan.merge_roots[c]];
         let is_changed = |c: MergeRootId| !shares_the_same(c) || renewed && is_touched(c);

@@ -1,6 +1,7 @@
 //! The classes of Γ: unknowns that the same clusters share, such as vertices and edges of the clusters.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use contact_dd_partition::disjoint_sets::DisjointSets;
 use contact_dd_partition::hierarchy::tree::Tree;
@@ -31,19 +32,25 @@ pub struct Class {
     /// the clusters hardly or in no direction of its own, so that clusters can't be solved independently there.
     is_interpolated: bool,
     /// New unknowns of the class if one of its two clusters has only some combinations.
-    pub turned: Option<Turned>,
+    pub turned: Option<Arc<Turned>>,
 }
 
 /// Combinations of the unknowns of a class of two clusters: those that both have, then those that one of them has.
 ///
 /// They occur under closed contact constraints: with its own displacements replaced by another cluster's, a cluster has
 /// only as many combinations of these as it has conditions.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Turned {
     /// The new unknowns, a column each.
     pub q: Mat<f64>,
     /// Bounds of the unknowns of both clusters, of the first and of the second.
     pub ends: [usize; 4],
+}
+
+impl PartialEq for Turned {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other) || self.ends == other.ends && self.q == other.q
+    }
 }
 
 impl Class {
@@ -87,6 +94,14 @@ impl Classes {
         at.ok().filter(|&k| self.list[k] == *class)
     }
 
+    /// The class with the same clusters and unknowns, none of which were `retied` since.
+    fn as_before(&self, class: &Class, retied: &BTreeSet<InterfaceDof>) -> Option<&Class> {
+        let at = (self.list).binary_search_by(|other| other.clusters.cmp(&class.clusters));
+        let same = &self.list[at.ok()?];
+        let is_same = same.dofs == class.dofs && same.is_partial == class.is_partial;
+        (is_same && !class.dofs.iter().any(|dof| retied.contains(dof))).then_some(same)
+    }
+
     /// True if cluster c has the same unknowns in the same classes as in `others`.
     pub fn are_as_in(&self, others: &Self, c: MergeRootId) -> bool {
         let (Some(own), Some(list)) = (others.own.get(c), others.of_clusters.get(c)) else {
@@ -108,8 +123,13 @@ impl Classes {
         self.list.iter().map(home).collect()
     }
 
-    /// The classes of clusters that have these unknowns, with closed contact constraints that tie some to others.
-    pub fn new(unknowns: &ClusterUnknowns, ties: &Ties) -> Self {
+    /// The classes of clusters that have these unknowns, with closed contact constraints that tie some to others; classes
+    /// `before` some unknowns were `retied` keep the combinations of theirs that aren't among those.
+    pub fn new(
+        unknowns: &ClusterUnknowns,
+        ties: &Ties,
+        (before, retied): (&Self, &BTreeSet<InterfaceDof>),
+    ) -> Self {
         let dofs = &unknowns.dofs;
         let (of, partial) = unknowns.by_clusters_under(ties);
         let mut classes = Self {
@@ -135,7 +155,10 @@ impl Classes {
                 turned: None,
             };
             if class.is_partial && class.size() > SMALL {
-                class.turned = turned(&class, (dofs, &tied), ties);
+                class.turned = match before.as_before(&class, retied) {
+                    Some(same) => same.turned.clone(),
+                    None => turned(&class, (dofs, &tied), ties).map(Arc::new),
+                };
             }
             classes.list.push(class);
         }
@@ -173,18 +196,22 @@ fn turned(
         let rows = of_cluster.into_iter().map(row);
         rows.filter(|row| !row.is_empty()).collect::<Vec<_>>()
     });
-    let (linked, members) = linked(n, rows.iter().flatten());
+    let (set_of, members) = linked(n, rows.iter().flatten());
+    let by_set = rows.each_ref().map(|rows| {
+        let mut by_set: BTreeMap<u32, Vec<&Vec<(usize, f64)>>> = BTreeMap::new();
+        for row in rows {
+            by_set.entry(set_of[row[0].0]).or_default().push(row);
+        }
+        by_set
+    });
     let mut columns: [Vec<Vec<f64>>; 3] = [const { Vec::new() }; 3];
     for (set, members) in members {
         let k = members.len();
         let place = |i: usize| members.binary_search(&i).unwrap_or_default();
-        let [not_a, not_b] = rows.each_ref().map(|rows| {
-            let of_set = rows
-                .iter()
-                .filter(|row| linked.clone().find(row[0].0 as u32) == set);
-            let mut all = Mat::<f64>::zeros(k, 0);
-            for (j, row) in of_set.enumerate() {
-                all.resize_with(k, j + 1, |_, _| 0.0);
+        let [not_a, not_b] = by_set.each_ref().map(|by_set| {
+            let of_set = by_set.get(&set).map_or(&[][..], Vec::as_slice);
+            let mut all = Mat::<f64>::zeros(k, of_set.len());
+            for (j, row) in of_set.iter().enumerate() {
                 row.iter().for_each(|&(i, c)| all[(place(i), j)] += c);
             }
             complement(&all)
@@ -212,20 +239,21 @@ fn turned(
     })
 }
 
-/// The sets of n unknowns that rows connect, and the members of each.
+/// The set of each of n unknowns among the sets that rows connect, and the members of each set.
 fn linked<'a>(
     n: usize,
     rows: impl Iterator<Item = &'a Vec<(usize, f64)>>,
-) -> (DisjointSets, BTreeMap<u32, Vec<usize>>) {
+) -> (Vec<u32>, BTreeMap<u32, Vec<usize>>) {
     let mut linked = DisjointSets::new(n);
     for pair in rows.flat_map(|row| row.windows(2)) {
         linked.unite(pair[0].0 as u32, pair[1].0 as u32);
     }
+    let set_of: Vec<u32> = (0..n).map(|i| linked.find(i as u32)).collect();
     let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for i in 0..n {
-        members.entry(linked.find(i as u32)).or_default().push(i);
+    for (i, &set) in set_of.iter().enumerate() {
+        members.entry(set).or_default().push(i);
     }
-    (linked, members)
+    (set_of, members)
 }
 
 /// An orthonormal basis of the orthogonal complement of a matrix's columns.
@@ -255,7 +283,8 @@ mod tests {
         let of_cluster = |c: u32| (10 * c..10 * (c + 1)).map(dof).collect();
         let unknowns = ClusterUnknowns::new((0..2).map(of_cluster).collect());
         let ties = (0..8).map(|node| (dof(node), to(node))).collect();
-        Classes::new(&unknowns, &Ties::join(vec![Ties::new(ties)]))
+        let ties = Ties::join(vec![Ties::new(ties)]);
+        Classes::new(&unknowns, &ties, (&Classes::default(), &BTreeSet::new()))
     }
 
     #[test]

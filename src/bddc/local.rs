@@ -157,7 +157,7 @@ impl Others {
         par: Par,
     ) -> Result<(Self, Mat<f64>), NotDefinite> {
         Ok(match level {
-            PreconditionerLevel::Diagonals => {
+            PreconditionerLevel::Diagonals | PreconditionerLevel::Motions => {
                 let (others, coarse) = Trapezoid::new(s, count, par)?;
                 (Self::Single(others), coarse)
             }
