@@ -63,7 +63,7 @@ def space(words):
 
 def scaling(words):
     """Those of scripts/scaling."""
-    parser = argparse.ArgumentParser(prog="scaling", description="Strong and weak scaling of contact-dd-mpi on the granite block.")
+    parser = argparse.ArgumentParser(prog="scaling", description="Strong and weak scaling of contact-dd-mpi.")
     parser.add_argument("folder", type=pathlib.Path, help="for reports/, scaling.csv and scaling.svg")
     parser.add_argument("--ranks", type=listed(int), help="numbers of ranks, by commas (default: 1, 2, 4, ... all cores)")
     parser.add_argument("--strong", type=runs.count, default=500_000, metavar="DOFS",
@@ -71,6 +71,9 @@ def scaling(words):
     parser.add_argument("--weak", type=runs.count, default=250_000, metavar="DOFS",
                         help="dofs for each rank (default: 250k)")
     parser.add_argument("--only", choices=["strong", "weak"], help="only this kind")
+    parser.add_argument("--scene", choices=sorted(runs.SCENES), default="granite",
+                        help="the granite block in the plane or two boxes in space (default: %(default)s)")
+    parser.add_argument("--friction", type=float, help="coefficient of friction of its contacts (default: none)")
     parser.add_argument("--repeat", type=int, default=5, help="repetitions (default: %(default)s)")
     parser.add_argument("--repetition", type=int, help="only this one of them, for a job of an array")
     parser.add_argument("--interface", choices=["direct", "iterative"], help="of contact-dd-mpi (default: its choice)")

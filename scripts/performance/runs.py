@@ -62,9 +62,30 @@ def granite(dofs):
     return scene
 
 
-def problem(dofs, programs, subdomains=None):
-    """The granite block with about `dofs` dofs as a problem file."""
-    return partitioned(granite(dofs), programs, subdomains)
+def two_boxes(dofs):
+    """Two boxes of tetrahedra with about `dofs` dofs, a scene that stays for the next time."""
+    cells = min(range(2, 1000, 2), key=lambda cells: abs(3 * (cells + 1) ** 2 * (cells + 2) - dofs))
+    scene = FOLDER / "meshes" / f"boxes-{cells}.toml"
+    if not scene.exists():
+        say(f"meshing two boxes with {name_of(dofs)} dofs")
+        call([sys.executable, ROOT / "scripts" / "performance" / "boxes.py", cells, scene.parent])
+    return scene
+
+
+SCENES = {"granite": granite, "boxes": two_boxes}
+
+
+def with_friction(scene, friction):
+    """The scene with this coefficient of friction in all contacts."""
+    path = scene.with_stem(f"{scene.stem}-friction-{friction}")
+    path.write_text(scene.read_text().replace("[[contact]]", f"[[contact]]\nfriction = {friction}"))
+    return path
+
+
+def problem(dofs, programs, subdomains=None, scene="granite", friction=None):
+    """A scene of these with about `dofs` dofs as a problem file."""
+    made = SCENES[scene](dofs)
+    return partitioned(with_friction(made, friction) if friction else made, programs, subdomains)
 
 
 def partitioned(scene, programs, subdomains=None):

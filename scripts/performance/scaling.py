@@ -1,4 +1,4 @@
-"""Strong and weak scaling of contact-dd-mpi on the granite block; run it by scripts/scaling.
+"""Strong and weak scaling of contact-dd-mpi on the granite block or on two boxes; run it by scripts/scaling.
 
 Every run leaves its report in FOLDER/reports; scaling.csv and scaling.svg are made from all reports
 that are there, so that runs may be added later or come from several jobs.
@@ -29,9 +29,11 @@ def problem_of(kind, ranks, arguments):
     if kind == "strong":
         if arguments.problem:
             return arguments.problem
-        return runs.problem(arguments.strong, arguments.programs, arguments.subdomains)
-    subdomains = arguments.subdomains_per_rank and arguments.subdomains_per_rank * ranks
-    return runs.problem(arguments.weak * ranks, arguments.programs, subdomains)
+        dofs, subdomains = arguments.strong, arguments.subdomains
+    else:
+        dofs = arguments.weak * ranks
+        subdomains = arguments.subdomains_per_rank and arguments.subdomains_per_rank * ranks
+    return runs.problem(dofs, arguments.programs, subdomains, arguments.scene, arguments.friction)
 
 
 def measure(kind, ranks, repetition, arguments):

@@ -11,7 +11,7 @@ use contact_dd_partition::numbered::Numbered;
 const SPLITS: usize = 8;
 
 /// Most distributions tried.
-const TRIALS: usize = 64;
+const TRIALS: usize = 512;
 
 /// Ratio of the estimated times after and before a further split above which it isn't worth it.
 const GAIN: f64 = 0.97;
