@@ -288,6 +288,36 @@ mod tests {
     }
 
     #[test]
+    fn only_classes_with_other_ties_get_other_combinations() {
+        let of_cluster = |c: u32| (20 * c..20 * (c + 1)).map(dof).collect();
+        let unknowns = ClusterUnknowns::new((0..3).map(of_cluster).collect());
+        let between = |first: u32, to: u32, count: u32| {
+            (0..count).map(move |i| {
+                let terms = vec![(dof(to + i), 0.5), (dof(to + i + 1), 0.5)];
+                (dof(first + i), terms)
+            })
+        };
+        let ties = |count| {
+            let direct = between(0, 20, 7).chain(between(40, 30, count));
+            Ties::join(vec![Ties::new(direct.collect())])
+        };
+        let none = Classes::default();
+        let before = Classes::new(&unknowns, &ties(7), (&none, &BTreeSet::new()));
+        let retied = [36, 37, 46].map(dof).into();
+        let after = Classes::new(&unknowns, &ties(6), (&before, &retied));
+        let anew = Classes::new(&unknowns, &ties(6), (&none, &BTreeSet::new()));
+        assert_eq!(after.list, anew.list);
+        let turned = |classes: &Classes| {
+            let turned = classes.list.iter().filter_map(|class| class.turned.clone());
+            turned.collect::<Vec<_>>()
+        };
+        let (before, after) = (turned(&before), turned(&after));
+        assert_eq!((before.len(), after.len()), (2, 2));
+        assert!(Arc::ptr_eq(&before[0], &after[0]));
+        assert_ne!(before[1], after[1]);
+    }
+
+    #[test]
     fn what_contact_constraints_interpolate_is_coarse() {
         let of_nodes = tied(|node| vec![(dof(node + 10), 1.0)]);
         assert!(of_nodes.list.iter().all(|class| !class.is_coarse()));

@@ -141,9 +141,6 @@ fn hold(mut s: MatMut<'_, f64>, range: Range<usize>, share: f64, round_off: f64)
     range.for_each(|i| s[(i, i)] += share * largest + round_off);
 }
 
-/// Least pivot, relative to its diagonal entry, of a factor that may be kept in single precision.
-const PIVOT_IN_SINGLE: f64 = 1e-4;
-
 /// The factor of the unknowns that aren't coarse.
 #[derive(Debug)]
 enum Others {
@@ -152,7 +149,7 @@ enum Others {
 }
 
 impl Others {
-    /// Factors in a precision that suits this `level`, and the Schur complement on the coarse unknowns.
+    /// Factors in the precision of this `level`, and the Schur complement on the coarse unknowns.
     fn new(
         s: Mat<f64>,
         count: usize,
@@ -163,15 +160,6 @@ impl Others {
             PreconditionerLevel::Diagonals => {
                 let (others, coarse) = Trapezoid::new(s, count, par)?;
                 (Self::Single(others), coarse)
-            }
-            PreconditionerLevel::Motions => {
-                let diagonal: Vec<f64> = (0..count).map(|i| s[(i, i)]).collect();
-                let (others, coarse) = Trapezoid::<f64>::new(s, count, par)?;
-                let others = match others.smallest_pivot(&diagonal) >= PIVOT_IN_SINGLE {
-                    true => Self::Single(others.in_single()),
-                    false => Self::Double(others),
-                };
-                (others, coarse)
             }
             _ => {
                 let (others, coarse) = Trapezoid::new(s, count, par)?;

@@ -102,17 +102,6 @@ impl<T: Number> Trapezoid<T> {
     }
 }
 
-impl Trapezoid<f64> {
-    /// The same in single precision.
-    pub fn in_single(&self) -> Trapezoid<f32> {
-        Trapezoid {
-            rows: self.rows,
-            pivots: self.pivots.clone(),
-            values: self.values.iter().map(|&value| value as f32).collect(),
-        }
-    }
-}
-
 /// Applies `change` to x in another precision, scaled against overflow and underflow.
 fn in_precision<T: Number>(x: &mut [f64], change: impl FnOnce(&mut [T])) {
     let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
