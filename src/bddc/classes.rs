@@ -157,7 +157,7 @@ impl Classes {
             if class.is_partial && class.size() > SMALL {
                 class.turned = match before.as_before(&class, retied) {
                     Some(same) => same.turned.clone(),
-                    None => turned(&class, (dofs, &tied), ties).map(Arc::new),
+                    None => turned(&class, unknowns, &tied, ties).map(Arc::new),
                 };
             }
             classes.list.push(class);
@@ -167,13 +167,11 @@ impl Classes {
 }
 
 /// The combinations of the unknowns of a class with two clusters, one of which lacks some; `None` for more than two
-/// clusters and for combinations that neither has. Every cluster has unknowns, some of them tied, both ascending.
+/// clusters and for combinations that neither has. `tied` are the unknowns of each cluster that are tied, ascending.
 fn turned(
     class: &Class,
-    (dofs, tied): (
-        &Numbered<MergeRootId, Vec<InterfaceDof>>,
-        &Numbered<MergeRootId, Vec<InterfaceDof>>,
-    ),
+    unknowns: &ClusterUnknowns,
+    tied: &Numbered<MergeRootId, Vec<InterfaceDof>>,
     ties: &Ties,
 ) -> Option<Turned> {
     let [a, b] = class.clusters[..] else {
@@ -189,7 +187,8 @@ fn turned(
             .collect()
     };
     let rows = [a, b].map(|c| {
-        let of_class = (class.dofs.iter()).filter(|dof| dofs[c].binary_search(dof).is_ok());
+        let of_class =
+            (class.dofs.iter()).filter(|dof| unknowns.dofs[c].binary_search(dof).is_ok());
         let mut of_cluster: Vec<&InterfaceDof> = of_class.chain(&tied[c]).collect();
         of_cluster.sort_unstable();
         of_cluster.dedup();
