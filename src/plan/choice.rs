@@ -60,8 +60,8 @@ impl Choice {
         Self { merging, why }
     }
 
-    /// The choices for a problem with this `tree`, the best one first: picard inverts S_0 alone, which then consists of the linear
-    /// subdomains; anderson needs the contact problems of groups; newton takes the operator with the least cost.
+    /// The choices for a problem with this `tree`, the best one first: picard inverts S_0 alone, which then consists of
+    /// the linear subdomains; anderson needs the contact problems of groups; newton takes the operator with the least cost.
     ///
     /// # Errors
     /// The iterative solver is requested, but the problem file has no clusters.
@@ -150,7 +150,8 @@ struct Refusal {
 }
 
 impl ChosenPlan {
-    /// The first of some choices for a problem and its tree for which there is memory, with a margin if possible. Collective.
+    /// The first of some choices for a problem and its tree for which there is memory, with a margin if possible.
+    /// Collective.
     ///
     /// # Errors
     /// Too little memory for any of them.

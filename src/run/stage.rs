@@ -72,8 +72,8 @@ impl Stages<'_> {
         })
     }
 
-    /// The choices of the operator for the contact constraints of a stage with this tree, the best one first; after a handover to
-    /// another solver, its choice only. Collective.
+    /// The choices of the operator for the contact constraints of a stage with this tree, the best one first; after a
+    /// handover to another solver, its choice only. Collective.
     ///
     /// # Errors
     /// Contradictory choices of the user.

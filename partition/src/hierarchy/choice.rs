@@ -106,8 +106,8 @@ pub struct OperatorTimes {
 }
 
 impl OperatorTimes {
-    /// The times of a problem, merged along this `tree`. The dense matrix is for few constraints; iterations are for scenes in space with
-    /// known clusters and many constraints if there is friction or mortar.
+    /// The times of a problem, merged along this `tree`. The dense matrix is for few constraints; iterations are for
+    /// scenes in space with known clusters and many constraints if there is friction or mortar.
     pub fn new(catalog: &Catalog, tree: &Tree) -> Self {
         let dim = catalog.dim;
         let has_friction = catalog.has_friction();
