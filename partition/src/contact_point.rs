@@ -28,6 +28,8 @@ pub struct ContactPoint<N> {
     /// The gap g (m), negative for an interference: of the undeformed bodies, or, for a contact activated later,
     /// relative to the position at its activation.
     pub gap: f64,
+    /// True if the scene gives the gap, false if it is measured on the mesh, within the round-off of coordinates.
+    pub is_gap_given: bool,
     /// The jump ⟦u⟧ at its activation (m), from which slip is measured.
     pub since: [f64; 3],
     /// True if its gap is that of the undeformed bodies although it is activated later.
@@ -152,6 +154,7 @@ impl<N: Copy> ContactPoint<N> {
             axes: Vec::new(),
             frame: LocalFrame::new(normal),
             gap: 0.0,
+            is_gap_given: false,
             since: [0.0; 3],
             is_absolute: false,
             area: 0.0,
@@ -251,6 +254,7 @@ impl<N: Copy> ContactPoint<N> {
             place: self.place,
             frame: self.frame,
             gap: self.gap,
+            is_gap_given: self.is_gap_given,
             since: self.since,
             is_absolute: self.is_absolute,
             area: self.area,

@@ -89,7 +89,7 @@ fn of_group(
         areas: &group.areas(),
         friction: &group.friction(),
         scale,
-        round_off: EQUAL * scale + OF_COORDINATES * group.largest_coordinate(),
+        round_off: &group.round_off(EQUAL * scale, OF_COORDINATES),
     };
     Ok(Limits::new(jumps.pivots.len(), conditions))
 }

@@ -38,8 +38,8 @@ pub struct Conditions<'a> {
     pub friction: &'a [TangentialCondition],
     /// The largest prescribed displacement (m).
     pub scale: f64,
-    /// Difference of bounds below which they are equal (m).
-    pub round_off: f64,
+    /// The round-off of the bound of each (m): bounds that differ by no more are equal.
+    pub round_off: &'a [f64],
 }
 
 impl Conditions<'_> {
@@ -60,14 +60,20 @@ impl Conditions<'_> {
                 continue;
             }
             let bound = |of: &Member| self.gaps[of.condition] / of.factor;
-            let tightest = all.iter().map(bound).fold(f64::INFINITY, f64::min);
-            let mut bounding = all.into_iter();
-            let Some(first) = bounding.find(|of| bound(of) <= tightest + self.round_off) else {
+            let tightest = all.iter().min_by(|a, b| bound(a).total_cmp(&bound(b)));
+            let Some(tightest) = tightest.copied() else {
                 continue;
             };
-            let is_alike = |of: &Member| (bound(of) - bound(&first)).abs() <= self.round_off;
+            let round_off = |of: &Member| self.round_off[of.condition];
+            let are_alike = |a: &Member, b: &Member| {
+                (bound(a) - bound(b)).abs() <= round_off(a).max(round_off(b))
+            };
+            let mut bounding = all.into_iter();
+            let Some(first) = bounding.find(|of| are_alike(of, &tightest)) else {
+                continue;
+            };
             let members: Vec<Member> = std::iter::once(first)
-                .chain(bounding.filter(is_alike))
+                .chain(bounding.filter(|of| are_alike(of, &first)))
                 .collect();
             if members.len() == 1 {
                 continue;
@@ -97,7 +103,9 @@ impl Conditions<'_> {
     /// The tangential conditions that share slips, if the `members` with friction have one slip, under strengths in one
     /// proportion whatever the pressure is. Otherwise each has a limit of its own.
     fn slips(&self, members: &[Member], defining: &[usize]) -> Option<Vec<Sharer>> {
-        let equal = |a: f64, b: f64| (a - b).abs() <= self.round_off;
+        let equal = |i: usize, j: usize| {
+            (self.gaps[i] - self.gaps[j]).abs() <= self.round_off[i].max(self.round_off[j])
+        };
         let same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
         let mut rubbing: Vec<Rubbing<'_>> = Vec::new();
         for (part, member) in self.parts(members).into_iter().zip(members) {
@@ -126,9 +134,9 @@ impl Conditions<'_> {
         };
         let mut slips = Vec::new();
         for (k, tangent) in first.tangents.iter().enumerate() {
-            let (slip, gap) = (slip_of(tangent.number)?, self.gaps[tangent.number]);
+            let slip = slip_of(tangent.number)?;
             let conditions: Vec<usize> = rubbing.iter().map(|of| of.tangents[k].number).collect();
-            let one_slip = |&j: &usize| slip_of(j) == Some(slip) && equal(self.gaps[j], gap);
+            let one_slip = |&j: &usize| slip_of(j) == Some(slip) && equal(j, tangent.number);
             if !conditions.iter().all(one_slip) {
                 return None;
             }

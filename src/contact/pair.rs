@@ -330,7 +330,7 @@ mod tests {
                 areas: &[1.0; GAPS.len()],
                 friction: &[],
                 scale: 0.0,
-                round_off: 0.0,
+                round_off: &[0.0; GAPS.len()],
             },
         );
         ContactPair::new(Rc::new(condensed), limits, load, None)

@@ -63,7 +63,7 @@ pub fn resting_limits(
         areas: &group.areas(),
         friction: &group.friction(),
         scale: 0.0,
-        round_off: 0.0,
+        round_off: &vec![0.0; jumps.of.len()],
     };
     Ok(Limits::new(jumps.pivots.len(), conditions))
 }

@@ -134,10 +134,21 @@ impl ContactGroup {
         self.points[condition.point].row_along(condition.direction)
     }
 
-    /// The largest coordinate of a contact point (m).
-    pub fn largest_coordinate(&self) -> f64 {
+    /// The round-off of the bound of every constraint (m): `of_displacements`, those prescribed, and that of coordinates, a
+    /// share `of_coordinates` of the largest, where the gap is measured.
+    pub fn round_off(&self, of_displacements: f64, of_coordinates: f64) -> Vec<f64> {
         let coordinates = self.points.iter().flat_map(|point| &point.position);
-        coordinates.fold(0.0, |m, x| m.max(x.abs()))
+        let largest = coordinates.fold(0.0, |m: f64, x| m.max(x.abs()));
+        let of_constraint = |constraint: Condition| {
+            let is_given = self.points[constraint.point].is_gap_given;
+            of_displacements
+                + if is_given {
+                    0.0
+                } else {
+                    of_coordinates * largest
+                }
+        };
+        self.conditions().map(of_constraint).collect()
     }
 
     /// The area of the point of every constraint (m, in space m²).

@@ -178,3 +178,52 @@ fn a_scene_far_away_has_the_same_answer() {
 fn a_renumbered_scene_has_the_same_answer() {
     is_the_same_at(&[HERE], Some(1));
 }
+
+/// A plank on two stops whose given gaps differ, under loads that move it by less than the round-off of its coordinates:
+/// the node between the stops rests on the nearer one.
+#[test]
+fn given_gaps_count_however_small_they_are() {
+    const FACTOR: f64 = 1e-20;
+    let blocks = Blocks::new()
+        .rectangle("left", [0.0, 1.0], [0.0, 0.5], [3, 2])
+        .rectangle("right", [1.0, 2.0], [0.0, 0.5], [3, 2])
+        .glued(|_, _| true);
+    let scene = |factor: f64| {
+        let stop = |side: &str, gap: f64| {
+            format!(
+                "[[contact]]
+                name = '{side}'
+                sides = [['{side} bottom']]
+                obstacle = {{ point = [0, 0], normal = [0, 1] }}
+                gap = {:e}\n",
+                gap * factor
+            )
+        };
+        let text = format!(
+            "plane = 'strain'
+            materials.steel = {{ young = 210e9, poisson = 0.3 }}
+            bodies.left.material = 'steel'
+            bodies.right.material = 'steel'
+            [[displacement]]
+            on = 'left left'
+            x = 0
+            [[pressure]]
+            on = ['left top', 'right top']
+            value = {:e}\n{}{}",
+            1e6 * factor,
+            stop("left", 3e-6),
+            stop("right", 5e-6),
+        );
+        model(&text, blocks.mesh.clone())
+    };
+    let [whole, small] = [1.0, FACTOR].map(|factor| solve(&scene(factor), 4));
+    assert_eq!(whole.closed(), small.closed());
+    for (one, other) in whole.points().zip(small.points()) {
+        assert_eq!(one.closed, other.closed);
+        close(
+            other.force,
+            one.force * FACTOR,
+            1e-9 * whole.largest_force() * FACTOR,
+        );
+    }
+}

@@ -142,6 +142,7 @@ fn take_mean(
     let total: f64 = all.iter().map(|of| of.area).sum();
     let mut entries: Vec<(u32, f64)> = point.entries.iter().map(|&(n, _)| (n, 0.0)).collect();
     point.gap = 0.0;
+    point.is_gap_given = all.iter().all(|of| of.is_gap_given);
     point.force_point = [0.0; 3];
     for of in all {
         let share = of.area / total;

@@ -233,6 +233,9 @@ pub const FIELDS: &[Field] = &[
          the contact is rigid. Along the normal the sides overlap by force over stiffness, along the tangents sticking \
          points are displaced by it. An equation with a stiffness along the normal is a spring between points, whose \
          force is its multiplier"),
+    optional("/contact/given_gap", "R", Codes("origin", 2),
+        "1 where the scene gives `gap`, 0 where it is measured on the mesh, so that gaps of points with one displacement may \
+         differ by the round-off of coordinates; without this dataset all are 0"),
     optional("/contact/absolute", "R", Codes("start", 2),
         "1 where `gap` is that of the undeformed bodies even if the contact is activated in a later load step, 0 where \
          it is relative to the position of the bodies then; without this dataset all are 0"),

@@ -273,6 +273,12 @@ impl Problem {
         if points().any(ContactPoint::is_compliant) {
             datasets.put("/contact/stiffness", points().flat_map(|p| p.stiffness))?;
         }
+        if points().any(|p| p.is_gap_given) {
+            datasets.put(
+                "/contact/given_gap",
+                points().map(|p| i64::from(p.is_gap_given)),
+            )?;
+        }
         if points().any(|p| p.is_absolute) {
             datasets.put(
                 "/contact/absolute",

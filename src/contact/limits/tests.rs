@@ -17,7 +17,7 @@ fn conditions<'a>(
         areas,
         friction,
         scale: 0.1,
-        round_off: 1e-14,
+        round_off: &[1e-14; 16][..of.len()],
     }
 }
 
@@ -145,4 +145,21 @@ fn conditions_that_share_a_jump_slip_under_the_strength_of_all() {
         "{forces:?}"
     );
     assert_eq!(limits.closed_points(|i| i == 0), 2);
+}
+
+#[test]
+fn bounds_that_differ_by_more_than_their_round_off_are_apart() {
+    let of = [unknown(0, 1.0), unknown(0, 1.0)];
+    let gaps = [5.0e-16, 3.0e-16];
+    let with = |round_off: &[f64]| {
+        let all = conditions(&of, &gaps, &[1.0, 3.0], &[]);
+        Limits::new(1, Conditions { round_off, ..all })
+    };
+    // Given gaps, of which the tighter one carries all force.
+    let given = with(&[1e-28, 1e-28]);
+    assert_eq!(given.bounds, [3.0e-16]);
+    assert_eq!(given.forces(&[4.0]), [0.0, 4.0]);
+    // One of them is measured.
+    let measured = with(&[1e-28, 1e-14]);
+    assert_eq!(measured.forces(&[4.0]), [1.0, 3.0]);
 }

@@ -24,6 +24,7 @@ pub fn group(law: Law) -> ContactGroup {
         entries: vec![(0, 1.0)],
         frame: LocalFrame::new([0.0, 0.0, 1.0]),
         gap: 0.0,
+        is_gap_given: false,
         since: [0.0; 3],
         is_absolute: false,
         area: 4.0,

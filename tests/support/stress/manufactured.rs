@@ -37,6 +37,7 @@ pub fn manufacture(model: &mut Model, random: &mut Random) {
             false => left = size * random.magnitude(small, 0.0),
         }
         condition.gap = jump + left;
+        condition.is_gap_given = true;
         for &(dof, c) in row {
             force[dof] += c * pressed;
         }

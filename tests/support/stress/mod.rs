@@ -228,6 +228,7 @@ pub fn scale(model: &mut Model, factor: f64) {
     }
     for condition in model.contacts.iter_mut().flat_map(|c| &mut c.points) {
         condition.gap *= factor;
+        condition.is_gap_given = true;
         match &mut condition.law {
             contact_point::Law::Frictionless | contact_point::Law::Tied => {}
             contact_point::Law::Given { bound } => *bound *= factor,

@@ -34,6 +34,7 @@ impl Contacts<'_> {
         for point in &mut paired.points {
             let given = weighted(point, &on_a, at_node)?;
             let measured = std::mem::replace(&mut point.gap, given);
+            point.is_gap_given = true;
             furthest = match (given - measured).abs() {
                 away if away > furthest.0 => (away, given, measured),
                 _ => furthest,

@@ -32,6 +32,7 @@ pub(super) fn read(
     let frames = read_frames(contents, &normal)?;
     let tag_a = integers("/contact/node_a")?;
     let tag_b = integers("/contact/node_b")?;
+    let given_gap = integers("/contact/given_gap")?;
     let absolute = integers("/contact/absolute")?;
     let laws = read_laws(contents)?;
     let mut motion = read_motion(contents)?;
@@ -47,6 +48,7 @@ pub(super) fn read(
         area: area.all()[i],
         force_point: force_point[i],
         tag_b: tag_b.all()[i],
+        is_gap_given: given_gap.all().get(i) == Some(&1),
         is_absolute: absolute.all().get(i) == Some(&1),
         law: laws[i],
         stiffness: stiffness[i],
