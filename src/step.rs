@@ -18,6 +18,7 @@ use crate::context::Context;
 use crate::context::Loads;
 use crate::error::Failure;
 use crate::fem::assembly::load;
+use crate::fem::balance::LastBalances;
 use crate::fem::prescribed::Prescribed;
 use crate::interface::numbering::Numbering;
 use crate::interface::operator::Interface;
@@ -47,6 +48,8 @@ pub struct StepProblem<'a> {
     pub interface: Option<InterfaceProblem<'a>>,
     /// The scales of the load steps before; on the root.
     pub earlier: Scales,
+    /// The balance of forces of the last solution that was checked, on this rank's blocks.
+    pub balances: LastBalances,
 }
 
 /// The parts of a load step's problem that don't depend on its loads.
@@ -95,6 +98,7 @@ impl<'a> Loading<'a> {
             pairs,
             interface,
             earlier,
+            balances: LastBalances::default(),
         })
     }
 

@@ -1,5 +1,9 @@
 //! Nodal balance f − K u − Bᵀ λ of a block, computed element by element without any factorization.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use contact_dd_partition::id::{BlockId, OnBlocks};
 use contact_dd_partition::model::Material;
 
 use super::block::Block;
@@ -91,5 +95,75 @@ impl Balance {
                 }
             }
         }
+    }
+}
+
+/// The last balance of every block under the same loads, for the next check of the same solution: stiffness matrices of
+/// quadratic cells take as long to compute as a block takes to factorize.
+#[derive(Debug, Default)]
+pub struct LastBalances(RefCell<OnBlocks<LastBalance>>);
+
+#[derive(Debug)]
+struct LastBalance {
+    u: Vec<f64>,
+    pushes: Vec<(u32, [f64; 3])>,
+    balance: Rc<Balance>,
+}
+
+impl LastBalances {
+    /// The balance of block b for these displacements and contact forces: the last one if it is theirs, else a new one
+    /// by `compute`.
+    pub fn of(
+        &self,
+        b: BlockId,
+        (u, pushes): (&[f64], &[(u32, [f64; 3])]),
+        compute: impl FnOnce() -> Balance,
+    ) -> Rc<Balance> {
+        let mut last = self.0.borrow_mut();
+        if let Some(last) = last
+            .get(&b)
+            .filter(|last| last.u == u && last.pushes == pushes)
+        {
+            return last.balance.clone();
+        }
+        let balance = Rc::new(compute());
+        let of_block = LastBalance {
+            u: u.to_vec(),
+            pushes: pushes.to_vec(),
+            balance: balance.clone(),
+        };
+        last.insert(b, of_block);
+        balance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_balance_is_computed_again_for_another_solution_only() {
+        let (last, b) = (LastBalances::default(), BlockId::new(3));
+        let computed = |u: &[f64], push: f64| {
+            let mut is_new = false;
+            let balance = last.of(b, (u, &[(0, [push, 0.0, 0.0])]), || {
+                is_new = true;
+                let [residual, scale, external, springs] = [(); 4].map(|()| u.to_vec());
+                Balance {
+                    residual,
+                    scale,
+                    external,
+                    springs,
+                    largest_load: push,
+                }
+            });
+            assert_eq!((&balance.residual[..], balance.largest_load), (u, push));
+            is_new
+        };
+        assert!(computed(&[1.0, 2.0], 5.0));
+        assert!(!computed(&[1.0, 2.0], 5.0));
+        assert!(computed(&[1.0, 3.0], 5.0));
+        assert!(computed(&[1.0, 3.0], 6.0));
+        assert!(!computed(&[1.0, 3.0], 6.0));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use contact_dd_partition::id::{BlockId, GroupId, OnBlocks, OnGroups, OnPairs, PairId, TreeNodeId};
 use contact_dd_partition::numbered::Numbered;
@@ -135,14 +136,13 @@ impl<'a> FixedActiveSet<'a> {
     }
 
     /// Balance of forces at the nodes of block b of this rank; `None` for another rank's.
-    pub fn balance(&self, b: BlockId, solution: &BlockSolution) -> Option<Balance> {
-        Some(Balance::new(
-            self.context.blocks.get(&b)?,
-            self.step.loads.blocks.get(&b)?,
-            &self.context.catalog.materials,
-            &solution.u,
-            &solution.pushes,
-        ))
+    pub fn balance(&self, b: BlockId, solution: &BlockSolution) -> Option<Rc<Balance>> {
+        let block = self.context.blocks.get(&b)?;
+        let loads = self.step.loads.blocks.get(&b)?;
+        let materials = &self.context.catalog.materials;
+        let BlockSolution { u, pushes } = solution;
+        let compute = || Balance::new(block, loads, materials, u, pushes);
+        Some(self.step.balances.of(b, (u, pushes), compute))
     }
 
     /// Forces at the nodes of this rank's blocks as loads on their unknowns, without the part along free motions.

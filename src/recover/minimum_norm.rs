@@ -262,7 +262,7 @@ fn condition_states(
     let dim = fixed.context.catalog.dim;
     let scales = plan.nodes_to_groups(comm, |b, nodes| {
         let balance = fixed.balance(b, &solution.blocks[&b]);
-        let scale = balance.map_or_else(Vec::new, |balance| balance.scale);
+        let scale = balance.as_ref().map_or(&[][..], |balance| &balance.scale);
         let largest = |at: u32| largest_entry(&scale[at as usize * dim..][..dim]);
         nodes.iter().map(|(at, _)| largest(at.node)).collect()
     });

@@ -57,9 +57,8 @@ fn of_block(
         return reactions;
     }
     let dim = block.dim;
-    let residual = fixed
-        .balance(b, solution)
-        .map_or_else(Vec::new, |b| b.residual);
+    let balance = fixed.balance(b, solution);
+    let residual = balance.as_ref().map_or(&[][..], |b| &b.residual);
     for support in held {
         let residual = residual
             .get(dim * support.node as usize..)

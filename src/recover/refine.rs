@@ -266,7 +266,7 @@ fn correct(fixed: &FixedActiveSet<'_>, solution: &mut DiscreteSolution) {
 
 /// The unbalanced forces of a solution on this rank's unknowns, without those along free motions. Collective.
 fn unbalanced(fixed: &FixedActiveSet<'_>, solution: &DiscreteSolution) -> OnBlocks<Vec<f64>> {
-    let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual));
+    let residual = |(&b, of_block)| Some((b, fixed.balance(b, of_block)?.residual.clone()));
     fixed.on_unknowns(solution.blocks.iter().filter_map(residual).collect())
 }
 
