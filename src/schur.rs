@@ -3,8 +3,10 @@
 //! > S = K_BB − K_BI K_II⁻¹ K_IB,   u_I = K_II⁻¹ (f_I − K_IB u_B)
 
 mod children;
+pub mod cluster_schur;
 pub mod columns;
 pub mod condensed;
+mod coupling;
 mod dissection;
 pub mod factor;
 pub(crate) mod front;

@@ -93,7 +93,7 @@ impl Front {
             }
             places.push(of_part);
         }
-        let (factor, s) = Trapezoid::new(sum, eliminated, par)?;
+        let (factor, whole) = Trapezoid::new(sum, eliminated, par)?;
         let front = Self {
             smallest_pivot: factor.smallest_pivot(&diagonal),
             factor,
@@ -101,7 +101,7 @@ impl Front {
         };
         let part = Part {
             classes: kept,
-            s: PackedSymmetric::new(&s),
+            s: PackedSymmetric::trailing(&whole, eliminated),
             diagonal: diagonal.split_off(eliminated),
         };
         Ok((front, part))

@@ -7,11 +7,11 @@ use contact_dd_partition::id::OnMergeRoots;
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::{Mat, MatMut, Par, Side::Lower};
 
-use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::constraints::{Basis, Mechanism, Side};
 use crate::bddc::placement::Placement;
 use crate::bddc::preconditioner_level::PreconditionerLevel;
 use crate::bddc::transform::transformed;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::InterfaceDof;
 use crate::schur::symmetric::PackedSymmetric;
 use crate::schur::trapezoid::{NotDefinite, Trapezoid};
@@ -68,7 +68,11 @@ impl Shared {
         }
         let s = transformed(&cluster.s, &springs, &placement.terms, placement.size());
         let diagonal: Vec<f64> = (0..placement.own).map(|i| s[(i, i)]).collect();
-        let (own, s) = Trapezoid::new(s, placement.own, par)?;
+        let (own, whole) = Trapezoid::new(s, placement.own, par)?;
+        let s = match (placement.own, whole.nrows() - placement.own) {
+            (0, _) => whole,
+            (first, n) => whole.submatrix(first, first, n, n).to_owned(),
+        };
         let shared = Self {
             smallest_pivot: own.smallest_pivot(&diagonal),
             placement,
@@ -155,15 +159,16 @@ impl Others {
         count: usize,
         level: PreconditionerLevel,
         par: Par,
-    ) -> Result<(Self, Mat<f64>), NotDefinite> {
+    ) -> Result<(Self, PackedSymmetric), NotDefinite> {
+        let coarse = |whole: &Mat<f64>| PackedSymmetric::trailing(whole, count);
         Ok(match level {
             PreconditionerLevel::Diagonals => {
-                let (others, coarse) = Trapezoid::new(s, count, par)?;
-                (Self::Single(others), coarse)
+                let (others, whole) = Trapezoid::new(s, count, par)?;
+                (Self::Single(others), coarse(&whole))
             }
             _ => {
-                let (others, coarse) = Trapezoid::new(s, count, par)?;
-                (Self::Double(others), coarse)
+                let (others, whole) = Trapezoid::new(s, count, par)?;
+                (Self::Double(others), coarse(&whole))
             }
         })
     }
@@ -258,7 +263,7 @@ impl Local {
             order,
             others,
         };
-        Ok((local, PackedSymmetric::new(&coarse)))
+        Ok((local, coarse))
     }
 
     /// The ranges of its classes among the shared unknowns.

@@ -7,8 +7,8 @@ use contact_dd_partition::id::MergeRootId;
 
 use crate::bddc::classes::Classes;
 use crate::bddc::closed::Ties;
-use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::constraints::Side;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::InterfaceDof;
 
 /// The unknowns of a cluster as [own | shared].

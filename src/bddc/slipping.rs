@@ -16,12 +16,12 @@ use faer::linalg::solvers::SolveLstsq;
 use faer::{Col, Mat};
 
 use crate::bddc::Bddc;
-use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
 use crate::bddc::loads::{ClusterAnswer, ClusterLoads, Constants, SlipLaws};
 use crate::bddc::local::{Local, Vectors};
 use crate::contact::slip_law::SlipLaw;
 use crate::context::Context;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::vector::{add_multiple, axpy, multiple};
 
 /// Most iterations.

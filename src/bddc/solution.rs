@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use contact_dd_partition::id::{MergeRootId, OnGroups, OnMergeRoots, OnTreeNodes};
 
 use crate::bddc::Bddc;
-use crate::bddc::cluster_schur::ClusterSchur;
 use crate::bddc::conjugate_gradients::ConjugateGradients;
 use crate::bddc::loads::{ClusterAnswer, ClusterLoads, Constants};
 use crate::bddc::local::Vectors;
@@ -15,6 +14,7 @@ use crate::comm::Comm;
 use crate::contact::laws::Iterate;
 use crate::context::Context;
 use crate::plan::Plan;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::InterfaceDof;
 use crate::vector::axpy;
 

@@ -8,6 +8,7 @@ use crate::comm::clock::Times;
 use crate::contact::limits::Limits;
 use crate::fem::assembly::Spring;
 use crate::fem::dofs::Dofs;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::Condensed;
 use crate::schur::local::LocalSchur;
 use crate::schur::merge::Merge;
@@ -42,8 +43,10 @@ pub struct CondensedBlocks {
     pub blocks: OnBlocks<CondensedBlock>,
     /// The merge at every inner node of the hierarchy.
     pub merges: OnTreeNodes<Merge>,
-    /// T: the clusters without contact, by their number among all.
+    /// T: the clusters without contact that are merged or assembled, by their number among all.
     pub linear: OnClusters<Condensed>,
+    /// The clusters without contact that are merged no further, by their node, where active sets are fixed.
+    pub merge_roots: OnTreeNodes<ClusterSchur>,
     /// ϑ: the clusters in contact, by their number among the pairs.
     pub contact: OnPairs<ContactCluster>,
     /// Time of assembly and of factorization (s).

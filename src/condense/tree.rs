@@ -13,6 +13,7 @@ use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::numbering::check_agreement;
 use crate::interface::rigid_modes::RigidModes;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::{Condensed, InterfaceDof};
 use crate::schur::merge::{FreeInterfaceDof, MatrixPool, Merge};
 
@@ -117,7 +118,7 @@ impl Merging<'_> {
         let Context { plan, blocks, .. } = self.condensation.context;
         if let Some((b, block)) = (plan.tree.block(v)).and_then(|b| Some((b, blocks.get(&b)?))) {
             let of_block = self.condensation.condense(b, block, &mut self.condensed)?;
-            self.waiting.insert(v, of_block);
+            self.keep(v, of_block);
             return Ok(());
         }
         let children = &plan.tree.nodes[v].children;
@@ -155,6 +156,18 @@ impl Merging<'_> {
         Ok(())
     }
 
+    /// Keeps S of node v until it is merged, or packed, for the iterations between clusters, which begin here.
+    fn keep(&mut self, v: TreeNodeId, condensed: Condensed) {
+        let plan = self.condensation.context.plan;
+        if plan.merging.has_active_set() && plan.is_merge_root(v) {
+            let (packed, s) = ClusterSchur::packed(condensed);
+            self.condensed.merge_roots.insert(v, packed);
+            self.spare.keep(s);
+        } else {
+            self.waiting.insert(v, condensed);
+        }
+    }
+
     fn merge(&mut self, v: TreeNodeId, children: Vec<Condensed>) -> Result<(), Failure> {
         let Context { comm, plan, .. } = self.condensation.context;
         let began = comm.times();
@@ -175,7 +188,7 @@ impl Merging<'_> {
         )
         .map_err(|FreeInterfaceDof(dof)| self.free_motion(v, dof))?;
         self.condensed.merges.insert(v, merge);
-        self.waiting.insert(v, condensed);
+        self.keep(v, condensed);
         self.condensed.seconds[1] += comm.times() - began;
         Ok(())
     }

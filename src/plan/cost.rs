@@ -18,10 +18,14 @@ const AT_REST: f64 = 2.8e7;
 const PER_DOF: f64 = 50.0;
 /// Time of other cells over that of three-node triangles: a constant, and a factor of the number of nodes per cell.
 const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
-/// Memory that its boundary adds to a block's factor, over the boundary's size times √n (bytes).
-const PER_BOUNDARY: f64 = 165.0;
+/// Memory that its boundary adds to a block's factor, over the boundary's size times √n, in the plane and in space, where
+/// factors mostly have no rows on the boundary (bytes).
+const PER_BOUNDARY: [f64; 2] = [165.0, 105.0];
 /// An entry of a matrix (bytes).
 const PER_ENTRY: f64 = 8.0;
+/// A square entry of the matrix of a cluster between which and others iterations solve: half of it is kept, and half of the
+/// factor in single precision (bytes).
+const PER_ENTRY_OF_CLUSTER: f64 = 6.0;
 /// Most memory of matrices kept for reuse (bytes).
 const SPARE: f64 = 2.7e8;
 /// Fragmentation: the part of the memory of matrices waiting to be merged that isn't reused, and its largest amount
@@ -86,7 +90,8 @@ impl Plan {
                 let n = eliminated.max(1.0);
                 let [least, more] = PER_NODE_OF_CELL;
                 let of_kind = least + more * subdomain.nodes as f64 / subdomain.cells.max(1) as f64;
-                estimate.bytes += PER_DOF * of_kind * n * n.log2() + PER_BOUNDARY * kept * n.sqrt();
+                let per_boundary = PER_BOUNDARY[usize::from(catalog.dim == 3)];
+                estimate.bytes += PER_DOF * of_kind * n * n.log2() + per_boundary * kept * n.sqrt();
             } else {
                 // Open jumps are eliminated, too; closed ones are kept.
                 let own = match self.has_active_set_at(v) {
@@ -103,7 +108,7 @@ impl Plan {
         if self.merging == Merging::Clusters {
             for &v in &self.merge_roots {
                 let kept = self.front(v, catalog.dim).kept as f64;
-                estimates[self.node_owners[v]].bytes += PER_ENTRY * kept * kept;
+                estimates[self.node_owners[v]].bytes += PER_ENTRY_OF_CLUSTER * kept * kept;
             }
         }
         let mut held = self.waiting(catalog.dim, ranks);

@@ -69,6 +69,7 @@ impl Operators {
             true => Some(RefCell::new(ActiveSetFronts::new(
                 &condensation,
                 std::mem::take(&mut condensed.linear),
+                std::mem::take(&mut condensed.merge_roots),
             )?)),
             false => None,
         };

@@ -5,6 +5,7 @@
 
 use faer::{Mat, MatMut, Par};
 
+use super::coupling::Coupling;
 use super::fronts::Fronts;
 use super::panel::Panel;
 use super::pattern::SparseSymmetric;
@@ -21,6 +22,9 @@ pub enum FactorError {
     Size,
 }
 
+/// Entries of L_BI up to which it is kept, 1 MB: loads are condensed a little more accurately with it.
+const LARGE: usize = 1 << 17;
+
 /// The Cholesky factor of a matrix whose last unknowns are its boundary B.
 #[derive(Debug)]
 pub struct BoundaryLastCholesky {
@@ -28,6 +32,8 @@ pub struct BoundaryLastCholesky {
     values: Vec<f64>,
     interior: usize,
     smallest_pivot: f64,
+    /// K_BI, where the factor has no L_BI: L_BI = K_BI L_II⁻ᵀ.
+    coupling: Option<Coupling>,
 }
 
 impl BoundaryLastCholesky {
@@ -40,12 +46,11 @@ impl BoundaryLastCholesky {
         let mut nothing = Mat::new();
         let mut factor = Self::eliminate(matrix, n, nothing.as_mut(), par)?;
         factor.interior = interior;
-        factor.smallest_pivot = factor.find_smallest_pivot(matrix, n);
         Ok(factor)
     }
 
     /// Factorizes the first `interior` columns of `matrix` only, and returns the lower triangle of S_BB with the
-    /// factor, which has no L_BB.
+    /// factor, which has no L_BB, and no L_BI either where that is large and has more entries than L_II and K_BI.
     ///
     /// # Errors
     /// K_II isn't positive definite, or the factor is too large.
@@ -62,8 +67,7 @@ impl BoundaryLastCholesky {
                 s[(i as usize - interior, j)] = matrix.values[place];
             }
         }
-        let mut factor = Self::eliminate(matrix, interior, s.as_mut(), par)?;
-        factor.smallest_pivot = factor.find_smallest_pivot(matrix, interior);
+        let factor = Self::eliminate(matrix, interior, s.as_mut(), par)?;
         Ok((factor, s))
     }
 
@@ -75,19 +79,29 @@ impl BoundaryLastCholesky {
         par: Par,
     ) -> Result<Self, FactorError> {
         let supernodes = Supernodes::new(&matrix.pattern, count);
+        let (within, coupling) = (supernodes.before(count), Coupling::new(matrix, count));
+        let beyond = supernodes.values() - within.values();
+        let is_worth_it = beyond > LARGE && beyond > within.values() + coupling.len();
+        let (kept, coupling) = match is_worth_it {
+            true => (within, Some(coupling)),
+            false => (supernodes.clone(), None),
+        };
         let mut values = Vec::new();
         values
-            .try_reserve_exact(supernodes.values())
+            .try_reserve_exact(kept.values())
             .map_err(|_| FactorError::Size)?;
         Fronts::new(matrix, &supernodes, count)
-            .run(&mut values, rest, par)
+            .run(&kept, &mut values, rest, par)
             .map_err(FactorError::Pivot)?;
-        Ok(Self {
-            supernodes,
+        let mut factor = Self {
+            supernodes: kept,
             values,
             interior: count,
             smallest_pivot: f64::INFINITY,
-        })
+            coupling,
+        };
+        factor.smallest_pivot = factor.find_smallest_pivot(matrix, count);
+        Ok(factor)
     }
 
     /// The smallest pivot of the eliminated unknowns relative to its diagonal entry, min L_jj² / K_jj: a measure of the
@@ -123,6 +137,12 @@ impl BoundaryLastCholesky {
     /// x_I ← L_II⁻¹ x_I and x_B ← x_B − L_BI x_I: condenses a load onto B.
     pub fn forward(&self, x: &mut [f64]) {
         self.forward_before(self.interior, x);
+        if let Some(k_bi) = &self.coupling {
+            let (x_i, x_b) = x.split_at_mut(self.interior);
+            let mut u_i = x_i.to_vec();
+            self.backward_before(self.interior, &mut u_i);
+            k_bi.subtract_product(&u_i, x_b);
+        }
     }
 
     /// Forward substitution with the first `count` unknowns as I.
@@ -142,6 +162,14 @@ impl BoundaryLastCholesky {
 
     /// x_I ← L_II⁻ᵀ (x_I − L_BIᵀ x_B): recovers the interior from the result of `forward` on I and the solution on B.
     pub fn backward(&self, x: &mut [f64]) {
+        if let Some(k_bi) = &self.coupling {
+            let (x_i, x_b) = x.split_at_mut(self.interior);
+            let mut reduced = k_bi.transposed_product(x_b);
+            self.forward_before(self.interior, &mut reduced);
+            for (x, reduced) in x_i.iter_mut().zip(reduced) {
+                *x -= reduced;
+            }
+        }
         self.backward_before(self.interior, x);
     }
 
@@ -228,6 +256,41 @@ mod tests {
         let mut x: Vec<f64> = (&a * &exact).iter().copied().collect();
         factor.forward(&mut x);
         x[7..].copy_from_slice(&exact.as_slice()[7..]);
+        factor.backward(&mut x);
+        for (x, e) in x.iter().zip(exact.iter()) {
+            assert!((x - e).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_long_boundary_is_coupled_by_the_matrix_itself() {
+        // Rungs between two chains: L_BI is full, K_BI has an entry a column.
+        let (n, interior) = (1200, 600);
+        let mut cliques = Cliques::default();
+        let bars = |i: u32| [[i, i + 1], [i, i + 600], [i + 599, i + 600]];
+        (0..599).flat_map(bars).for_each(|bar| cliques.push(bar));
+        let mut matrix = SparseSymmetric::zeros(LowerPattern::new(n, &cliques).unwrap());
+        for bar in (0..599).flat_map(bars) {
+            let k = f64::from(1 + bar[1] % 7);
+            matrix.add(&bar, |a, b| if a == b { k } else { -k });
+        }
+        matrix.add(&[0], |_, _| 1.0);
+        let (factor, s) = BoundaryLastCholesky::condense(&matrix, interior, Par::Seq).unwrap();
+        assert!(factor.coupling.is_some());
+        let whole = Supernodes::new(&matrix.pattern, interior);
+        assert!(2 * factor.values.len() < whole.values());
+
+        let a = dense(&matrix);
+        let exact = nalgebra::DVector::from_fn(n, |i, _| (i as f64).sin() + 2.0);
+        let load: Vec<f64> = (&a * &exact).iter().copied().collect();
+        let mut x = load.clone();
+        factor.forward(&mut x);
+        for i in interior..n {
+            let entry = |j: usize| s[(i.max(j) - interior, i.min(j) - interior)];
+            let held: f64 = (interior..n).map(|j| entry(j) * exact[j]).sum();
+            assert!((held - x[i]).abs() < 1e-11, "{i}: {held}, {}", x[i]);
+        }
+        x[interior..].copy_from_slice(&exact.as_slice()[interior..]);
         factor.backward(&mut x);
         for (x, e) in x.iter().zip(exact.iter()) {
             assert!((x - e).abs() < 1e-12);

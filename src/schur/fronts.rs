@@ -39,13 +39,14 @@ impl<'a> Fronts<'a> {
         }
     }
 
-    /// Appends the panels of the factor to `values` and adds the remaining update to the lower triangle of `rest`,
-    /// whose rows are the unknowns not eliminated.
+    /// Appends the panels of the factor, with the rows that are `kept`, to `values` and adds the remaining update to the
+    /// lower triangle of `rest`, whose rows are the unknowns not eliminated.
     ///
     /// # Errors
     /// The column whose pivot isn't positive.
     pub fn run(
         mut self,
+        kept: &Supernodes,
         values: &mut Vec<f64>,
         mut rest: MatMut<'_, f64>,
         par: Par,
@@ -69,8 +70,9 @@ impl<'a> Fronts<'a> {
             }
             front::factorize(&mut panel, rows, columns.len(), &mut update, par)
                 .map_err(|column| columns.start + column)?;
+            let end = columns.len() + kept.below(s).len();
             for (j, column) in panel.chunks_exact(rows).enumerate() {
-                values.extend_from_slice(&column[j..]);
+                values.extend_from_slice(&column[j..end]);
             }
             if self.supernodes.parents[s] == NO_PARENT {
                 self.leave(s, &update, rest.as_mut());

@@ -45,6 +45,27 @@ impl Supernodes {
         Self::merge(&groups, &structures)
     }
 
+    /// The same supernodes with only those rows below that are before row `end`.
+    pub fn before(&self, end: usize) -> Self {
+        let mut within = Self {
+            begin: self.begin.clone(),
+            row_offsets: vec![0],
+            rows: Vec::new(),
+            value_offsets: vec![0],
+            parents: self.parents.clone(),
+        };
+        for s in 0..self.len() {
+            let below = self.below(s);
+            let below = &below[..below.partition_point(|&i| (i as usize) < end)];
+            let columns = self.columns(s).len();
+            within.rows.extend_from_slice(below);
+            within.row_offsets.push(within.rows.len());
+            let values = within.values() + packed_len(columns + below.len(), columns);
+            within.value_offsets.push(values);
+        }
+        within
+    }
+
     /// Number of supernodes.
     pub fn len(&self) -> usize {
         self.parents.len()

@@ -18,9 +18,14 @@ pub struct PackedSymmetric {
 impl PackedSymmetric {
     /// The packed form of a matrix given by its lower triangle.
     pub fn new(s: &Mat<f64>) -> Self {
-        let size = s.nrows();
+        Self::trailing(s, 0)
+    }
+
+    /// The packed form of the rows and columns of a matrix from `first` on.
+    pub fn trailing(s: &Mat<f64>, first: usize) -> Self {
+        let size = s.nrows() - first;
         let mut values = Vec::with_capacity(packed_len(size, size));
-        for j in 0..size {
+        for j in first..s.nrows() {
             values.extend_from_slice(&s.col_as_slice(j)[j..]);
         }
         Self { size, values }

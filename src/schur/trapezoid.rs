@@ -22,8 +22,8 @@ pub struct Trapezoid<T> {
 }
 
 impl<T: Number> Trapezoid<T> {
-    /// Eliminates the first `count` unknowns of a symmetric matrix, given by its lower triangle, and returns the lower
-    /// triangle of the Schur complement on the others.
+    /// Eliminates the first `count` unknowns of a symmetric matrix, given by its lower triangle, and returns the matrix
+    /// with the lower triangle of the Schur complement in the place of the others.
     ///
     /// # Errors
     /// The block of these unknowns isn't positive definite.
@@ -42,18 +42,12 @@ impl<T: Number> Trapezoid<T> {
             let column = matrix.col_as_slice(j)[j..].iter();
             values.extend(column.map(|l| T::of(l / pivot)));
         }
-        let s = match count {
-            0 => matrix,
-            _ => matrix
-                .submatrix(count, count, rows - count, rows - count)
-                .to_owned(),
-        };
         let trapezoid = Self {
             rows,
             pivots,
             values,
         };
-        Ok((trapezoid, s))
+        Ok((trapezoid, matrix))
     }
 
     /// The smallest pivot relative to the entries of the `diagonal`, min L_jj² / d_j.
@@ -193,7 +187,8 @@ mod tests {
         let root = Mat::from_fn(n, n, |i, j| ((17 * i + 5 * j) as f64).sin());
         let a = &root * root.transpose() + Mat::<f64>::identity(n, n);
         let b: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
-        let (factor, s) = Trapezoid::<T>::new(a.clone(), count, Par::Seq).unwrap();
+        let (factor, whole) = Trapezoid::<T>::new(a.clone(), count, Par::Seq).unwrap();
+        let s = whole.submatrix(count, count, n - count, n - count);
         let mut x = b.clone();
         factor.forward(&mut x);
         if count < n {

@@ -8,13 +8,13 @@ use contact_dd_partition::id::{GroupId, OnClusters, OnGroups, OnTreeNodes, TreeN
 use faer::Mat;
 
 use crate::bddc::Bddc;
-use crate::bddc::cluster_schur::ClusterSchur;
 use crate::condense::Condensation;
 use crate::contact::active_equalities::ActiveEqualities;
 use crate::contact::dependent::DependentConstraints;
 use crate::context::Context;
 use crate::context::hierarchy::resting_limits;
 use crate::error::Failure;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::Condensed;
 use crate::schur::merge::{MatrixPool, Merge};
 use crate::schur::substitution::Replaced;
@@ -61,13 +61,15 @@ pub struct ActiveSetFronts {
 }
 
 impl ActiveSetFronts {
-    /// Fronts over the `clusters` of this rank, by their index among all; none is factorized yet. Collective.
+    /// Fronts over the `clusters` of this rank, by their index among all, beside those that are `merge_roots`
+    /// themselves; none is factorized yet. Collective.
     ///
     /// # Errors
     /// A contact point without an unknown that can be replaced.
     pub fn new(
         condensation: &Condensation<'_>,
         mut clusters: OnClusters<Condensed>,
+        merge_roots: OnTreeNodes<ClusterSchur>,
     ) -> Result<Self, Failure> {
         let context = &condensation.context;
         let plan = context.plan;
@@ -93,7 +95,7 @@ impl ActiveSetFronts {
             nodes,
             fronts: BTreeMap::new(),
             merged: BTreeMap::new(),
-            merge_roots: BTreeMap::new(),
+            merge_roots,
             replaced,
             rows: context.comm.agree(rows.collect())?,
             spring: 0.0,

@@ -7,6 +7,7 @@ use faer::Mat;
 use super::{ActiveSetFront, ActiveSetFronts};
 use crate::context::Context;
 use crate::error::Failure;
+use crate::schur::cluster_schur::ClusterSchur;
 use crate::schur::condensed::Condensed;
 use crate::schur::front_order::OwnJumps;
 use crate::schur::merge::Merge;
@@ -22,8 +23,11 @@ impl ActiveSetFronts {
     ) {
         let Context { comm, plan, .. } = *context;
         let Some(parent) = plan.merged_into(v) else {
-            self.merge_roots
-                .extend(condensed.map(|top| (v, top.into())));
+            if let Some(top) = condensed {
+                let (packed, s) = ClusterSchur::packed(top);
+                self.merge_roots.insert(v, packed);
+                self.spare.keep(s);
+            }
             return;
         };
         let route = (plan.node_owners[v], plan.node_owners[parent]);
