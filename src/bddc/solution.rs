@@ -107,10 +107,11 @@ impl Bddc {
             }
         };
         let ClusterAnswer {
-            clusters,
+            mut clusters,
             groups,
             tied,
         } = solution.answer;
+        self.equalize(comm, &mut clusters);
         let by_node = clusters.into_iter().map(|(c, x)| (plan.merge_roots[c], x));
         BddcSolution {
             clusters: by_node.collect(),
@@ -203,6 +204,47 @@ impl Bddc {
             clusters,
             groups,
             tied,
+        }
+    }
+
+    /// Gives unknowns that clusters compute from others, by ties or turned classes, the value of their first cluster in all
+    /// that have them: the clusters' sums differ by the round-off of their largest term, which in a stiff body beside a soft
+    /// one is more than that of its own displacements. Collective.
+    fn equalize(&self, comm: &Comm, clusters: &mut Vectors) {
+        let turned = (self.classes.list.iter()).filter(|class| class.turned.is_some());
+        let turned = turned.flat_map(|class| class.dofs.iter().copied());
+        let mut shared: BTreeMap<[MergeRootId; 2], Vec<[usize; 2]>> = BTreeMap::new();
+        for dof in self.ties.tied().map(|(&dof, _)| dof).chain(turned) {
+            let place = |c: MergeRootId| Some((c, self.unknowns.dofs[c].binary_search(&dof).ok()?));
+            let mut all = self.unknowns.clusters_of(dof).filter_map(place);
+            if let Some((first, from)) = all.next() {
+                all.for_each(|(c, to)| shared.entry([first, c]).or_default().push([from, to]));
+            }
+        }
+        let pairs: Vec<([MergeRootId; 2], Vec<[usize; 2]>)> = shared.into_iter().collect();
+        let mut arrived = Vec::new();
+        comm.route(
+            pairs
+                .iter()
+                .map(|(ends, _)| ends.map(|c| self.owners[c]).into()),
+            |i| {
+                let ([first, _], places) = &pairs[i];
+                Reals(
+                    places
+                        .iter()
+                        .map(|&[from, _]| clusters[first][from])
+                        .collect(),
+                )
+            },
+            |i, Reals(values)| arrived.push((i, values)),
+        );
+        for (i, values) in arrived {
+            let ([_, c], places) = &pairs[i];
+            if let Some(of_cluster) = clusters.get_mut(c) {
+                for (&[_, to], value) in places.iter().zip(values) {
+                    of_cluster[to] = value;
+                }
+            }
         }
     }
 

@@ -12,7 +12,7 @@ use crate::support::scenes::{built_in, built_in_model, checkerboard, columns, mo
 use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, LIMIT, built, problem};
-use crate::support::stress::space::draw_in_space;
+use crate::support::stress::space::{draw_frictional_in_space, draw_in_space};
 use crate::support::stress::trial::{Interface, Trial, Verdict};
 
 const ITERATIVE: [&str; 2] = ["--interface", "iterative"];
@@ -90,6 +90,15 @@ fn scenes_in_space_that_are_hard_to_settle_are_solved_between_clusters() {
         let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
         assert_eq!(trial.verdict, Verdict::Right, "{seed}: {}", trial.reason);
     }
+}
+
+/// Subdomains compute displacements at closed contacts from those of the other side, each in its own order: the round-off of
+/// a soft side would be much for a stiff one.
+#[test]
+fn subdomains_of_a_stiff_body_have_one_displacement_of_a_node() {
+    let drawn = draw_frictional_in_space(41_000_454, 12);
+    let trial = Trial::with(&drawn, built(), LIMIT, None, Interface::Iterative(8));
+    assert_eq!(trial.verdict, Verdict::Right, "{}", trial.reason);
 }
 
 #[test]
