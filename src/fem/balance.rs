@@ -98,8 +98,8 @@ impl Balance {
     }
 }
 
-/// The last balance of every block under the same loads, for the next check of the same solution: stiffness matrices of
-/// quadratic cells take as long to compute as a block takes to factorize.
+/// The last balance of every block under the same loads, for the next check of the same solution: integrating the stiffness
+/// of hexahedra of 27 nodes takes an eighth of the time of factorizing them.
 #[derive(Debug, Default)]
 pub struct LastBalances(RefCell<OnBlocks<LastBalance>>);
 
