@@ -23,8 +23,8 @@ const PER_NODE_OF_CELL: [f64; 2] = [0.82, 0.4];
 const PER_BOUNDARY: [f64; 2] = [165.0, 105.0];
 /// An entry of a matrix (bytes).
 const PER_ENTRY: f64 = 8.0;
-/// A square entry of the matrix of a cluster between which and others iterations solve: half of it is kept, and half of the
-/// factor in single precision (bytes).
+/// Memory of a cluster of the iterative solver over the square of its number of unknowns (bytes): half of S, and half of
+/// its factor in single precision.
 const PER_ENTRY_OF_CLUSTER: f64 = 6.0;
 /// Most memory of matrices kept for reuse (bytes).
 const SPARE: f64 = 2.7e8;

@@ -5,7 +5,7 @@ use faer::Mat;
 use super::condensed::{Condensed, InterfaceDof};
 use super::symmetric::PackedSymmetric;
 
-/// The Schur complement of a cluster between which and others iterations solve, or of a whole tree.
+/// The packed Schur complement of a cluster, or of a whole tree of the hierarchy.
 #[derive(Debug)]
 pub struct ClusterSchur {
     /// The unknowns on Γ, ascending.

@@ -288,7 +288,7 @@ mod tests {
         for i in interior..n {
             let entry = |j: usize| s[(i.max(j) - interior, i.min(j) - interior)];
             let held: f64 = (interior..n).map(|j| entry(j) * exact[j]).sum();
-            assert!((held - x[i]).abs() < 1e-11, "{i}: {held}, {}", x[i]);
+            assert!((held - x[i]).abs() < 1e-12, "{i}: {held}, {}", x[i]);
         }
         x[interior..].copy_from_slice(&exact.as_slice()[interior..]);
         factor.backward(&mut x);
