@@ -49,7 +49,7 @@ impl ConjugateGradients<'_> {
     /// and whether they converged. Collective.
     ///
     /// Iteration ends where √(rᵀ M r), with the preconditioner M about the error in the energy norm, is less than
-    /// `tolerance` times that of b.
+    /// `tolerance` times the solution's: bᵀ M b, or with a start x₀ the energy of its best multiple, (bᵀ x₀)² / x₀ᵀ S x₀.
     pub fn solve(
         &self,
         mut b: Vectors,
@@ -57,22 +57,17 @@ impl ConjugateGradients<'_> {
         tolerance: f64,
     ) -> (Vectors, usize, bool) {
         self.add_up(&mut b);
-        let mut x: Vectors = b.iter().map(|(&c, b)| (c, vec![0.0; b.len()])).collect();
         let mut r = b;
+        let (mut x, energy) = match start.and_then(|start| self.begun(&mut r, start)) {
+            Some((start, energy)) => (start, Some(energy)),
+            None => (
+                r.iter().map(|(&c, r)| (c, vec![0.0; r.len()])).collect(),
+                None,
+            ),
+        };
         let mut z = self.precondition(&r);
         let mut rho = self.dot(&r, &z);
-        let scale = rho;
-        let enough = tolerance * tolerance * scale;
-        if let Some(start) = start {
-            let mut of_start = r.clone();
-            subtract(&mut of_start, &self.multiply(&start), 1.0);
-            let of_start_z = self.precondition(&of_start);
-            let of_start_rho = self.dot(&of_start, &of_start_z);
-            // The solution for another load may be a worse start than 0.
-            if of_start_rho < rho {
-                (x, r, z, rho) = (start, of_start, of_start_z, of_start_rho);
-            }
-        }
+        let enough = tolerance * tolerance * energy.unwrap_or(rho);
         let mut p = z.clone();
         let most = match self.is_stale {
             true => MAX_WITH_STALE,
@@ -109,6 +104,19 @@ impl ConjugateGradients<'_> {
                 .done(done.clamp(f64::MIN_POSITIVE, 1.0));
         }
         (x, iterations, rho <= enough)
+    }
+
+    /// Takes S x₀ off the residual b of 0 and returns x₀ with the energy of its best multiple, if x₀ is a better start than
+    /// 0: in the energy norm its error is less where x₀ᵀ S x₀ < 2 bᵀ x₀. The solution for another load may be a worse one.
+    /// Collective.
+    fn begun(&self, b: &mut Vectors, start: Vectors) -> Option<(Vectors, f64)> {
+        let of_start = self.multiply(&start);
+        let products = self.products(&start, &[b, &of_start]);
+        let (work, energy) = (products[0], products[1]);
+        (energy < 2.0 * work).then(|| {
+            subtract(b, &of_start, 1.0);
+            (start, work * (work / energy))
+        })
     }
 
     /// S x. Collective.
