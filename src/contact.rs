@@ -4,6 +4,7 @@
 
 pub mod active_equalities;
 pub mod active_set;
+pub mod condensed_contact;
 pub mod conditions;
 pub mod dependence;
 pub mod dependent;

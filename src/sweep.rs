@@ -21,6 +21,7 @@ pub use self::outcome::{
 };
 use crate::contact::friction::Status;
 use crate::error::Failure;
+use crate::interface::coupled::CoupledContact;
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::s_con::{ConState, ConTotals, Expected, SCon};
 use crate::settings::SweepSettings;
@@ -92,7 +93,7 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     }
 
     /// The state before the first sweep, and its residual: at the bilateral start (16)-(17), or at the solution of the
-    /// load step before.
+    /// load step before, which newton leaves as it is until it has solved the coupled problem.
     pub fn begin(
         problem: &'a InterfaceProblem<'a>,
         s_con: &'a mut SCon<'c>,
@@ -100,12 +101,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
         start: Start,
         observer: &'a mut dyn FnMut(&SweepRecord),
     ) -> (Self, Residual) {
-        let (u, expected) = match start {
+        let solves_coupled =
+            settings.method == Method::Newton && CoupledContact::new(problem).is_some();
+        let (u, before) = match start {
             Start::Bilateral => (problem.bilateral_start(), None),
-            Start::Before(u, statuses) => {
-                let expected = statuses.into_iter().map(|of_pair| (of_pair, Vec::new()));
-                (u, Some(expected.collect::<Vec<Expected>>()))
-            }
+            Start::Before(u, statuses) => (u, Some(statuses)),
         };
         let mut sweeps = Self {
             problem,
@@ -117,7 +117,24 @@ impl<'a, 'c> Sweeps<'a, 'c> {
             has_fallen_back: false,
             observer,
         };
-        let residual = sweeps.evaluate(expected.as_deref());
+        let residual = match before {
+            Some(_) if solves_coupled => {
+                let interface = sweeps.problem.interface;
+                let u = &sweeps.outcome.u;
+                let totals = (sweeps.s_con).at_last_jumps(interface, u, &mut sweeps.state);
+                let residual = sweeps.residual_after(totals);
+                match residual.relative <= sweeps.tolerance() {
+                    true => sweeps.residual(None),
+                    false => residual,
+                }
+            }
+            Some(statuses) => {
+                let expected = statuses.into_iter().map(|of_pair| (of_pair, Vec::new()));
+                sweeps.residual(Some(&expected.collect::<Vec<Expected>>()))
+            }
+            None => sweeps.residual(None),
+        };
+        sweeps.record(&residual);
         (sweeps, residual)
     }
 
@@ -170,6 +187,11 @@ impl<'a, 'c> Sweeps<'a, 'c> {
     fn residual(&mut self, expected: Option<&[Expected]>) -> Residual {
         let u = &self.outcome.u;
         let totals = (self.s_con).evaluate(self.problem.interface, u, expected, &mut self.state);
+        self.residual_after(totals)
+    }
+
+    /// r(U) after an evaluation of S_CON with these totals.
+    fn residual_after(&mut self, totals: ConTotals) -> Residual {
         self.outcome.count(&totals, self.s_con.len());
         let (mut r, mut scale) = self.problem.linear_residual(&self.outcome.u);
         self.state

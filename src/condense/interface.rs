@@ -4,7 +4,7 @@ use contact_dd_partition::id::ClusterId;
 use faer::Par;
 
 use crate::condense::blocks::CondensedBlocks;
-use crate::contact::pair::CondensedContact;
+use crate::contact::condensed_contact::CondensedContact;
 use crate::context::Context;
 use crate::error::Failure;
 use crate::interface::coupled::MAX_JUMPS;

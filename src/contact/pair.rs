@@ -4,13 +4,11 @@
 
 use std::rc::Rc;
 
-use faer::Mat;
 use serde::{Deserialize, Serialize};
 
 use super::active_set::{ContactProblem, ContactSolution};
-use super::dependent::DependentConstraints;
 use super::friction::{FrictionProblem, Status};
-use super::limits::{Limits, TangentialLimit};
+use super::limits::Limits;
 use super::open_factor::OpenFactor;
 use super::patch::LastPatch;
 use crate::schur::condensed::Condensed;
@@ -25,6 +23,8 @@ pub struct ContactPair {
     load: Vec<f64>,
     limits: Limits,
     last_patch: LastPatch,
+    /// The jumps at the beginning of the load step (m).
+    begun: Vec<f64>,
     state: PairState,
 }
 
@@ -34,6 +34,9 @@ pub struct PairState {
     /// The status of every jump, then of every linearly dependent constraint.
     status: Vec<Status>,
     contact: ContactSolution,
+    /// The change of jumps in the load step (m).
+    #[serde(default)]
+    change: Vec<f64>,
 }
 
 /// One evaluation of S_kl.
@@ -51,6 +54,10 @@ pub struct PairResponse {
     /// t (m).
     #[serde(with = "crate::bytes")]
     pub jumps: Vec<f64>,
+    /// The change of jumps in the load step before where they slip along a direction in space, else 0; empty after an
+    /// evaluation (m).
+    #[serde(with = "crate::bytes")]
+    pub change_before: Vec<f64>,
     /// c − H t: the contact force where closed, round-off where open (N/m).
     #[serde(with = "crate::bytes")]
     pub contact_residual: Vec<f64>,
@@ -67,7 +74,7 @@ pub struct PairResponse {
     pub steps: usize,
     /// True if Newton's method alone didn't suffice.
     pub fell_back: bool,
-    /// True if the small problem converged.
+    /// True if the small problem converged; false where it wasn't solved.
     pub converged: bool,
 }
 
@@ -81,11 +88,14 @@ impl ContactPair {
         before: Option<PairState>,
     ) -> Self {
         let bounds = limits.bounds.len();
+        let state = before.unwrap_or_else(|| PairState {
+            status: vec![Status::Closed; bounds],
+            contact: ContactSolution::bilateral(condensed.jumps, bounds),
+            change: Vec::new(),
+        });
         Self {
-            state: before.unwrap_or_else(|| PairState {
-                status: vec![Status::Closed; bounds],
-                contact: ContactSolution::bilateral(condensed.jumps, bounds),
-            }),
+            begun: state.contact.jumps.clone(),
+            state,
             condensed,
             limits,
             last_patch: LastPatch::default(),
@@ -95,7 +105,11 @@ impl ContactPair {
 
     /// The state after the last evaluation.
     pub fn into_state(self) -> PairState {
-        self.state
+        let jumps = self.state.contact.jumps.iter().zip(&self.begun);
+        PairState {
+            change: jumps.map(|(t, begun)| t - begun).collect(),
+            ..self.state
+        }
     }
 
     /// The Schur complement.
@@ -163,18 +177,11 @@ impl ContactPair {
             last_patch: &self.last_patch,
         }
         .solve(&mut status);
-        let (mut contact_residual, mut contact_residual_scale) = (c, c_scale);
-        for (column, &t) in self.condensed.s_tt().col_iter().zip(&contact.jumps) {
-            for (i, h) in column.iter().enumerate() {
-                contact_residual[i] -= h * t;
-                contact_residual_scale[i] += (h * t).abs();
-            }
-        }
         let mut response = PairResponse {
             gaps: (self.limits).gaps(&contact.jumps, |i| status[i].is_closed()),
             jumps: contact.jumps.clone(),
-            contact_residual,
-            contact_residual_scale,
+            contact_residual: c,
+            contact_residual_scale: c_scale,
             active: (self.limits).closed_points(|i| status[i].is_closed()),
             changed: (before.iter().zip(&status)).filter(|(a, b)| a != b).count(),
             steps: contact.steps,
@@ -182,11 +189,53 @@ impl ContactPair {
             converged: contact.converged,
             ..PairResponse::default()
         };
+        self.subtract_own(&mut response);
         self.state.contact = contact;
         self.state.status.clone_from(&status);
         response.status = status;
         (response.reaction, response.scale) = self.reaction(u);
         response
+    }
+
+    /// S_ΓΓ U + S_Γt t − f_Γ at the jumps t and statuses of the last evaluation, which another load or U leaves without
+    /// their laws: the coupled problem of all pairs finds both.
+    pub fn at_last_jumps(&self, u: &[f64]) -> PairResponse {
+        let PairState {
+            status,
+            contact,
+            change,
+        } = &self.state;
+        let change_before = |(i, status): (usize, &Status)| match status {
+            Status::Slipping => change.get(i).copied().unwrap_or(0.0),
+            _ => 0.0,
+        };
+        let of_jumps = &status[..contact.jumps.len()];
+        let (c, c_scale) = self.driving_force(u);
+        let (reaction, scale) = self.reaction(u);
+        let mut response = PairResponse {
+            reaction,
+            scale,
+            gaps: self.limits.gaps(&contact.jumps, |_| false),
+            jumps: contact.jumps.clone(),
+            change_before: of_jumps.iter().enumerate().map(change_before).collect(),
+            contact_residual: c,
+            contact_residual_scale: c_scale,
+            active: (self.limits).closed_points(|i| status[i].is_closed()),
+            status: status.clone(),
+            ..PairResponse::default()
+        };
+        self.subtract_own(&mut response);
+        response
+    }
+
+    /// Subtracts H t from the contact residual of a response, c.
+    fn subtract_own(&self, response: &mut PairResponse) {
+        for (column, &t) in self.condensed.s_tt().col_iter().zip(&response.jumps) {
+            for (i, h) in column.iter().enumerate() {
+                response.contact_residual[i] -= h * t;
+                response.contact_residual_scale[i] += (h * t).abs();
+            }
+        }
     }
 
     /// c = f_t − S_tΓ U, the force on every normal jump at t = 0, and the scale of its terms.
@@ -248,51 +297,10 @@ impl ContactPair {
     }
 }
 
-/// λ = c − S_tΓ U − H t ≥ 0, t ≤ g, λ (g − t) = 0, and D t ≤ d if there are dependent rows: the part of S_kl that the
-/// root needs to solve for all pairs at once.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct CondensedContact {
-    /// H, on the normal jumps (Pa).
-    #[serde(with = "crate::bytes::symmetric")]
-    pub h: Mat<f64>,
-    /// S_tΓ, normal jumps against traces (Pa).
-    #[serde(with = "crate::bytes::matrix")]
-    pub s_t_gamma: Mat<f64>,
-    /// The diagonal of the matrix that H is condensed from (Pa).
-    #[serde(with = "crate::bytes")]
-    pub diagonal: Vec<f64>,
-    /// D.
-    pub rows: DependentConstraints,
-    /// The condition that defines each normal jump as an unknown.
-    pub defining: Vec<usize>,
-    /// The limits of tangential jumps.
-    pub tangents: Vec<TangentialLimit>,
-    /// The condition of each limit.
-    pub conditions: Vec<usize>,
-}
-
-impl CondensedContact {
-    /// Number of normal jumps.
-    pub fn len(&self) -> usize {
-        self.diagonal.len()
-    }
-
-    /// The law of a cluster in contact.
-    pub fn new(condensed: &Condensed, limits: &Limits) -> Self {
-        Self {
-            h: condensed.s_tt().to_owned(),
-            s_t_gamma: condensed.s_t_gamma().to_owned(),
-            diagonal: condensed.diagonal[..condensed.jumps].to_vec(),
-            rows: limits.rows.clone(),
-            defining: limits.defining.clone(),
-            tangents: limits.tangents.clone(),
-            conditions: limits.conditions_of_limits(),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use faer::Mat;
+
     use super::*;
     use crate::contact::jumps::JumpOf;
     use crate::contact::limits::Conditions;
@@ -361,6 +369,27 @@ mod tests {
             }
         }
         assert!((50..250).contains(&closed), "{closed}");
+    }
+
+    #[test]
+    fn at_its_last_jumps_a_pair_responds_as_after_its_evaluation() {
+        let mut pair = pair();
+        for u in traces() {
+            let evaluated = pair.evaluate(&u, None);
+            let kept = pair.at_last_jumps(&u);
+            let differences = [
+                (&evaluated.reaction, &kept.reaction),
+                (&evaluated.contact_residual, &kept.contact_residual),
+                (&evaluated.gaps, &kept.gaps),
+            ];
+            for (a, b) in differences {
+                assert_eq!(a.len(), b.len());
+                assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14));
+            }
+            assert_eq!(evaluated.status, kept.status);
+            // It isn't solved, so that no method ends with it.
+            assert!(evaluated.converged && !kept.converged && kept.steps == 0);
+        }
     }
 
     #[test]

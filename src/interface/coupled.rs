@@ -17,10 +17,11 @@ use super::operator::{Interface, diagonal_of};
 use super::problem::InterfaceProblem;
 use super::rigid_modes::RigidBasis;
 use crate::contact::active_set::{ContactProblem, ContactSolution};
+use crate::contact::condensed_contact::CondensedContact;
 use crate::contact::dependent::DependentConstraints;
 use crate::contact::friction::FrictionProblem;
 use crate::contact::limits::{OtherTangent, TangentialLimit};
-use crate::contact::pair::{CondensedContact, PairResponse};
+use crate::contact::pair::PairResponse;
 use crate::contact::status::{FixedStatus, LimitState};
 use crate::interface::s_con::{ConState, Expected};
 use crate::schur::local::multiply_add;
@@ -36,8 +37,6 @@ pub struct CoupledContact<'a> {
     /// H − Cᵀ A⁻¹ C.
     h: MatRef<'a, f64>,
     diagonal: Vec<f64>,
-    /// The zero change.
-    center: Vec<f64>,
     /// D of all pairs.
     rows: DependentConstraints,
     /// The limits of tangential jumps of all pairs.
@@ -84,6 +83,8 @@ struct Condensed {
     c: Vec<f64>,
     /// Scale of its terms.
     c_scale: Vec<f64>,
+    /// The zero change of jumps.
+    rest: Vec<f64>,
 }
 
 impl<'a> CoupledContact<'a> {
@@ -98,7 +99,6 @@ impl<'a> CoupledContact<'a> {
             diagonal: diagonal_of(laws),
             rows: all_rows(laws),
             tangents: all_tangents(laws),
-            center: vec![0.0; laws.iter().map(CondensedContact::len).sum()],
             scale: problem.scale,
         })
     }
@@ -116,8 +116,14 @@ impl<'a> CoupledContact<'a> {
         self.motions.set_load(&mut condensed.c);
         let mut status = self.side_by_side(state.responses.iter().map(|p| &p.status[..]));
         let gaps = self.side_by_side(state.responses.iter().map(|p| &p.gaps[..]));
+        // Slips go on in the direction that they had.
+        let mut center = all(|p| &p.change_before);
+        center.resize(self.h.nrows(), 0.0);
         let problem = FrictionProblem {
-            contact: self.problem(&condensed, &gaps, u),
+            contact: ContactProblem {
+                center: &center,
+                ..self.problem(&condensed, &gaps, u)
+            },
             tangents: &self.tangents,
             last_patch: &self.interface.last_patch,
         };
@@ -283,7 +289,13 @@ impl<'a> CoupledContact<'a> {
             }
             first += law.len();
         }
-        Condensed { z, c, c_scale }
+        let rest = vec![0.0; c.len()];
+        Condensed {
+            z,
+            c,
+            c_scale,
+            rest,
+        }
     }
 
     fn problem<'b>(
@@ -299,7 +311,7 @@ impl<'a> CoupledContact<'a> {
             c_scale: &condensed.c_scale,
             rows: &self.rows,
             bounds,
-            center: &self.center,
+            center: &condensed.rest,
             scale: u.iter().fold(self.scale, |m, u| m.max(u.abs())),
         }
     }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::numbering::Numbering;
 use super::rigid_modes::RigidBasis;
 use super::solver::DirectSolver;
-use crate::contact::pair::CondensedContact;
+use crate::contact::condensed_contact::CondensedContact;
 use crate::contact::patch::LastPatch;
 use crate::error::Failure;
 use crate::schur::factor::BoundaryLastCholesky;

@@ -40,7 +40,7 @@ pub struct ConTotals {
     pub steps: usize,
     /// Pairs that needed more than Newton's method.
     pub fallen_back_pairs: usize,
-    /// Pairs whose contact problem didn't converge.
+    /// Pairs whose contact problem didn't converge, or wasn't solved.
     pub failed_pairs: usize,
     /// Pairs that weren't evaluated because their traces are unchanged.
     pub unmoved_pairs: usize,
@@ -54,6 +54,8 @@ enum Request {
     Stop,
     /// S_kl(U) of these pairs.
     Evaluate(Vec<usize>),
+    /// The same at the pairs' last jumps, of these pairs.
+    AtLastJumps(Vec<usize>),
     /// S_kl'(U) x of these pairs.
     Differentiate(Vec<usize>),
     /// The question whether any rank received a signal to stop.
@@ -130,6 +132,33 @@ impl<'a> SCon<'a> {
         totals
     }
 
+    /// The responses of all pairs to U at their last jumps, for a method that solves the coupled problem of all pairs next:
+    /// their own problems would change statuses that the load step before has found. On the root, while the other ranks
+    /// [`serve`](Self::serve).
+    pub fn at_last_jumps(
+        &mut self,
+        interface: &Interface,
+        u: &[f64],
+        state: &mut ConState,
+    ) -> ConTotals {
+        let all: Vec<usize> = (0..self.len()).collect();
+        // The next evaluation is due even where U stays.
+        state.interface_dofs = vec![None; all.len()];
+        state.responses = vec![PairResponse::default(); all.len()];
+        if !all.is_empty() {
+            self.comm.broadcast(&mut Request::AtLastJumps(all.clone()));
+            let question = |p: usize| Reals(interface.restrict(p, u));
+            self.exchange(&all, question, at_last_jumps, |p, response| {
+                state.responses[p] = response;
+            });
+        }
+        ConTotals {
+            active: state.responses.iter().map(|response| response.active).sum(),
+            failed_pairs: all.len(),
+            ..ConTotals::default()
+        }
+    }
+
     /// y ← y + S_CON'(U) x with the active sets of the last evaluation. On the root, while the other ranks
     /// [`serve`](Self::serve).
     pub fn add_derivative(&mut self, interface: &Interface, x: &[f64], y: &mut [f64]) {
@@ -161,6 +190,9 @@ impl<'a> SCon<'a> {
                 Request::Stop => return,
                 Request::Evaluate(called) => {
                     self.exchange(&called, |_| Question::default(), evaluate, |_, _| {});
+                }
+                Request::AtLastJumps(called) => {
+                    self.exchange(&called, |_| Reals::default(), at_last_jumps, |_, _| {});
                 }
                 Request::Differentiate(called) => {
                     self.exchange(&called, |_| Reals::default(), differentiate, |_, _| {});
@@ -207,6 +239,10 @@ fn evaluate(pair: &mut ContactPair, (Reals(u), expected): Question) -> PairRespo
         &u,
         expected.map(|(status, Reals(changes))| (status, changes)),
     )
+}
+
+fn at_last_jumps(pair: &mut ContactPair, Reals(u): Reals) -> PairResponse {
+    pair.at_last_jumps(&u)
 }
 
 fn differentiate(pair: &mut ContactPair, Reals(x): Reals) -> Reals {

@@ -1,13 +1,15 @@
 //! Load steps: each has the solution of its own loads, independent of earlier steps.
 
+use contact_dd_partition::element::ElementKind::Hexahedron8;
 use contact_dd_partition::model::Model;
 
-use crate::support::blocks::Blocks;
+use crate::support::blocks::{Blocks, joined};
 use crate::support::comparison::compare;
 use crate::support::monolithic::Monolithic;
 use crate::support::scenes::{
     BODIES, JOINT, LOAD, SUPPORTS, at_step, model, two_block_scene, two_blocks,
 };
+use crate::support::solids::{between, solid};
 use crate::support::solution::Solution;
 use crate::support::solver::{Case, solve};
 
@@ -210,6 +212,69 @@ fn a_step_with_the_loads_of_the_one_before_needs_no_sweep() {
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-11 * steps[0].largest_force();
     let mut both = steps[0].points().zip(steps[1].points());
     assert!(both.all(|(a, b)| close(a.force, b.force)));
+}
+
+/// One box on another, whose top is pushed down on one side and turned.
+const PUSHED_BOXES: &str = "
+materials.rock = {young = 20e9, poisson = 0.25}
+bodies.lower.material = 'rock'
+bodies.upper.material = 'rock'
+[[displacement]]
+on = 'lower z0'
+x = 0
+y = 0
+z = 0
+[[displacement]]
+on = 'upper z1'
+x = '1.2e-5*(1+y)'
+y = '6e-6*(1-x)'
+z = '-1e-4*(1-1.6*x)'
+[[contact]]
+name = 'joint'
+sides = ['upper z0', 'lower z1']
+";
+
+/// Ten equal increments of load with friction, along which no status changes after the first one.
+#[test]
+fn steps_continue_from_the_statuses_and_slips_before() {
+    let steps: String = (1..=10)
+        .map(|k| format!("[[step]]\nscale = {}\n", f64::from(k) / 10.0))
+        .collect();
+    let plane = format!("{}friction = 0.2\n{steps}", two_block_scene());
+    let space = format!("{PUSHED_BOXES}friction = 0.3\n{steps}");
+    let below = solid("lower", Hexahedron8, [4, 4, 2], between([0.0; 3], [1.0; 3]));
+    let at = between([0.0, 0.0, 1.0], [1.0, 1.0, 2.0]);
+    let boxes = joined(below, solid("upper", Hexahedron8, [4, 4, 2], at));
+    for (model, most) in [
+        (model(&plane, two_blocks().mesh), 4.0),
+        (model(&space, boxes), 3.0),
+    ] {
+        let steps = solved(&model, 4, &["--interface", "direct"]);
+        let solves = |step: &Solution| step.report["linear_solves"].as_f64().unwrap();
+        let all: f64 = steps.iter().map(solves).sum();
+        assert!(
+            all <= most * solves(&steps[0]),
+            "{all} of {}",
+            solves(&steps[0])
+        );
+        for (k, step) in steps.iter().enumerate() {
+            let slipping = &step.report["friction"]["slipping"];
+            assert!(slipping.as_u64() > Some(0), "step {k}");
+        }
+        agrees_in_proportion(&steps);
+    }
+}
+
+/// Fails unless displacements grow in proportion to the steps' numbers.
+fn agrees_in_proportion(steps: &[Solution]) {
+    let largest = steps[0].largest_displacement();
+    for (k, step) in steps.iter().enumerate() {
+        let times = k as f64 + 1.0;
+        for (tag, u) in &step.displacement {
+            let first = steps[0].displacement[tag];
+            assert!((0..3).all(|i| (u[i] - times * first[i]).abs() < 1e-11 * times * largest));
+        }
+    }
 }
 
 #[test]
